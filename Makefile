@@ -1,0 +1,35 @@
+# Two commands are the set-up: `make report` and `make test`; both make .venv first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+export OMP_NUM_THREADS ?= 1
+
+.PHONY: report report-all test gates lint bench clean
+
+report: $(READY)  ## the core study and its PDF, written also when gates fail
+	@$(BIN)/dda-validate run core; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
+
+report-all: $(READY)  ## every study and one PDF
+	@$(BIN)/dda-validate run all; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
+
+test: $(READY)  ## all tests and all accuracy gates
+	$(BIN)/python -m pytest -q -n 2 --dist loadgroup
+
+gates: $(READY)  ## the accuracy gates alone
+	$(BIN)/python -m pytest -q -m validation
+
+lint: $(READY)  ## style and types
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+bench: $(READY)  ## speed, as ratios in one run against named rivals
+	$(BIN)/python reports/bench.py
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/*.pdf
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable '.[dev]' --constraint constraints.txt
+	@touch $@

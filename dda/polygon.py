@@ -1,0 +1,124 @@
+"""Area integrals of simple polygons, exact in exact arithmetic and free of far-origin rounding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AreaIntegrals:
+    """Integrals over a polygon about the origin of its coordinates."""
+
+    area: float  # integral of 1 [m^2]
+    x: float  # integral of x [m^3]
+    y: float  # integral of y [m^3]
+    xx: float  # integral of x^2 [m^4]
+    yy: float  # integral of y^2 [m^4]
+    xy: float  # integral of x y [m^4]
+
+
+@dataclass(frozen=True)
+class Section:
+    """Area, centroid and central second moments: s, (x0, y0), s1, s2, s3 of eq. (16)."""
+
+    area: float  # s [m^2]
+    centroid: tuple[float, float]  # (x0, y0) [m]
+    s1: float  # integral of (x - x0)^2 [m^4]
+    s2: float  # integral of (y - y0)^2 [m^4]
+    s3: float  # integral of (x - x0)(y - y0) [m^4]
+
+
+def area_integrals(vertices: Array) -> AreaIntegrals:
+    """Integrate 1, x, y, x^2, y^2 and xy over a polygon by Green's theorem.
+
+    Parameters
+    ----------
+    vertices : (n, 2) array [m]
+        Corners in counter-clockwise order; the origin should lie near the polygon.
+    """
+    x, y = vertices.T
+    xn, yn = np.roll(vertices, -1, axis=0).T
+    c = x * yn - xn * y
+    return AreaIntegrals(
+        area=float(np.sum(c)) / 2,
+        x=float(np.sum(c * (x + xn))) / 6,
+        y=float(np.sum(c * (y + yn))) / 6,
+        xx=float(np.sum(c * (x * x + x * xn + xn * xn))) / 12,
+        yy=float(np.sum(c * (y * y + y * yn + yn * yn))) / 12,
+        xy=float(np.sum(c * (x * yn + 2 * x * y + 2 * xn * yn + xn * y))) / 24,
+    )
+
+
+def section(vertices: Array) -> Section:
+    """Return area, centroid and central moments, evaluated about a local origin.
+
+    The corners are shifted by the first corner, then by the centroid, so that a block
+    far from the origin keeps the digits that its coordinates hold.
+    """
+    local = vertices - vertices[0]
+    first = area_integrals(local)
+    shift = np.array([first.x / first.area, first.y / first.area])
+    i = area_integrals(local - shift)
+    x0, y0 = vertices[0] + shift
+    return Section(i.area, (float(x0), float(y0)), i.xx, i.yy, i.xy)
+
+
+def checked_polygon(vertices: ArrayLike) -> Array:
+    """Return the corners as a read-only (n, 2) array of a simple counter-clockwise polygon.
+
+    Raises
+    ------
+    ValueError
+        If the shape is not (n >= 3, 2), a coordinate is not finite, an edge has no length,
+        edges cross or touch, or the corners run clockwise.
+    """
+    points = np.array(vertices, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
+        raise ValueError(f"vertices: at least three corners [x, y] are needed, got shape {points.shape}")
+    if not np.all(np.isfinite(points)):
+        raise ValueError(f"vertices: coordinates must be finite, got {points.tolist()}")
+    local = points - points[0]
+    if not np.all(np.any(np.roll(local, -1, axis=0) != local, axis=1)):
+        raise ValueError(f"vertices: consecutive corners must differ, got {points.tolist()}")
+    if _touches_itself(local):
+        raise ValueError(f"vertices: edges must not cross or touch each other, got {points.tolist()}")
+    if not area_integrals(local).area > 0:
+        raise ValueError(f"vertices: corners must run counter-clockwise, got {points.tolist()}")
+    points.setflags(write=False)
+    return points
+
+
+def _orientation(a: Array, b: Array, c: Array) -> Array:
+    """Return the sign of the turn a-b-c, zero on a line."""
+    turn = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
+    return np.sign(turn)
+
+
+def _within(a: Array, b: Array, c: Array) -> NDArray[np.bool_]:
+    """Tell where c, on the line a-b, lies within the box of a and b."""
+    inside: NDArray[np.bool_] = np.all((np.minimum(a, b) <= c) & (c <= np.maximum(a, b)), axis=-1)
+    return inside
+
+
+def _touches_itself(points: Array) -> bool:
+    """Tell whether two edges meet anywhere but in the corner that neighbours share."""
+    n = len(points)
+    following = np.roll(points, -1, axis=0)
+    i, j = np.triu_indices(n, 1)
+    apart = (j - i > 1) & ~((i == 0) & (j == n - 1))
+    a, b, c, d = points[i], following[i], points[j], following[j]
+    abc, abd = _orientation(a, b, c), _orientation(a, b, d)
+    cda, cdb = _orientation(c, d, a), _orientation(c, d, b)
+    crossing = (abc * abd < 0) & (cda * cdb < 0)
+    touching = (abc == 0) & _within(a, b, c) | (abd == 0) & _within(a, b, d)
+    touching |= (cda == 0) & _within(c, d, a) | (cdb == 0) & _within(c, d, b)
+    if bool(np.any(apart & (crossing | touching))):
+        return True
+    before = np.roll(points, 1, axis=0)
+    along = np.sum((points - before) * (following - points), axis=1)
+    return bool(np.any((_orientation(before, points, following) == 0) & (along < 0)))

@@ -1,0 +1,172 @@
+"""The robust step: the printed scheme, energy, savings, loads without bounds, overflow."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from dda import (
+    COLUMNS,
+    Block,
+    Contact,
+    Material,
+    Scheme,
+    TwoBlockModel,
+    modal_form,
+    newmark,
+    one_step_operator,
+    solve,
+    spectral,
+)
+
+SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6)]
+
+
+def model(pressure=3e6, mu=0.3, **edges):
+    block = Block.rectangle(1.4, 2.1, Material(2450.0, 2e9, mu, "plane strain"))
+    return TwoBlockModel(block, Contact(5e9, 1e9), pressure, **edges)
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+def test_steps_are_the_printed_ones(alpha, delta, start):
+    m, scheme = model(), Scheme(alpha, delta, 0.93, 8e-4, start)
+    M, K, F, dt = m.mass, m.stiffness, m.load, scheme.step
+    D, V = np.zeros((2, 6))
+    A = np.linalg.solve(M, F) if start == "consistent" else np.zeros(6)
+    result = solve(m, scheme, 12, COLUMNS)
+    for n in range(12):
+        ahead = scheme.gg * V / (alpha * dt) + (1 / (2 * alpha) - 1) * A
+        dD = np.linalg.solve(K + M / (alpha * dt**2), F - K @ D + M @ ahead)
+        V = delta / (alpha * dt) * dD + scheme.gg * (1 - delta / alpha) * V + (1 - delta / (2 * alpha)) * dt * A
+        D, A = D + dD, dD / (alpha * dt**2) - ahead
+        # a dozen steps of ordinary arithmetic on an ordinary scene
+        assert result.columns["displacement"][n] == pytest.approx(D[1], rel=1e-11)
+        assert result.columns["strain_x"][n] == pytest.approx(D[3], rel=1e-11)
+        assert result.columns["strain_y"][n] == pytest.approx(D[4], rel=1e-11)
+    assert result.time == pytest.approx(dt * np.arange(1, 13))
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.9])
+def test_central_differences_are_the_two_step_formula(gg):
+    m, dt = model(mu=0.0), 2e-4
+    result = solve(m, Scheme(0.0, 0.5, gg, dt, "consistent"), 40, ("displacement", "strain_y"))
+    M, K, F = m.mass, m.stiffness, m.load
+    D, V, A = np.zeros(6), np.zeros(6), np.linalg.solve(M, F)
+    for n in range(40):
+        D = D + gg * dt * V + dt**2 / 2 * A
+        A1 = np.linalg.solve(M, F - K @ D)
+        V, A = gg * V + dt / 2 * (A + A1), A1
+        assert result.columns["displacement"][n] == pytest.approx(D[1], rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("piece", "fault"),
+    [
+        ("predictor", lambda s, P, f: P + (0.5 - s.alpha) * f),
+        ("velocity_corrector", lambda s, P, f, f1: P + (1 - s.delta) * f + s.delta * f1),
+        ("acceleration_corrector", lambda F, k, D: F - 0.999 * k * D),
+        ("initial_acceleration", lambda s, F: F),
+        ("effective_matrix", lambda s, M, k: M + 1.001 * s.alpha * k),
+    ],
+)
+def test_every_named_piece_of_the_step_is_used(monkeypatch, piece, fault):
+    scheme = Scheme(0.3025, 0.6, 0.95, 1e-3)
+    right = solve(model(), scheme, 50).columns["displacement"]
+    monkeypatch.setattr(newmark, piece, fault)
+    wrong = solve(model(), scheme, 50).columns["displacement"]
+    assert np.max(np.abs(right - wrong)) > 1e-5 * np.max(np.abs(right))
+
+
+def energies(m, scheme, steps):
+    """Return E* of every step and the dissipation that the identity predicts, free vibration."""
+    operator = one_step_operator(m, scheme, full=True)
+    form = m.gap_form
+    dt2 = scheme.step**2
+    k = dt2 * form.K
+    scale = np.ldexp(1.0, -(np.frexp(np.diag(form.M) + scheme.alpha * k)[1] // 2))
+    M, k = scale[:, None] * form.M * scale, np.diag(scale * k * scale)
+    rng = np.random.default_rng(3)
+    D, V = rng.normal(size=(2, 6))
+    state = np.concatenate([D, V, -np.linalg.solve(M, k @ D)])
+    c = scheme.alpha - scheme.delta / 2
+    energy, loss = [], []
+    for _ in range(steps + 1):
+        D, V, A = state.reshape(3, 6)
+        energy.append((V @ M @ V + D @ k @ D + c * A @ M @ A) / 2)
+        state = operator @ state
+        dD, dA = (state.reshape(3, 6) - [D, V, A])[[0, 2]]
+        loss.append(-(scheme.delta - 0.5) * (dD @ k @ dD + c * dA @ M @ dA))
+    return np.array(energy), np.array(loss[:-1])
+
+
+@pytest.mark.parametrize(("alpha", "delta"), [*SCHEMES, (1 / 6, 0.5), (0.0, 0.5)])
+@pytest.mark.parametrize("step", [2e-4, 7e-4])
+def test_energy_identity(alpha, delta, step):
+    fastest = max(modal_form(model().gap_form).frequencies)
+    step = min(step, 0.9 * spectral.critical_omega(alpha, delta) / fastest)
+    energy, loss = energies(model(), Scheme(alpha, delta, 1.0, step), 100)
+    # a hundred steps of roundings of a unit-size energy
+    assert np.max(np.abs(np.diff(energy) - loss)) < 1e-12 * np.max(np.abs(energy))
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.3])
+def test_dropping_unknowns_changes_nothing(mu):
+    scheme = Scheme(0.25, 0.5, 0.99, 5e-4, "consistent")
+    part, whole = solve(model(mu=mu), scheme, 80, COLUMNS), solve(model(mu=mu), scheme, 80, COLUMNS, full=True)
+    assert part.unknowns == (3 if mu else 2)
+    assert whole.unknowns == 6
+    assert part.notes
+    assert not whole.notes
+    for name in COLUMNS:  # the modes are found in another order: a few roundings
+        peak = np.max(np.abs(whole.columns[name]))
+        np.testing.assert_allclose(part.columns[name], whole.columns[name], rtol=0, atol=1e-13 * peak, err_msg=name)
+
+
+def test_work_is_one_factorisation_and_one_solve_a_step():
+    result = solve(model(), Scheme(0.5, 1, 1, 1e-3), 70)
+    assert (result.factorisations, result.solves) == (1, 70)
+    assert tuple(result.columns) == ("displacement", "contact_pressure")
+
+
+@pytest.mark.parametrize("q", [1e300, 1e-290, -2.0])
+def test_the_load_is_only_a_factor(q):
+    scheme = Scheme(0.5625, 1, 1, 1e-3)
+    unit, scaled = solve(model(1.0), scheme, 30), solve(model(q), scheme, 30)
+    for name in unit.columns:
+        np.testing.assert_allclose(scaled.columns[name], q * unit.columns[name], rtol=1e-15)
+
+
+def test_no_load_no_motion_even_when_unstable():
+    result = solve(model(0.0), Scheme(0.0, 0.5, 1, 1.0), 500)
+    for values in result.columns.values():
+        assert np.array_equal(values, np.zeros(500))
+        assert not np.any(np.signbit(values))
+
+
+def test_growth_ends_in_infinity_and_is_named():
+    result = solve(model(), Scheme(0.0, 0.5, 1, 1.0), 500)
+    values = result.columns["displacement"]
+    first = int(np.flatnonzero(np.isinf(values))[0])
+    assert 10 < first < 100
+    assert np.all(np.isinf(values[first:]))
+    assert any(note.startswith("overflow at step") for note in result.notes)
+
+
+@pytest.mark.parametrize("steps", [0, -1, 2.0, True])
+def test_bad_step_counts_are_refused(steps):
+    with pytest.raises(ValueError, match=f"^steps: .*{steps}"):
+        solve(model(), Scheme(0.5, 1, 1, 1e-3), steps)
+
+
+def test_unknown_columns_are_refused():
+    with pytest.raises(ValueError, match=r"^columns: .*'velocity'"):
+        solve(model(), Scheme(0.5, 1, 1, 1e-3), 5, ("velocity",))
+
+
+def test_import_costs_numpy_only():
+    others = {"scipy", "skfem", "matplotlib", "validation", "fem_reference"}
+    code = f"import sys, dda; print(sorted({others} & set(sys.modules)))"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"

@@ -1,0 +1,148 @@
+"""Closed forms of the scheme against the published numbers and the assembled operator."""
+
+import numpy as np
+import pytest
+
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes, one_step_operator, spectral
+
+CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
+SCHEMES = [CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5), (0.4, 0.3)]
+
+
+def square(ratio=1.0, mu=0.0):
+    return TwoBlockModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, mu)), Contact(ratio * 1e9), 5e6)
+
+
+def test_constant_acceleration_numbers():
+    assert spectral.spectral_radius(4.0, *CONSTANT) == pytest.approx(1 / 3, rel=1e-12)
+    assert spectral.bifurcation_omega(*CONSTANT) == pytest.approx(4.0, rel=1e-14)
+    assert spectral.spectral_radius([6.0, 10.0, 100.0], *CONSTANT) == pytest.approx([0.774, 0.920, 0.9992], abs=5e-4)
+    assert 1 - spectral.spectral_radius(1e3, *CONSTANT) == pytest.approx(8e-6, rel=1e-4)
+    assert spectral.damping_ratio([3.27, 4 - 1e-9], *CONSTANT) == pytest.approx([0.373, 0.330], abs=5e-4)
+    omega = np.linspace(0.5, 3.99, 3491)
+    assert omega[np.argmin(spectral.spectral_radius(omega, *CONSTANT))] == pytest.approx(4.0, abs=0.02)
+    assert omega[np.argmax(spectral.damping_ratio(omega, *CONSTANT))] == pytest.approx(3.27, abs=5e-3)
+    decay = -np.log(spectral.spectral_radius(omega, *CONSTANT)) / omega
+    assert omega[np.argmax(decay)] == pytest.approx(2.80, abs=5e-3)
+    assert np.isnan(spectral.damping_ratio(5.0, *CONSTANT))
+
+
+def test_radii_at_infinity():
+    assert spectral.radius_at_infinity(0.5625, 1.0) == pytest.approx(1 / 3, rel=1e-7)  # double root: sqrt(eps)
+    assert spectral.radius_at_infinity(*CONSTANT) == 1.0
+    assert spectral.radius_at_infinity(*AVERAGE) == 1.0
+    roots = spectral.eigenvalues(np.inf, *AVERAGE, 0.9)
+    assert sorted(roots.real) == pytest.approx([-1.0, -0.9], rel=1e-12)
+    assert sorted(spectral.eigenvalues(np.inf, *CONSTANT, 0.9).real) == pytest.approx([-0.9, 0.0], abs=1e-15)
+    assert spectral.radius_at_infinity(0.0, 0.5) == np.inf
+
+
+def test_critical_omegas():
+    assert spectral.critical_omega(0.0, 0.5) == pytest.approx(2.0, rel=1e-15)
+    assert spectral.critical_omega(1 / 6, 0.5) == pytest.approx(2 * np.sqrt(3), rel=1e-14)
+    for alpha, delta in (CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6)):
+        assert spectral.critical_omega(alpha, delta) == np.inf
+    for alpha, delta in ((0.1, 0.7), (0.2, 0.9)):
+        assert spectral.critical_omega(alpha, delta) == pytest.approx(1 / np.sqrt(delta / 2 - alpha), rel=1e-14)
+
+
+@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.0, 0.5, 0.9), (0.1, 0.8, 0.6), (0.1, 0.4, 0.9), (0.2, 0.9, 0.0)])
+def test_the_critical_omega_is_where_growth_begins(alpha, delta, gg):
+    limit = spectral.critical_omega(alpha, delta, gg)
+    assert spectral.spectral_radius(limit * (1 - 1e-6), alpha, delta, gg) < 1
+    assert spectral.spectral_radius(limit * (1 + 1e-6), alpha, delta, gg) > 1
+
+
+def test_kinetic_damping_is_per_step():
+    w = modes(square(), Scheme(*AVERAGE, 0.98, 1.0))[0].frequency
+    xi = spectral.damping_ratio(w * np.array([2e-3, 1e-3, 1e-4]), *AVERAGE, 0.98)
+    assert xi == pytest.approx([0.0152, 0.0296, 0.293], rel=3e-3)
+    assert spectral.overdamping_omega(*AVERAGE, 0.98) / w == pytest.approx(2.93e-5, rel=2e-3)
+    edge = spectral.overdamping_omega(*AVERAGE, 0.98)
+    assert spectral.damping_ratio(edge * 0.999, *AVERAGE, 0.98) > 1
+    assert spectral.damping_ratio(edge * 1.001, *AVERAGE, 0.98) < 1
+    omega = 0.04
+    small = 0.02 / (2 * omega) + 0.1 * omega / 2  # (1 - gg)/(2 Omega) + (delta - 1/2) Omega/2
+    assert spectral.damping_ratio(omega, 0.3025, 0.6, 0.98) == pytest.approx(small, rel=0.05)
+
+
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+@pytest.mark.parametrize("gg", [1.0, 0.9, 0.3])
+def test_roots_turn_real_at_the_bifurcation(alpha, delta, gg):
+    edge = spectral.bifurcation_omega(alpha, delta, gg)
+    if np.isinf(edge):
+        assert np.all(np.abs(spectral.eigenvalues([1e2, 1e6], alpha, delta, gg).imag) > 0)
+        return
+    below, above = spectral.eigenvalues([edge * (1 - 1e-6), edge * (1 + 1e-6)], alpha, delta, gg)
+    assert np.all(below.imag != 0)
+    assert np.all(above.imag == 0)
+
+
+@pytest.mark.parametrize(("alpha", "delta"), [CONSTANT, (0.3025, 0.6)])
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@pytest.mark.parametrize("omega", [1e-3, 0.3, 2.0])
+def test_damping_and_frequency_give_back_the_roots(alpha, delta, gg, omega):
+    xi = spectral.damping_ratio(omega, alpha, delta, gg)
+    w = omega / (1 + spectral.period_elongation(omega, alpha, delta, gg))
+    exponent = (-xi + np.array([1j, -1j]) * np.sqrt(complex(1 - xi**2))) * w
+    roots = np.sort_complex(np.exp(exponent))
+    # where overdamped, the two exponents are recovered by a subtraction
+    np.testing.assert_allclose(roots, np.sort_complex(spectral.eigenvalues(omega, alpha, delta, gg)), rtol=1e-9)
+    assert spectral.numerical_omega(omega, alpha, delta, gg) == pytest.approx(w, rel=1e-14)
+
+
+def test_small_steps_keep_the_digits_of_the_damping():
+    omega = np.array([1e-9, 1e-6])
+    assert spectral.damping_ratio(omega, *CONSTANT) == pytest.approx(omega / 4, rel=1e-9)
+    assert spectral.period_elongation(omega, *AVERAGE) == pytest.approx(omega**2 / 12, abs=1e-15)
+
+
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+@pytest.mark.parametrize("gg", [1.0, 0.93])
+@pytest.mark.parametrize(("ratio", "mu"), [(1.0, 0.0), (30.0, 0.3), (100.0, -0.4)])
+@pytest.mark.parametrize("step", [1.7e-4, 2.3e-3])
+def test_formulas_are_the_assembled_operator(alpha, delta, gg, ratio, mu, step):
+    model, scheme = square(ratio, mu), Scheme(alpha, delta, gg, step)
+    reached = modes(model, scheme)
+    operator = one_step_operator(model, scheme)
+    n = len(reached)
+    omega = np.array([mode.frequency for mode in reached]) * step
+    formula = spectral.eigenvalues(omega, alpha, delta, gg)
+    own = np.array([mode.eigenvalues for mode in reached])
+    size = max(1.0, np.abs(formula).max())
+    np.testing.assert_allclose(own.sum(axis=1), spectral.trace(omega, alpha, delta, gg), rtol=0, atol=1e-12 * size)
+    np.testing.assert_allclose(
+        own.prod(axis=1), spectral.determinant(omega, alpha, delta, gg), rtol=0, atol=1e-12 * size**2
+    )
+    # power sums do not care about collisions: trace of the operator and of its square and cube
+    for power in (1, 2, 3):
+        got = np.trace(np.linalg.matrix_power(operator, power))
+        want = np.sum(formula**power).real
+        assert got == pytest.approx(want, abs=1e-12 * (3 * n) * max(size, np.abs(operator).max()) ** power)
+
+
+@pytest.mark.parametrize(("ratio", "w"), [(1.0, 344.561), (10.0, 498.812), (100.0, 524.096)])
+def test_first_axial_frequency(ratio, w):
+    found = modes(square(ratio), Scheme(*CONSTANT, 1.0, 1e-3))
+    assert found[0].frequency == pytest.approx(w, abs=6e-4)
+    assert sum(mode.share for mode in found) == pytest.approx(1.0, rel=1e-14)
+    assert found[0].share > 0.9
+
+
+def test_rigid_contact_limit_keeps_its_digits():
+    a, E, rho = 1.3, 7e9, 2222.0
+    stiff = TwoBlockModel(Block.rectangle(a, a, Material(rho, E, 0.0)), Contact(1e15 * E), 1.0)
+    found = modes(stiff, Scheme(*CONSTANT, 1.0, 1e-3))
+    # sqrt(3) c/a, and the contact mode sqrt(2 p / m) times 2: mass seen by w at fixed e2 is m/4
+    assert found[0].frequency == pytest.approx(np.sqrt(3 * E / rho) / a, rel=1e-14)
+    assert found[1].frequency == pytest.approx(np.sqrt(8e15 * E / (rho * a * a)), rel=1e-14)
+
+
+def test_diagnostics_name_a_growing_scheme():
+    grows = diagnostics(square(), Scheme(0.0, 0.5, 1.0, 0.01))
+    assert grows.largest_omega > 2
+    assert grows.spectral_radius == pytest.approx(float(spectral.spectral_radius(grows.largest_omega, 0.0, 0.5)))
+    calm = diagnostics(square(1e12), Scheme(*CONSTANT, 1.0, 1e-3))
+    assert calm.spectral_radius <= 1
+    assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
+    assert calm.scaled_residual < 1e-15
