@@ -1,0 +1,237 @@
+"""Weak forms of plane elasticity, and functions of the displacement along an edge or at a point.
+
+With the Lame parameter lam of the plane problem and the shear modulus G::
+
+    mass       rho (u, v)
+    stiffness  lam (div u, div v) + 2 G (eps(u), eps(v))
+    springs    sum of weight_n (n.u)(n.v) + weight_t (t.u)(t.v) over the points of a rule on the base
+    load       -q (1, v_y) on the top
+
+The foundation, distributed, over patches or at the corners, is a quadrature rule on the base; its
+intervals end where a patch ends, so that it is integrated exactly on any mesh.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, diags_array
+from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
+from skfem.helpers import ddot, div, dot, sym_grad
+
+from fem_reference.problem import Array, Problem
+
+ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4, 2): ElementQuad2}
+"""Scalar element by (corners of a cell, degree)."""
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def mass_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(u, v)."""
+    return dot(u, v)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(div u, div v)."""
+    return div(u) * div(v)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def strain_form(u, v, w):  # type: ignore[no-untyped-def]
+    """2 (eps(u), eps(v))."""
+    return 2 * ddot(sym_grad(u), sym_grad(v))
+
+
+class Rule(NamedTuple):
+    """Points on facets with weights."""
+
+    points: Array
+    """Reference coordinates in the cell, shape (2, count)."""
+    cells: NDArray[np.int64]
+    """Cell of each point, shape (count,)."""
+    weights: Array
+    """Weights [m], shape (count,)."""
+
+
+def vector_basis(mesh: Mesh, degree: int) -> Basis:
+    """Displacement basis of the given degree on a mesh of triangles or quadrilaterals."""
+    element = ElementVector(ELEMENTS[mesh.t.shape[0], degree]())
+    # One order beyond 2 * degree per direction integrates the Jacobian of a bilinear cell exactly.
+    return Basis(mesh, element, intorder=2 * degree + 1)
+
+
+def mass(basis: Basis, density: float) -> csr_array:
+    """Consistent mass matrix [kg]."""
+    return density * csr_array(mass_form.assemble(basis))
+
+
+def stiffness(basis: Basis, problem: Problem) -> csr_array:
+    """Elastic stiffness matrix [N/m]; a term whose coefficient is zero leaves no entry."""
+    K = problem.shear_modulus * csr_array(strain_form.assemble(basis))
+    if problem.lame != 0:
+        K = K + problem.lame * csr_array(dilatation_form.assemble(basis))
+    return K
+
+
+def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:
+    """Matrices that give u and v at points of cells, each of shape (count, unknowns).
+
+    Parameters
+    ----------
+    basis
+        The displacement basis.
+    points
+        Reference coordinates, shape (2, count).
+    cells
+        Cell of each point, shape (count,).
+    """
+    phi = np.array(
+        [
+            basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0]
+            for k in range(basis.Nbfun)
+        ]
+    )
+    rows = np.tile(np.arange(len(cells)), basis.Nbfun)
+    columns = basis.element_dofs[:, cells].ravel()
+    shape = (len(cells), basis.N)
+    u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
+    return u, v
+
+
+def edge_rule(
+    mesh: Mesh,
+    facets: NDArray[np.int64],
+    origin: Array,
+    tangent: Array,
+    intervals: list[tuple[float, float]],
+    order: int,
+) -> Rule:
+    """Gauss rule over the part of a straight edge that lies in intervals of its arc length.
+
+    Parameters
+    ----------
+    mesh, facets
+        Facets of the edge.
+    origin, tangent
+        Start and unit direction of the edge, shape (2,).
+    intervals
+        Disjoint intervals of arc length [m].
+    order
+        Number of Gauss points per piece, exact to degree 2 order - 1.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    reference, cells, w = [], [], []
+    for facet in facets:
+        cell = mesh.f2t[0, facet]
+        ends = mesh.facets[:, facet]
+        s0, s1 = tangent @ (mesh.p[:, ends] - origin[:, None])
+        local = mesh.elem.refdom.p[:, [int(np.flatnonzero(mesh.t[:, cell] == e)[0]) for e in ends]]
+        for low, high in intervals:
+            a, b = max(low, min(s0, s1)), min(high, max(s0, s1))
+            if b > a:
+                fraction = ((a + b) / 2 + nodes * (b - a) / 2 - s0) / (s1 - s0)
+                reference.append(local[:, :1] + fraction * (local[:, 1:] - local[:, :1]))
+                cells.append(np.full(order, cell))
+                w.append(weights * (b - a) / 2)
+    return Rule(np.hstack(reference), np.concatenate(cells), np.concatenate(w))
+
+
+def vertex_rule(mesh: Mesh, facets: NDArray[np.int64], points: Array) -> Rule:
+    """Unit weights at mesh nodes of an edge; `points` has shape (2, count)."""
+    ends = mesh.facets[:, facets]
+    reference, cells = [], []
+    for point in points.T:
+        distance = np.hypot(*(mesh.p[:, ends] - point[:, None, None]))
+        i, k = np.unravel_index(np.argmin(distance), distance.shape)
+        cell = mesh.f2t[0, facets[k]]
+        local = int(np.flatnonzero(mesh.t[:, cell] == ends[i, k])[0])
+        reference.append(mesh.elem.refdom.p[:, local])
+        cells.append(cell)
+    return Rule(np.array(reference, float).T, np.array(cells), np.ones(points.shape[1]))
+
+
+def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
+    """Spring stiffness [N/m] and the row that gives the contact pressure [Pa/m].
+
+    The weights of `rule` sum to its length (or to the number of points); the whole foundation carries
+    2 p normally and 2 p_s tangentially.
+    """
+    u, v = values(basis, rule.points, rule.cells)
+    n, t = problem.normal, problem.tangent
+    normal, tangential = n[0] * u + n[1] * v, t[0] * u + t[1] * v
+    share = 2 * rule.weights / _carried(problem)
+    k_n, k_t = problem.stiffness * share, problem.shear_stiffness * share
+    K = normal.T @ diags_array(k_n) @ normal + tangential.T @ diags_array(k_t) @ tangential
+    return csr_array(K), -(normal.T @ k_n) / problem.base_length
+
+
+def _carried(problem: Problem) -> float:
+    """Sum of the weights of the whole foundation's rule."""
+    if problem.foundation == "corner":
+        return 2.0
+    return problem.base_length if problem.patch_width is None else 2 * problem.patch_width
+
+
+def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half: bool = False) -> Rule:
+    """Rule of the foundation on the base; of its first half only if `half`."""
+    a, order = problem.base_length, problem.degree + 1
+    if problem.foundation == "corner":
+        ends = problem.outline[:1] if half else problem.outline[:2]
+        return vertex_rule(mesh, base, ends.T)
+    w = problem.patch_width
+    intervals = [(-np.inf, np.inf)] if w is None else [(-np.inf, w), (a - w, np.inf)]
+    if w is not None and 2 * w >= a:
+        intervals = [(-np.inf, np.inf)]
+    return edge_rule(mesh, base, np.zeros(2), problem.tangent, intervals, order)
+
+
+def unit_load(basis: Basis, problem: Problem, top: NDArray[np.int64]) -> Array:
+    """Load vector of a unit pressure downwards on the top edge [m2], shape (unknowns,)."""
+    corners = problem.outline
+    index = (problem.top - problem.base) % len(corners)
+    side = corners[(index + 1) % len(corners)] - corners[index]
+    tangent = side / np.hypot(*side)
+    rule = edge_rule(basis.mesh, top, corners[index], tangent, [(-np.inf, np.inf)], problem.degree + 1)
+    _, v = values(basis, rule.points, rule.cells)
+    load: Array = -(v.T @ rule.weights)
+    return load
+
+
+def point_values(basis: Basis, point: Array) -> tuple[Array, Array]:
+    """Rows that give u and v at a point of the mesh, each of shape (unknowns,).
+
+    Raises
+    ------
+    ValueError
+        If the point lies outside the mesh.
+    """
+    corners = basis.mesh.p[:, basis.mesh.t]
+    x = point[:, None]
+    slack = 1e-9 * np.ptp(basis.mesh.p)
+    inside = (corners.min(axis=1) <= x + slack) & (corners.max(axis=1) >= x - slack)
+    cells = np.flatnonzero(inside.all(axis=0))
+    local = _reference(basis, point, cells)
+    outside = np.maximum(-local, local - 1).max(axis=0, initial=-np.inf)
+    if basis.mesh.t.shape[0] == 3:
+        outside = np.maximum(outside, local.sum(axis=0) - 1)
+    hits = np.flatnonzero(outside < 1e-9)
+    if len(hits) == 0:
+        raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
+    u, v = values(basis, local[:, hits[:1]], cells[hits[:1]])
+    return u.toarray()[0], v.toarray()[0]
+
+
+def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:
+    """Reference coordinates of a point in each of some cells, by Newton's method, shape (2, cells)."""
+    x = np.repeat(point[:, None, None], len(cells), axis=1)
+    local = np.full(x.shape, 0.5)
+    # A bilinear map needs few steps near its cell; where it fails the point is not in that cell.
+    with np.errstate(all="ignore"):
+        for _ in range(12):
+            inverse = basis.mapping.invDF(local, cells)
+            local = local + np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
+    result: Array = local[:, :, 0]
+    return result

@@ -1,0 +1,92 @@
+"""Histories and static values of the finite-element model."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from fem_reference.fields import FieldWriter
+from fem_reference.model import Model, build
+from fem_reference.newmark import Stepper, Work
+from fem_reference.problem import Array, Problem, Scheme
+from fem_reference.result import COLUMNS, Result, check_request
+
+
+def solve(
+    problem: Problem,
+    scheme: Scheme,
+    steps: int,
+    columns: tuple[str, ...] = ("displacement", "contact_pressure"),
+    full: bool = False,
+    fields: str | Path | None = None,
+) -> Result:
+    """Integrate the block from rest under the step of pressure.
+
+    Parameters
+    ----------
+    problem, scheme
+        What is solved and how it is integrated.
+    steps
+        Number of steps, at least 1.
+    columns
+        Columns of the history, among `fem_reference.result.COLUMNS`.
+    full
+        Solve the whole block, without the exact savings.
+    fields
+        Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
+
+    Returns
+    -------
+    Result
+        Row 0 is step 1.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed, or `steps`, `columns` or `fields` cannot be served.
+    """
+    check_request(steps, tuple(columns))
+    began = time.perf_counter()
+    model = build(problem, full)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
+    ready = time.perf_counter()
+    history = problem.pressure * run(stepper, model, steps, tuple(columns), writer)
+    ended = time.perf_counter()
+    return Result(
+        time=scheme.step * np.arange(1, steps + 1),
+        columns=dict(zip(columns, history, strict=True)),
+        unknowns=len(model.F),
+        nonzeros=stepper.work.nonzeros,
+        factorisations=stepper.work.factorisations,
+        solves=stepper.work.solves,
+        notes=model.notes,
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
+    )
+
+
+def run(stepper: Stepper, model: Model, steps: int, columns: tuple[str, ...], writer: FieldWriter | None) -> Array:
+    """Observe every step for a unit pressure; shape (columns, steps)."""
+    rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
+    history = np.empty((len(columns), steps))
+    # A scheme beyond its limit grows until it overflows; that is the caller's to name.
+    with np.errstate(over="ignore", invalid="ignore"):
+        state = stepper.start()
+        for n in range(steps):
+            state = stepper.advance(state)
+            history[:, n] = rows @ state.D
+            if writer is not None:
+                writer.record(n + 1, state.D)
+    if writer is not None:
+        writer.close()
+    return history
+
+
+def static(problem: Problem, full: bool = False) -> dict[str, float]:
+    """Static value of every column: the observed K^-1 F."""
+    model = build(problem, full)
+    D = Work().factor(model.K)(model.F)
+    return {name: float(problem.pressure * (model.observers[name] @ D)) for name in COLUMNS}
