@@ -1,0 +1,196 @@
+"""The exact bar against routes that know nothing of its modes."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from fem_reference.bar import Bar, applicable, cut_off, shares, wave_numbers
+from fem_reference.bar_scheme import applicable as scheme_applicable
+from fem_reference.problem import Problem, Scheme
+
+PAPER = Bar(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6)
+OTHER = Bar(3.1, 1.7, 1900.0, 4.2e9, 7.7e10, 3.3e5)
+SOFT = Bar(0.8, 2.6, 3100.0, 2.5e10, 9e7, 1.2e6)
+
+
+def newmark_by_transform(bar, scheme, steps):
+    """Displacement and pressure from the bar's closed form at complex frequencies.
+
+    With z one step's delay the scheme turns sigma^2 D + L D = G f into an ordinary differential equation
+    along the bar; its solution is inverted by the trapezoidal rule on a circle.
+    """
+    count = 16 * steps
+    radius = 10.0 ** (-1.0 / steps)  # rounding grows tenfold, aliasing falls by sixteen digits
+    z = radius * np.exp(2j * np.pi * np.arange(count) / count)
+    a, d, gg = scheme.alpha, scheme.delta, scheme.gg
+    start = 1.0 if scheme.start == "consistent" else 0.0
+    P = (gg * z * ((1 - d) * z + d) / (1 - gg * z) + (0.5 - a) * z + a) / (1 - z)
+    Q = (gg * z * d / (1 - gg * z) + a) / (1 - z)
+    G = start + z / (1 - z) - Q * start / P
+    wave = np.sqrt(bar.young / bar.density)
+    gamma = bar.height / wave / (scheme.step * np.sqrt(P))
+    kappa = bar.base_stiffness * bar.height / (bar.young * bar.width)
+    # Over exp(gamma), which overflows for small steps.
+    gamma = np.where(gamma.real < 0, -gamma, gamma)
+    e = np.exp(-gamma)
+    below = gamma * (1 - e * e) / 2 + kappa * (1 + e * e) / 2
+    middle = (np.sqrt(e) + e * np.sqrt(e)) / 2 + kappa / gamma * (np.sqrt(e) - e * np.sqrt(e)) / 2
+    unit = -bar.pressure * bar.height / bar.young * G / below
+    base = unit * e
+    sequences = (unit * middle, -bar.base_stiffness / bar.width * base)
+    powers = radius ** np.arange(count)
+    return [(np.fft.fft(s).real / count / powers)[1 : steps + 1] for s in sequences]
+
+
+@pytest.mark.parametrize("bar", [PAPER, OTHER, SOFT])
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        Scheme(0.5, 1.0, 1.0, 1e-3),
+        Scheme(0.5, 1.0, 0.9, 1e-2),
+        Scheme(0.25, 0.5, 1.0, 7e-4, "consistent"),
+        Scheme(0.25, 0.5, 0.95, 2e-5),
+        Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
+        Scheme(0.3025, 0.6, 0.98, 2e-3),
+        Scheme(0.5, 1.0, 0.0, 1e-3),
+    ],
+)
+def test_history_against_the_transform(bar, scheme):
+    result = bar.solve(scheme, 150)
+    for column, expected in zip(result.columns.values(), newmark_by_transform(bar, scheme, 150), strict=True):
+        scale = np.abs(expected).max()
+        if scale > 1e-6 * bar.pressure or column is result.columns["displacement"]:
+            # Rounding of the transform: its terms are of the size of the static value.
+            floor = 1e-13 * max(abs(v) for v in bar.static().values()) if scale < 1e-3 else 0.0
+            assert np.abs(column - expected).max() <= 1e-9 * scale + floor
+    assert result.estimate <= 1e-10
+
+
+@pytest.mark.parametrize("kappa", [1e-9, 1e-3, 0.7, 2.0, 40.0, 1e6, 1e15])
+def test_wave_numbers_to_the_last_digits(kappa):
+    mp = pytest.importorskip("mpmath").mp
+    with mp.workdps(40):
+        for n, b in enumerate(wave_numbers(kappa, 6)):
+            low, high = mp.pi * n, mp.pi * n + mp.pi / 2
+            root = mp.findroot(
+                lambda x: x * mp.sin(x) - mp.mpf(kappa) * mp.cos(x),
+                (max(low, mp.mpf(10) ** -12), high),
+                solver="anderson",
+            )
+            assert abs(b - root) <= 3e-16 * root
+            # The base's amplitude cos b is what enters the pressure.
+            share = 2 * kappa * mp.cos(root) / (root**2 * (1 + mp.sin(2 * root) / (2 * root)))
+            assert shares("contact_pressure", wave_numbers(kappa, 6), kappa)[n] == pytest.approx(
+                float(share), rel=1e-14
+            )
+
+
+@pytest.mark.parametrize("kappa", [1e-6, 0.3, 2.0, 55.0, 1e9])
+@pytest.mark.parametrize("column", ["displacement", "contact_pressure"])
+def test_shares_sum_to_one(kappa, column):
+    b = wave_numbers(kappa, 1024)
+    assert (shares(column, b, kappa) * cut_off(1024, 1024)).sum() == pytest.approx(1.0, abs=1e-13)
+
+
+@pytest.mark.parametrize(("factor", "frequency"), [(1, 327.682), (10, 455.258), (100, 475.600)])
+def test_first_frequencies(factor, frequency):
+    bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * factor, 5e6)
+    assert bar.frequencies(1)[0] == pytest.approx(frequency, abs=5e-4)
+    assert bar.modes(Scheme(0.5, 1.0, 1.0, 1e-3))[0].frequency == bar.frequencies(1)[0]
+
+
+def test_mode_roots():
+    scheme = Scheme(0.5, 1.0, 0.97, 4e-3)
+    for mode in OTHER.modes(scheme, 4):
+        h = (mode.frequency * scheme.step) ** 2
+        h /= 1 + h / 2
+        assert mode.eigenvalues.sum() == pytest.approx(1 - h / 2 + 0.97 * (1 - h), abs=1e-14)
+        assert mode.eigenvalues[:2].prod() == pytest.approx(0.97 * (1 - h / 2), abs=1e-14)
+
+
+@pytest.mark.parametrize("bar", [PAPER, OTHER])
+def test_static_value_is_reached(bar):
+    result = bar.solve(Scheme(0.5, 1.0, 1.0, 5e-3), 4000)
+    for name, column in result.columns.items():
+        assert column[-1] == pytest.approx(bar.static()[name], rel=1e-11)
+
+
+def continuum_by_modes(bar, scheme, steps):
+    """Mode sum, smoothly cut off: right away from the fronts."""
+    b = wave_numbers(bar.kappa, 6000)
+    t = scheme.step * np.arange(1, steps + 1)
+    a = -np.log(scheme.gg) / scheme.step / 2
+    w = np.sqrt(((b / bar.travel) ** 2 - a * a).astype(complex))
+    phase = np.outer(w, t)
+    x = (np.exp(-a * t) * (np.cos(phase) + a / w[:, None] * np.sin(phase))).real
+    weights = [shares(name, b, bar.kappa) * cut_off(6000, 6000) for name in ("displacement", "contact_pressure")]
+    return [bar.static()[n] * (1 - w @ x) for n, w in zip(("displacement", "contact_pressure"), weights, strict=True)]
+
+
+@pytest.mark.parametrize("bar", [PAPER, OTHER, SOFT])
+@pytest.mark.parametrize("gg", [1.0, 0.9])
+def test_continuum_waves_against_modes(bar, gg):
+    scheme = Scheme(0.25, 0.5, gg, 1.37e-3)
+    result = bar.continuum(scheme, 60)
+    travels = result.time / bar.travel
+    away = np.abs(travels[:, None] - np.arange(1, 400) / 2).min(axis=1) > 0.02
+    assert away.sum() > 30
+    for column, expected in zip(result.columns.values(), continuum_by_modes(bar, scheme, 60), strict=True):
+        assert np.abs(column - expected)[away].max() <= 1e-11 * np.abs(expected).max()
+
+
+def test_continuum_waits_for_the_wave():
+    early = PAPER.continuum(Scheme(0.5, 1.0, 1.0, PAPER.travel / 100), 99)
+    assert np.all(early.columns["contact_pressure"] == 0)
+    assert np.all(early.columns["displacement"][:49] == 0) and early.columns["displacement"][60] < 0
+
+
+@pytest.mark.parametrize(
+    ("scheme", "order"), [(Scheme(0.25, 0.5, 1.0, 1.0, "consistent"), 2.0), (Scheme(0.5, 1.0, 1.0, 1.0), 1.0)]
+)
+def test_scheme_tends_to_the_damped_continuum_mode(scheme, order):
+    # One mode, so that no front spoils the order: frequency and decay of the roots against exp(-c t / 2).
+    w, c, steps = 300.0, 40.0, np.array([4e-5, 2e-5, 1e-5, 5e-6])
+    from fem_reference.bar_scheme import roots
+
+    exact = -c / 2 + 1j * np.sqrt(w * w - c * c / 4)
+    error = []
+    for dt in steps:
+        upper = roots(w * dt, Scheme(scheme.alpha, scheme.delta, float(np.exp(-c * dt)), float(dt)))[0]
+        error.append(abs(np.log(upper) / dt - exact))
+    assert np.polyfit(np.log(steps), np.log(error), 1)[0] == pytest.approx(1.0 if c else order, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    "scheme", [Scheme(0.0, 0.5, 1.0, 1e-3), Scheme(1 / 6, 0.5, 1.0, 1e-3), Scheme(0.5, 0.4, 1.0, 1e-3)]
+)
+def test_unstable_schemes_are_refused(scheme):
+    assert scheme_applicable(scheme) is not None
+    with pytest.raises(ValueError, match="stable for every frequency"):
+        PAPER.solve(scheme, 10)
+
+
+def test_continuum_without_rate_is_refused():
+    with pytest.raises(ValueError, match="^gg: "):
+        PAPER.continuum(Scheme(0.5, 1.0, 0.0, 1e-3), 10)
+    with pytest.raises(ValueError, match="^steps: "):
+        PAPER.continuum(Scheme(0.5, 1.0, 1.0, 1.0), 10)
+
+
+def test_where_the_bar_is_exact():
+    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+    data = (2700.0, 1e9, 0.0, "plane stress", 1e9, 1e9, 5e6)
+    assert applicable(Problem(square, 0, 2, *data)) is None
+    assert Bar.of(Problem(square, 0, 2, *data)) == PAPER
+    assert "Poisson" in applicable(Problem(square, 0, 2, 2700.0, 1e9, 0.1, *data[3:]))
+    assert "foundation" in applicable(Problem(square, 0, 2, *data, foundation="corner"))
+    assert "rectangle" in applicable(Problem(square, 0, 1, *data))
+    with pytest.raises(ValueError, match="^young: "):
+        Bar(2.0, 2.0, 2700.0, -1e9, 2e9, 5e6)
+
+
+def test_bar_does_not_load_the_finite_elements():
+    code = "import sys, fem_reference.bar; sys.exit('skfem' in sys.modules or 'meshio' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

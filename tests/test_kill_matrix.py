@@ -1,0 +1,181 @@
+"""Every gate is bitten: gates x seeded faults of solver code, printed as the kill matrix.
+
+A fault patches a named line of a solver; production code has no switch for it. Only the cases of the solvers that
+a fault reaches run again, the others are taken from the sound run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dda.gap_form
+import dda.newmark
+import dda.solution
+import dda.textbook
+import fem_reference.bar
+import fem_reference.bar_scheme
+import fem_reference.elasticity
+import fem_reference.model
+import fem_reference.newmark
+import fem_reference.solver
+from validation.core import CORE
+from validation.engine import Finished, evaluate, finish
+from validation.gates import Status
+from validation.history import History
+from validation.results import Results
+
+SLOW = ("figure-7",)  # 20,000 steps: their gates are bitten by the same faults as those of the other scenes
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A seeded fault: which solvers it reaches, and the attribute that it replaces."""
+
+    name: str
+    solvers: tuple[str, ...]
+    module: object
+    attribute: str
+    replacement: Callable[[Callable[..., object]], Callable[..., object]]
+
+
+def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[..., Callable[..., object]]:
+    """Hand a function a changed scheme."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(*arguments: object) -> object:
+            scheme = arguments[position]
+            values = {name: change(getattr(scheme, name)) for name, change in changes.items()}
+            changed = replace(scheme, **values)
+            return sound(*arguments[:position], changed, *arguments[position + 1 :])
+
+        return faulty
+
+    return wrap
+
+
+def times(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply what a function returns."""
+    return lambda sound: lambda *a, **k: factor * sound(*a, **k)
+
+
+def first_times(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the first argument of a function."""
+    return lambda sound: lambda first, *a, **k: sound(first * factor, *a, **k)
+
+
+def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
+    """Report every step one step late, along the axis of steps."""
+
+    def faulty(*a: object, **k: object) -> np.ndarray:
+        found = sound(*a, **k)
+        axis = int(np.argmax(found.shape))
+        shifted = np.roll(found, 1, axis=axis)
+        np.moveaxis(shifted, axis, 0)[0] = 0.0
+        return shifted
+
+    return faulty
+
+
+def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
+    """Change the stiffness of the contact springs of the DDA model."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(material: object, contact: object, area: float, a: float) -> object:
+            changed = replace(contact, stiffness=contact.stiffness * factor)
+            return sound(material, changed, area, a)
+
+        return faulty
+
+    return wrap
+
+
+def no_discount(position: int) -> Callable[..., Callable[..., object]]:
+    return with_scheme(position, gg=lambda gg: 1.0)
+
+
+def swapped(start: str) -> str:
+    return "zero" if start == "consistent" else "consistent"
+
+
+DDA = dda.newmark
+FEM = fem_reference.newmark
+FAULTS = [
+    Fault("dda: gg missing in the predictor", ("dda",), DDA, "predictor", no_discount(0)),
+    Fault("dda: gg missing in the velocity", ("dda",), DDA, "velocity_corrector", no_discount(0)),
+    Fault("dda: delta 0.1 % high", ("dda",), DDA, "velocity_corrector", with_scheme(0, delta=lambda d: 1.001 * d)),
+    Fault("dda: delta forgotten", ("dda",), DDA, "velocity_corrector", with_scheme(0, delta=lambda d: 0.6)),
+    Fault("dda: other start", ("dda",), DDA, "initial_acceleration", with_scheme(0, start=swapped)),
+    Fault("dda: springs p/2", ("dda",), dda.gap_form, "_stiffness", soft_springs(0.5)),
+    Fault("dda: springs 1e-9 stiff", ("dda",), dda.gap_form, "_stiffness", soft_springs(1 + 1e-9)),
+    Fault("dda: one step late", ("dda",), dda.solution, "modal_histories", late),
+    Fault("dda: load reversed", ("dda",), dda.gap_form, "_load", times(-1.0)),
+    Fault("dda: load 0.2 % high", ("dda",), dda.gap_form, "_load", times(1.002)),
+    Fault("fem: gg missing in the predictor", ("fem",), FEM, "predictor", no_discount(1)),
+    Fault("fem: gg missing in the velocity", ("fem",), FEM, "velocity", no_discount(2)),
+    Fault("fem: delta 0.1 % high", ("fem",), FEM, "velocity", with_scheme(2, delta=lambda d: 1.001 * d)),
+    Fault("fem: foundation k/2", ("fem",), fem_reference.elasticity, "_carried", times(0.5)),
+    Fault("fem: foundation 0.1 % stiff", ("fem",), fem_reference.elasticity, "_carried", times(1.001)),
+    Fault("fem: one step late", ("fem",), fem_reference.solver, "run", late),
+    Fault("fem: mass 0.1 % heavy", ("fem", "fem:full"), fem_reference.elasticity, "mass", times(1.001)),
+    Fault("bar: base spring k/2", ("bar",), fem_reference.bar, "wave_numbers", first_times(0.5)),
+    Fault("bar: base spring 0.1 % stiff", ("bar",), fem_reference.bar, "wave_numbers", first_times(1.001)),
+    Fault("bar: gg missing in the trace", ("bar",), fem_reference.bar_scheme, "trace", no_discount(1)),
+    Fault("bar: gg missing in the determinant", ("bar",), fem_reference.bar_scheme, "determinant", no_discount(1)),
+    Fault(
+        "bar: delta 0.1 % high",
+        ("bar",),
+        fem_reference.bar_scheme,
+        "determinant",
+        with_scheme(1, delta=lambda d: 1.001 * d),
+    ),
+]
+
+
+class Overlay(Results):
+    """Histories of a faulty run over those of the sound one."""
+
+    def __init__(self, directory: Path, sound: Results) -> None:
+        super().__init__(directory)
+        self.sound = sound
+
+    def history(self, key: str) -> History | None:
+        return super().history(key) or self.sound.history(key)
+
+
+CASES = [case for case in CORE.cases() if not case.scene.name.startswith(SLOW)]
+GATES = [gate for gate in CORE.gates() if not gate.scene.startswith(SLOW)]
+
+
+def failed(finished: Finished) -> set[str]:
+    return {gate.id for gate in GATES if evaluate(gate, finished).status is Status.FAIL}
+
+
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
+    sound = finish(CASES, CORE, Results(tmp_path / "sound"))
+    assert not failed(sound)
+    kills: dict[str, set[str]] = {}
+    for number, fault in enumerate(FAULTS):
+        reached = [case for case in CASES if case.solver in fault.solvers]
+        with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+            patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+            faulty = finish(reached, CORE, Overlay(tmp_path / str(number), sound.results))
+        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results))
+    print_matrix(kills)
+    unseen = [name for name, killed in kills.items() if not killed]
+    unbitten = sorted({gate.id for gate in GATES} - set().union(*kills.values()))
+    assert not unseen, f"faults that no gate sees: {unseen}"
+    assert not unbitten, f"gates that no fault bites: {unbitten}"
+
+
+def print_matrix(kills: dict[str, set[str]]) -> None:
+    """Print one row a gate, one column a fault."""
+    names = list(kills)
+    for number, name in enumerate(names):
+        print(f"{number + 1:>3}  {name}: {len(kills[name])} gates")
+    for gate in GATES:
+        print("".join("x" if gate.id in kills[name] else "." for name in names), gate.id)

@@ -1,0 +1,169 @@
+"""Scenes: what is accepted, what is refused, and in which words."""
+
+import copy
+import math
+import tomllib
+from typing import Any
+
+import pytest
+
+from conftest import SCENE
+from validation.scene import Scene, SceneError, load_scene, parse_assignment, parse_scene, scene_names
+
+SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
+
+
+def changed(**changes: object) -> dict[str, Any]:
+    """Return the small scene with ``section__key`` replaced."""
+    data = copy.deepcopy(tomllib.loads(SCENE))
+    for name, value in changes.items():
+        section, _, key = name.partition("__")
+        (data.setdefault(section, {}) if key else data)[key or section] = value
+    return data
+
+
+def parse(**changes: object) -> Scene:
+    return parse_scene(changed(**changes), "x.toml")
+
+
+REFUSED = [
+    ({"block__young": -1.0}, "block.young: must be greater than 0, got -1.0"),
+    ({"block__young": 0}, "block.young: must be greater than 0, got 0"),
+    ({"block__density": math.nan}, "block.density: must be a finite number, got nan"),
+    ({"block__density": math.inf}, "block.density: must be a finite number, got inf"),
+    ({"block__young": 10**400}, "block.young: must be a finite number, got 1000"),
+    ({"block__young": "1e9"}, "block.young: must be a number, got '1e9'"),
+    ({"block__young": True}, "block.young: must be a number, got True"),
+    ({"block__poisson": -1.0}, "block.poisson: must be greater than -1, got -1.0"),
+    ({"block__poisson": 0.51}, "block.poisson: must be less than or equal to 0.5, got 0.51"),
+    ({"block__poisson": 0.5, "block__hypothesis": "plane strain"}, "block: poisson must be below 0.5 in plane strain"),
+    ({"block__hypothesis": "plain stress"}, "block.hypothesis: must be 'plane stress' or 'plane strain', got"),
+    ({"block__colour": 1}, "block.colour: unknown key, got 1"),
+    ({"colour": 1}, "colour: unknown key, got 1"),
+    ({"block__width": 1.0}, "block: side and width and height exclude each other, got both"),
+    ({"block__vertices": SQUARE}, "block: side and vertices exclude each other, got both"),
+    ({"block__base": 1}, "block: base and top go with vertices only"),
+    ({"contact__stiffness": 0.0}, "contact.stiffness: must be greater than 0, got 0.0"),
+    ({"contact__shear_stiffness": -1.0}, "contact.shear_stiffness: must be greater than 0, got -1.0"),
+    ({"load__pressure": math.inf}, "load.pressure: must be a finite number, got inf"),
+    ({"time__step": 0.0}, "time.step: must be greater than 0, got 0.0"),
+    ({"time__steps": 0}, "time.steps: must be greater than or equal to 1, got 0"),
+    ({"time__steps": 1.5}, "time.steps: must be a whole number, got 1.5"),
+    ({"time__steps": 2**63}, "time.steps: must fit 64 bits"),
+    ({"time__alpha": -0.1}, "time.alpha: must be greater than or equal to 0, got -0.1"),
+    ({"time__delta": -0.1}, "time.delta: must be greater than or equal to 0, got -0.1"),
+    ({"time__gg": 1.01}, "time.gg: must be less than or equal to 1, got 1.01"),
+    ({"time__gg": -0.01}, "time.gg: must be greater than or equal to 0, got -0.01"),
+    ({"time__gg": 0.9, "time__gg_rate": 1.0}, "time: gg and gg_rate exclude each other, got both"),
+    ({"time__start": "rest"}, "time.start: must be 'zero' or 'consistent', got 'rest'"),
+    ({"fem__mesh": "a.msh"}, "fem: elements and mesh exclude each other, got both"),
+    ({"fem__degree": 3}, "fem.degree: must be less than or equal to 2, got 3"),
+    ({"fem__foundation": "patch"}, "fem: patch_width goes with foundation"),
+    ({"fem__foundation": "patch", "fem__patch_width": 1.5}, "fem: patch_width must be at most half the base length 1"),
+    ({"fem__patch_width": 0.5}, "fem: patch_width goes with foundation"),
+    ({"sweep": {"time.step": 0.1}}, "sweep: time.step must be a list"),
+    (
+        {"sweep": {"time.step": [0.1], "time.steps": [1, 2], "mode": "zip"}},
+        "sweep: lists of a zip must have one length",
+    ),
+    ({"sweep": {"time.step": [0.1], "mode": "all"}}, "sweep: mode must be 'product' or 'zip', got 'all'"),
+    ({"gate": [{"pair": ["dda"], "metric": "x", "band": [2.0, 1.0], "reason": "r"}]}, "band must be [low, high]"),
+    ({"load": 5}, "load: "),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
+def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        parse(**changes)
+    text = str(caught.value)
+    assert text.startswith("x.toml: ")
+    assert words in text
+    assert "\n" not in text and ", got " in text
+
+
+POLYGONS = [
+    (SQUARE[::-1], "must run counter-clockwise"),
+    ([SQUARE[0], SQUARE[2], SQUARE[1], SQUARE[3]], "must not cross themselves"),
+    ([[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]], "must not cross themselves"),  # a vertex on another edge
+    ([[0, 0], [2, 0], [1, 0], [1, 2]], "must not cross themselves"),  # an edge folded back on its neighbour
+    ([[0, 0], [0, 0], [2, 0], [2, 2]], "must not repeat"),
+    ([[0, 0], [2, 0]], "must be three or more"),
+]
+
+
+@pytest.mark.parametrize(("vertices", "words"), POLYGONS)
+def test_polygons_that_are_refused(vertices: list[list[float]], words: str) -> None:
+    data = changed(block__vertices=vertices)
+    del data["block"]["side"]
+    with pytest.raises(SceneError, match=words):
+        parse_scene(data, "x.toml")
+
+
+def test_edges_of_a_polygon_are_checked() -> None:
+    data = changed(block__vertices=SQUARE, block__top=4)
+    del data["block"]["side"]
+    with pytest.raises(SceneError, match="top must be an edge index from 0 to 3, got 4"):
+        parse_scene(data, "x.toml")
+
+
+def test_a_missing_key_is_named() -> None:
+    data = changed()
+    del data["load"]["pressure"]
+    with pytest.raises(SceneError, match=r"x.toml: load.pressure: is required, got nothing"):
+        parse_scene(data, "x.toml")
+
+
+def test_sweep_is_a_product_or_a_zip() -> None:
+    sweep = {"time.step": [0.1, 0.2], "contact.stiffness": [1e9, 1e10, 1e11]}
+    assert len(parse(sweep=sweep).expand()) == 6
+    pairs = parse(sweep={"time.step": [0.1, 0.2], "time.steps": [4, 2], "mode": "zip"}).expand()
+    assert [(case.time.step, case.time.steps) for case in pairs] == [(0.1, 4), (0.2, 2)]
+    assert [case.name for case in pairs] == ["scene[time.step=0.1,time.steps=4]", "scene[time.step=0.2,time.steps=2]"]
+
+
+def test_a_swept_value_is_checked_like_any_other() -> None:
+    with pytest.raises(SceneError, match=r"time.step: must be greater than 0, got -1"):
+        parse(sweep={"time.step": [0.1, -1]}).expand()
+    with pytest.raises(SceneError, match="unknown key"):
+        parse(sweep={"time.stop": [0.1]}).expand()
+
+
+def test_set_replaces_a_value_and_ends_its_sweep() -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.005})
+    assert scene.time.step == 0.005
+    assert not scene.sweep
+    assert parse(time__gg=0.9).with_values({"time.gg_rate": 2.0}).time.gg is None
+
+
+def test_assignments_are_toml_or_words() -> None:
+    assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
+    assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
+    assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
+    with pytest.raises(SceneError, match="must be key=value"):
+        parse_assignment("time.step")
+
+
+def test_discount_as_a_rate() -> None:
+    assert parse(time__gg_rate=3.0).time.discount == pytest.approx(math.exp(-0.006), rel=1e-15)
+    assert parse().time.discount == 1.0
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_built_in_scenes_load_and_expand(name: str) -> None:
+    scene = load_scene(name)
+    assert scene.title
+    assert all(not case.sweep for case in scene.expand())
+
+
+def test_the_papers_figures_are_there() -> None:
+    def values(name: str, field: str) -> list[float]:
+        section, _, key = field.partition(".")
+        return [getattr(getattr(case, section), key) for case in load_scene(name).expand()]
+
+    assert values("figures-3-4", "time.step") == [0.01, 0.002, 0.001]
+    assert values("figures-5-6", "contact.stiffness") == values("figure-7", "contact.stiffness") == [1e9, 1e10, 1e11]
+    assert values("figure-7", "time.step") == [1e-5] * 3
+    assert values("figure-8", "time.alpha") == [0.25, 0.5]
+    assert values("figure-9", "time.gg") == [1.0, 0.98, 0.95, 0.90]
+    assert set(values("poisson", "block.poisson")) == {0.25}

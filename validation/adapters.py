@@ -1,0 +1,312 @@
+"""Adapters of the built-in solvers: the one module that knows both `dda` and `fem_reference`.
+
+Each translates a scene into the solver's own problem and the solver's result into a `Run`. The solver packages are
+imported by the adapter that needs them and by no other.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from validation.history import PRESSURE, History, Mode, Outcome, Run
+from validation.scene import Scene, SceneError
+from validation.solvers import Solver
+
+if TYPE_CHECKING:
+    import dda
+    import fem_reference
+
+BAR_COLUMNS = ("displacement", "contact_pressure")
+
+
+def to_run(scene: Scene, result: dda.Result | fem_reference.Result, notes: tuple[str, ...] = ()) -> Run:
+    """Translate a solver's result; the two packages share no class, only the names of the fields."""
+    history = History(result.time, {name: result.columns[name] for name in scene.run.columns})
+    work = {
+        "unknowns": result.unknowns,
+        "nonzeros": result.nonzeros,
+        "factorisations": result.factorisations,
+        "solves": result.solves,
+        "steps": scene.time.steps,
+    }
+    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
+    tension = _tension_note(history)
+    return Run(
+        Outcome.COMPLETED,
+        history,
+        work,
+        seconds,
+        (*notes, *result.notes, *tension),
+        getattr(result, "estimate", None),
+    )
+
+
+def _tension_note(history: History) -> tuple[str, ...]:
+    """A locked contact hides tension: say where it pulls."""
+    pressure = history.columns.get(PRESSURE)
+    if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
+        return ()
+    least = int(np.argmin(pressure))
+    return (f"the locked contact pulls: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
+
+
+def check_step(scene: Scene, frequency: float) -> None:
+    """Refuse a step beyond the limit of a conditionally stable scheme.
+
+    Raises
+    ------
+    SceneError
+        w dt exceeds the critical value of the scheme and the scene does not allow it.
+    """
+    from dda.spectral import critical_omega
+
+    t = scene.time
+    limit = critical_omega(t.alpha, t.delta, t.discount) / frequency
+    if t.step > limit * (1 + 1e-12) and not t.allow_unstable:
+        raise SceneError(
+            f"{scene.name}: time.step: must not exceed {limit:.6g} s, the stability limit of "
+            f"alpha = {t.alpha:g}, delta = {t.delta:g} at the largest frequency {frequency:.6g} rad/s, "
+            f"got {t.step:g}; make it smaller, choose 2 alpha >= delta, or set allow_unstable = true"
+        )
+
+
+def conditional(scene: Scene) -> bool:
+    """Whether the scheme of a scene has a stability limit."""
+    from dda.spectral import critical_omega
+
+    return bool(np.isfinite(critical_omega(scene.time.alpha, scene.time.delta, scene.time.discount)))
+
+
+class DDA(Solver):
+    """Discontinuous deformation analysis in its robust form."""
+
+    name = "dda"
+    sources = ("dda",)
+
+    def model(self, scene: Scene) -> dda.TwoBlockModel:
+        """Return the two-block model of a scene."""
+        import dda
+
+        b = scene.block
+        block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+        contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
+        return dda.TwoBlockModel(block, contact, scene.load.pressure, b.base, b.top)
+
+    def scheme(self, scene: Scene) -> dda.Scheme:
+        """Return the scheme of a scene."""
+        import dda
+
+        t = scene.time
+        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import dda
+
+        _no_fields(self.name, scene, fields)
+        self._check(scene, dda.COLUMNS)
+        return to_run(
+            scene, dda.solve(self.model(scene), self.scheme(scene), scene.time.steps, scene.run.columns, full)
+        )
+
+    def _check(self, scene: Scene, known: tuple[str, ...]) -> None:
+        check_columns(scene, known)
+        if conditional(scene):
+            check_step(scene, max(mode.frequency for mode in self.modes(scene)))
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution."""
+        return self.model(scene).static()
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the modes that the load reaches."""
+        import dda
+
+        found = dda.modes(self.model(scene), self.scheme(scene))
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues) for m in found)
+
+    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
+        """Return spectral radius, condition numbers and residual."""
+        import dda
+
+        return vars(dda.diagnostics(self.model(scene), self.scheme(scene)))
+
+
+class Textbook(DDA):
+    """The printed recursion, equations (6) to (9), (31) and (32)."""
+
+    name = "dda-textbook"
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why the printed recursion does not apply."""
+        import dda
+
+        return dda.textbook_applicable(self.model(scene), self.scheme(scene))
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        import dda
+
+        _no_fields(self.name, scene, fields)
+        self._check(scene, dda.COLUMNS)
+        model, scheme = self.model(scene), self.scheme(scene)
+        return to_run(scene, dda.solve_textbook(model, scheme, scene.time.steps, scene.run.columns))
+
+
+class FiniteElements(Solver):
+    """The same block as a fine mesh of scikit-fem elements."""
+
+    name = "fem"
+    sections = ("block", "contact", "load", "time", "run", "fem")
+    sources = ("fem_reference",)
+
+    def problem(self, scene: Scene) -> fem_reference.Problem:
+        """Return the finite-element problem of a scene."""
+        import fem_reference
+
+        b, f, c = scene.block, scene.fem, scene.contact
+        try:
+            return fem_reference.Problem(
+                vertices=b.outline,
+                base=b.base,
+                top=b.top,
+                density=b.density,
+                young=b.young,
+                poisson=b.poisson,
+                hypothesis=b.hypothesis,
+                stiffness=c.stiffness,
+                shear_stiffness=c.shear,
+                pressure=scene.load.pressure,
+                elements=f.per_side,
+                degree=f.degree,
+                mesh=f.mesh,
+                foundation=f.foundation,
+                patch_width=f.patch_width,
+            )
+        except ValueError as error:
+            raise SceneError(f"{scene.name}: {error}") from None
+
+    def scheme(self, scene: Scene) -> fem_reference.Scheme:
+        """Return the scheme of a scene."""
+        import fem_reference
+
+        t = scene.time
+        return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import fem_reference
+
+        check_columns(scene, fem_reference.COLUMNS)
+        problem = self.problem(scene)
+        if conditional(scene):
+            check_step(scene, fem_reference.highest_frequency(problem))
+        return to_run(
+            scene,
+            fem_reference.solve(
+                problem, self.scheme(scene), scene.time.steps, scene.run.columns, full=full, fields=fields
+            ),
+        )
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution."""
+        import fem_reference
+
+        return fem_reference.static(self.problem(scene))
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the lowest modes that the load reaches, the first axial one first."""
+        import fem_reference
+
+        return _modes(fem_reference.modes(self.problem(scene), self.scheme(scene)))
+
+
+class ExactBar(FiniteElements):
+    """Exact in space, Newmark in time."""
+
+    name = "bar"
+
+    def bar(self, scene: Scene) -> fem_reference.Bar:
+        """Return the bar of a scene."""
+        from fem_reference.bar import Bar
+
+        return Bar.of(self.problem(scene))
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why the bar is not exact for this scene."""
+        from fem_reference import bar, bar_scheme
+
+        return bar.applicable(self.problem(scene)) or bar_scheme.applicable(self.scheme(scene))
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        _no_fields(self.name, scene, fields)
+        check_columns(scene, BAR_COLUMNS)
+        return to_run(scene, self.bar(scene).solve(self.scheme(scene), scene.time.steps, scene.run.columns))
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution."""
+        return self.bar(scene).static()
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the lowest modes."""
+        return _modes(self.bar(scene).modes(self.scheme(scene)))
+
+
+class Continuum(ExactBar):
+    """Exact in space and time; gg is the rate -ln(gg) / dt."""
+
+    name = "continuum"
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why there is no closed form for this scene."""
+        from fem_reference import bar
+
+        stopped = "gg = 0 has no rate -ln(gg) / dt" if scene.time.discount == 0 else None
+        return bar.applicable(self.problem(scene)) or stopped
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        _no_fields(self.name, scene, fields)
+        check_columns(scene, BAR_COLUMNS)
+        return to_run(scene, self.bar(scene).continuum(self.scheme(scene), scene.time.steps, scene.run.columns))
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
+        t = scene.time
+        half_rate = -math.log(t.discount) / t.step / 2
+
+        def pair(w: float) -> tuple[complex, complex]:
+            root = cmath.sqrt(half_rate**2 - w**2)
+            return cmath.exp((root - half_rate) * t.step), cmath.exp((-root - half_rate) * t.step)
+
+        return tuple(Mode(m.frequency, m.share, pair(m.frequency)) for m in super().modes(scene))
+
+
+def _modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
+    """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
+    return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
+
+
+def check_columns(scene: Scene, known: tuple[str, ...]) -> None:
+    """Refuse columns that a solver does not have.
+
+    Raises
+    ------
+    SceneError
+        `[run] columns` names an unknown one.
+    """
+    unknown = [name for name in scene.run.columns if name not in known]
+    if unknown:
+        raise SceneError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
+
+
+def _no_fields(name: str, scene: Scene, fields: Path | None) -> None:
+    if fields is not None:
+        raise SceneError(f"{scene.name}: --fields: needs the solver fem, which has a mesh, got {name}")

@@ -1,0 +1,149 @@
+"""A case: one scene, one solver, savings on or off; its key and its execution."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.util
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation import metrics
+from validation.history import History, Outcome, Run
+from validation.results import Row
+from validation.scene import Scene, SceneError
+from validation.solvers import NotReported, Solver, get_solver
+
+FULL = ":full"  # a solver's name with this ending runs without numerical savings
+JUDGING_SOURCES = ("validation.adapters", "validation.cases", "validation.metrics", "validation.pencil")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One scene (without a sweep) for one solver."""
+
+    scene: Scene
+    solver: str
+    without_savings: bool = False
+
+    @property
+    def full(self) -> bool:
+        """Whether the numerical savings are off."""
+        return self.without_savings or self.solver.endswith(FULL)
+
+    def make_solver(self) -> Solver:
+        """Return the solver, importing its adapter."""
+        return get_solver(self.solver.removesuffix(FULL))
+
+    def key(self) -> str:
+        """Hash of what decides the result: the tables that the solver reads, its options, its sources."""
+        solver = self.make_solver()
+        data = self.scene.model_dump(mode="json")
+        read = {section: data[section] for section in solver.sections}
+        read["run"] = sorted(self.scene.run.columns)
+        if self.scene.fem.mesh and "fem" in solver.sections:
+            read["mesh"] = _file_digest(Path(self.scene.fem.mesh))
+        state = [
+            solver.name,
+            self.full,
+            read,
+            *(source_digest(name) for name in (*solver.sources, *JUDGING_SOURCES)),
+        ]
+        return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
+
+
+def _file_digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise SceneError(f"{path}: mesh file cannot be read: {error.strerror}") from None
+
+
+@functools.cache
+def source_digest(module: str) -> str:
+    """Hash of a module's file, or of all files of a package, without importing it."""
+    spec = importlib.util.find_spec(module)
+    if spec is None or spec.origin is None:
+        return ""
+    origin = Path(spec.origin)
+    files = sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
+    return hashlib.sha256(b"".join(f.name.encode() + f.read_bytes() for f in files)).hexdigest()
+
+
+def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
+    """Run a case; whatever a solver does ends as a named outcome.
+
+    Returns
+    -------
+    The row with the metrics of the run itself, and the history where there is one.
+    """
+    solver = case.make_solver()
+    run = check(attempt(solver, case.scene, case.full), case.scene)
+    measured = _measure(solver, case.scene, run)
+    row = Row(
+        key=key,
+        study=study,
+        scene=case.scene.name,
+        solver=case.solver,
+        outcome=run.outcome,
+        metrics=measured,
+        work=dict(run.work),
+        seconds={k: round(v, 6) for k, v in run.seconds.items()},
+        notes=run.notes,
+        estimate=run.estimate,
+    )
+    return row, run.history if run.outcome is Outcome.COMPLETED or run.outcome is Outcome.UNSTABLE else None
+
+
+def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> Run:
+    """Call a solver and turn its errors into outcomes."""
+    if reason := solver.applicable(scene):
+        return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
+    try:
+        return solver.solve(scene, full=full, fields=fields)
+    except SceneError as error:
+        return Run(Outcome.REFUSED, notes=(str(error),))
+    except Exception as error:  # a solver may be anybody's code: its failure is a row, not the end of the study
+        return Run(Outcome.RAISED, notes=(f"{type(error).__name__}: {error}",))
+
+
+def check(run: Run, scene: Scene) -> Run:
+    """Check a run's history against its scene; a defect replaces the outcome."""
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        return run
+    steps = scene.time.steps
+    for name in ("time", *scene.run.columns):
+        values = run.history.time if name == "time" else run.history.columns.get(name)
+        if values is None:
+            continue
+        if np.shape(values) != (steps,):
+            return _failed(run, Outcome.WRONG_SHAPE, f"{name} has shape {np.shape(values)}, not ({steps},)")
+        if np.isnan(values).any():
+            return _failed(run, Outcome.NOT_A_NUMBER, f"{name} at step {int(np.argmax(np.isnan(values))) + 1}")
+        if np.isinf(values).any():
+            return _failed(run, Outcome.OVERFLOW, f"{name} at step {int(np.argmax(np.isinf(values))) + 1}")
+    return run
+
+
+def _failed(run: Run, outcome: Outcome, note: str) -> Run:
+    return Run(outcome, run.history, run.work, run.seconds, (*run.notes, note), run.estimate)
+
+
+def _measure(solver: Solver, scene: Scene, run: Run) -> dict[str, Any]:
+    """Metrics of the run itself; none where there is no sound history."""
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        return {}
+    static = _reported(solver.static, scene, {})
+    modes = _reported(solver.modes, scene, ())
+    return metrics.solo(metrics.Measurable(run.history, scene.time.step, static, modes))
+
+
+def _reported(part: Any, scene: Scene, absent: Any) -> Any:
+    try:
+        return part(scene)
+    except NotReported:
+        return absent

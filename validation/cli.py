@@ -1,0 +1,322 @@
+"""The command line ``dda-validate``; heavy modules are imported by the command that needs them."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from validation.gates import Verdict
+    from validation.results import Results
+    from validation.scene import Scene
+
+PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
+SLOW = 2.0  # seconds after which progress is shown
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    help="Cross-validation of Discontinuous Deformation Analysis (DDA) against finite elements and exact solutions "
+    "on the two-block model.\n\nExample: [bold]dda-validate run core && dda-validate report[/bold]",
+)
+
+ResultsOption = Annotated[Path, typer.Option("--results", help="Results directory.", metavar="DIR")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Set a value of the scene, as in --set time.step=0.001; may be repeated.",
+        metavar="KEY=VALUE",
+    ),
+]
+FullOption = Annotated[
+    bool,
+    typer.Option(
+        "--full",
+        help="Switch the numerical savings off: no dropped unknowns, no single column, no half block.",
+    ),
+]
+RESULTS = Path("reports/results")
+
+
+@app.command("list")
+def list_command() -> None:
+    """List studies, built-in scenes, solvers and metrics.
+
+    Example: [bold]dda-validate list[/bold]
+    """
+    from validation.metrics import METRICS
+    from validation.scene import load_scene, scene_names
+    from validation.solvers import solver_names
+    from validation.studies import STUDIES, get_study
+
+    typer.echo("studies")
+    for name in STUDIES:
+        typer.echo(f"  {name:<18} {get_study(name).title}")
+    typer.echo("scenes")
+    for name in scene_names():
+        typer.echo(f"  {name:<18} {load_scene(name).title}")
+    typer.echo(f"solvers\n  {', '.join(solver_names())}\nmetrics\n  {', '.join(METRICS)}")
+
+
+@app.command()
+def run(
+    targets: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Studies, built-in scenes or scene files (default: core).", metavar="[STUDY|SCENE|FILE]..."
+        ),
+    ] = None,
+    results: ResultsOption = RESULTS,
+    assignments: SetOption = None,
+    full: FullOption = False,
+    jobs: Annotated[int | None, typer.Option(help="Worker processes; default: the machine's cores.", min=1)] = None,
+    require: Annotated[
+        list[str] | None, typer.Option(help="Fail if gates of this solver were NOT RUN.", metavar="NAME")
+    ] = None,
+) -> None:
+    """Run studies or scenes, judge them and print one table of verdicts.
+
+    Finished cases are kept: the same command after an interruption goes on from there.
+
+    Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
+    """
+    from validation.engine import run_study
+    from validation.results import Results
+    from validation.scene import parse_assignment
+    from validation.studies import resolve
+
+    studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
+    kept, verdicts = Results(results), []
+    for study in studies:
+        with _progress(study.name) as progress:
+            verdicts += run_study(study, kept, full=full, jobs=jobs or os.cpu_count() or 1, progress=progress)
+    _print_verdicts(verdicts, kept)
+    refused = _print_failures(kept, [study.name for study in studies])
+    raise typer.Exit(_status(verdicts, require or [], refused))
+
+
+@app.command()
+def solve(
+    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file.")],
+    solver: Annotated[str, typer.Option(help="Solver, see `dda-validate list`.", metavar="NAME")] = "dda",
+    csv: Annotated[Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE")] = None,
+    fields: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write displacement and stress fields for ParaView (.xdmf: all steps, .vtu: the last one).",
+            metavar="FILE",
+        ),
+    ] = None,
+    assignments: SetOption = None,
+    full: FullOption = False,
+) -> None:
+    """Run one scene with one solver; a scene with a sweep needs --set to pick one value.
+
+    Example: [bold]dda-validate solve figures-3-4 --set time.step=0.002 --solver dda --csv history.csv[/bold]
+    """
+    from validation.cases import attempt, check
+    from validation.history import Outcome, write_csv
+    from validation.scene import SceneError
+    from validation.solvers import get_solver
+
+    case, chosen = _one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
+    if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
+        raise SceneError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
+    done = check(attempt(chosen, case, full or solver.endswith(":full"), fields), case)
+    for note in done.notes:
+        typer.echo(f"note: {note}", err=True)
+    if done.outcome in (Outcome.REFUSED, Outcome.NOT_APPLICABLE):
+        raise typer.Exit(BAD_INPUT)
+    if done.outcome is not Outcome.COMPLETED:
+        typer.echo(f"{case.name} {solver}: {done.outcome}: {done.outcome.sentence}")
+        raise typer.Exit(NUMERICAL_FAILURE)
+    if csv is not None and done.history is not None:
+        write_csv(done.history, csv)
+    _print_run(case, solver, done)
+
+
+@app.command()
+def report(
+    out: Annotated[Path, typer.Option(help="The PDF.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
+
+    Example: [bold]dda-validate report --out report.pdf[/bold]
+    """
+    from validation.report import build
+    from validation.results import Results
+
+    typer.echo(f"wrote {build(Results(results), out)}")
+
+
+@app.command()
+def figures(
+    study: Annotated[str, typer.Argument(help="A study or scene whose results are there.")],
+    out: Annotated[Path, typer.Option(help="Directory for the SVG and PNG files.", metavar="DIR")] = Path("figures"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write a study's figures as SVG and PNG.
+
+    Example: [bold]dda-validate figures core --out figures[/bold]
+    """
+    from validation.report import write_figures
+    from validation.results import Results
+
+    for path in write_figures(study, Results(results), out):
+        typer.echo(f"wrote {path}")
+
+
+def _one_case(source: str, assignments: list[str] | None) -> Scene:
+    """Return the single case of a scene, or say which values are to be picked."""
+    from validation.scene import SceneError, load_scene, parse_assignment
+
+    scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise SceneError(f"{source}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")
+    return scene
+
+
+def _print_run(case: Scene, solver: str, done: object) -> None:
+    from validation.history import Run
+
+    if not isinstance(done, Run):
+        return
+    work = ", ".join(f"{count} {name}" for name, count in done.work.items())
+    last = {name: float(values[-1]) for name, values in done.history.columns.items()} if done.history else {}
+    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
+    typer.echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
+
+
+@contextmanager
+def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that shows a progress bar once the work has taken two seconds."""
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    start = time.monotonic()
+    bar = Progress(
+        TextColumn("{task.description}"),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[label]}"),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    task = bar.add_task(title, label="")
+
+    def show(done: int, total: int, label: str) -> None:
+        if time.monotonic() - start > SLOW and not bar.live.is_started:
+            bar.start()
+        bar.update(task, completed=done, total=total, label=label)
+
+    try:
+        yield show
+    finally:
+        if bar.live.is_started:
+            bar.stop()
+
+
+def _print_verdicts(verdicts: list[Verdict], results: Results) -> None:
+    """Print one table: scene, pair, metric, value, band, verdict, seconds."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    seconds = {(row.scene, row.solver): sum(row.seconds.values()) for row in results.rows().values()}
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("scene", "pair", "metric"):
+        table.add_column(name, overflow="fold")
+    for name in ("value", "band"):
+        table.add_column(name, justify="right")
+    table.add_column("verdict")
+    table.add_column("seconds", justify="right")
+    colours = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
+    for v in verdicts:
+        g, word = v.gate, str(v.status)
+        spent = seconds.get((g.scene, g.pair[0]))
+        table.add_row(
+            g.scene.replace("[", r"\["),
+            " | ".join(g.pair),
+            g.id.rpartition(":")[2],
+            _number(v.value),
+            f"{g.low:.4g} .. {g.high:.4g}",
+            f"[{colours[word]}]{word}[/]",
+            "" if spent is None else f"{spent:.2f}",
+        )
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    console.print(table)
+    for v in verdicts:
+        if v.status != "PASS":
+            console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
+    words = [str(v.status) for v in verdicts]
+    console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+
+
+def _number(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
+
+
+def _print_failures(results: Results, studies: list[str]) -> bool:
+    """Name the cases that did not complete; return whether one was refused."""
+    from validation.history import Outcome
+
+    rows, refused = results.rows(), False
+    for study in studies:
+        for case in results.manifest(study)["cases"]:
+            row = rows[case["key"]]
+            refused = refused or row.outcome is Outcome.REFUSED
+            if row.outcome is not Outcome.COMPLETED:
+                typer.echo(
+                    f"{case['scene']} {row.solver}: {row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
+                )
+    return refused
+
+
+def _status(verdicts: list[Verdict], required: list[str], refused: bool) -> int:
+    if refused:
+        return BAD_INPUT
+    missing = [v for v in verdicts if v.status == "NOT RUN" and set(required) & set(v.gate.pair)]
+    return GATE_FAILED if missing or any(v.status == "FAIL" for v in verdicts) else PASSED
+
+
+USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
+
+
+def main() -> None:
+    """Run the command line; bad input is one line and status 2, an interruption status 130."""
+    from validation.scene import SceneError
+
+    try:
+        status = app(standalone_mode=False)
+    except SceneError as error:
+        _stop(f"error: {error}", BAD_INPUT)
+    except USAGE_ERROR as error:
+        text = " ".join(error.format_message().split())  # type: ignore[attr-defined]
+        _stop(f"error: {text} (see dda-validate --help)", BAD_INPUT)
+    except (KeyboardInterrupt, typer.Abort):
+        _stop("interrupted: finished rows are kept, the same command goes on from there", INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    else:
+        sys.exit(status or PASSED)
+
+
+def _stop(line: str, status: int) -> None:
+    typer.echo(line, err=True)
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

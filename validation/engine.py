@@ -1,0 +1,228 @@
+"""The engine: runs every case of a study once, keeps the histories, compares and judges.
+
+Caching, resuming, parallel running, interruption safety and progress are here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+from validation import metrics
+from validation.cases import Case, execute
+from validation.gates import Gate, Status, Verdict, judge, rounded
+from validation.history import History, Outcome
+from validation.provenance import provenance
+from validation.results import Results, Row, Value
+from validation.studies import Study
+
+Progress = Callable[[int, int, str], None]
+ORDER = (
+    "dda",
+    "dda-textbook",
+    "fem",
+    "fem:full",
+    "fenicsx",
+    "bar",
+    "continuum",
+)  # each is compared with the later
+ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The finished cases of a study: rows and histories by (scene, solver)."""
+
+    rows: dict[tuple[str, str], Row]
+    results: Results
+
+    def history(self, scene: str, solver: str) -> History | None:
+        """Return the history of a case, or None."""
+        row = self.rows.get((scene, solver))
+        return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)
+
+
+def run_study(
+    study: Study,
+    results: Results,
+    *,
+    full: bool = False,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> list[Verdict]:
+    """Run what is not finished yet, then compare and judge; everything is kept in the results directory.
+
+    Parameters
+    ----------
+    study
+        The declaration.
+    results
+        Where finished cases are found and kept.
+    full
+        Switch the numerical savings of every solver off.
+    jobs
+        Worker processes; ignored where an executor is given.
+    executor
+        Any executor of the standard library's interface.
+    progress
+        Called with (done, total, label) after each case.
+    """
+    cases = study.cases(full)
+    finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
+    comparisons = list(compare(finished))
+    verdicts = [evaluate(gate, finished) for gate in study.gates()]
+    results.write_json(f"studies/{study.name}.json", _manifest(study, cases, finished, comparisons))
+    results.write_verdicts(study.name, [verdict.record(study.name) for verdict in verdicts])
+    return verdicts
+
+
+def finish(
+    cases: Sequence[Case],
+    study: Study,
+    results: Results,
+    *,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Finished:
+    """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
+    keyed = [(case, case.key()) for case in cases]
+    known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
+    pending = {key: case for case, key in keyed if key not in known}
+    done = len(keyed) - len(pending)
+    for row, history in _executed(pending, study, jobs, executor):
+        results.append(row, history)
+        known[row.key] = row
+        done += 1
+        if progress:
+            progress(done, len(keyed), f"{row.scene} {row.solver}")
+    rows = {(case.scene.name, case.solver): _named(known[key], case, study) for case, key in keyed}
+    return Finished(rows, results)
+
+
+def _named(row: Row, case: Case, study: Study) -> Row:
+    """Give a row that another scene or study has brought the names of this one."""
+    return replace(row, scene=case.scene.name, study=study.name)
+
+
+def _executed(
+    pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
+) -> Iterator[tuple[Row, History | None]]:
+    """Run the pending cases, in this process where one worker or one case is all there is."""
+    if executor is None and min(jobs, len(pending)) <= 1:
+        for key, case in pending.items():
+            yield execute(case, key, study.name)
+        return
+    with _pool(executor, min(jobs, len(pending))) as pool:
+        futures = [pool.submit(execute, case, key, study.name) for key, case in pending.items()]
+        for future in as_completed(futures):
+            yield future.result()
+
+
+@contextmanager
+def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
+    """Yield the given executor, or one of processes that goes down at once on an interruption."""
+    if executor is not None:
+        yield executor
+        return
+    pool = ProcessPoolExecutor(jobs, initializer=_ignore_interrupt)
+    try:
+        yield pool
+    except BaseException:
+        for process in (pool._processes or {}).values():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _ignore_interrupt() -> None:
+    """Leave Ctrl-C to the parent, which ends the workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def compare(finished: Finished) -> Iterator[dict[str, Any]]:
+    """Yield the pair metrics of every solver against every later one in the order of references."""
+    for scene in dict.fromkeys(scene for scene, _ in finished.rows):
+        present = [
+            s
+            for s in _ordered(solver for sc, solver in finished.rows if sc == scene)
+            if finished.history(scene, s) is not None
+        ]
+        histories = {solver: finished.history(scene, solver) for solver in present}
+        for i, solver in enumerate(present):
+            for reference in present[i + 1 :]:
+                yield _comparison(scene, solver, reference, histories[solver], histories[reference])
+
+
+def _ordered(solvers: Iterable[str]) -> list[str]:
+    """Solvers in the order of references; others, which users bring, first."""
+    return sorted(solvers, key=lambda s: ORDER.index(s) if s in ORDER else -1)
+
+
+def _comparison(
+    scene: str, solver: str, reference: str, history: History | None, against: History | None
+) -> dict[str, Any]:
+    values = {m: _plain(metrics.pair(m, history, against)) for m in metrics.PAIR} if history and against else {}
+    window = float(history.time[-1]) if history else 0.0
+    return {"scene": scene, "solver": solver, "reference": reference, "window": window, "metrics": values}
+
+
+def _plain(value: Value) -> Value:
+    return rounded(value, 6) if isinstance(value, float) else value
+
+
+def evaluate(gate: Gate, finished: Finished) -> Verdict:
+    """Measure what a gate asks for and judge it."""
+    names = [(gate.scene, gate.pair[0])]
+    if len(gate.pair) == 2:
+        names.append((gate.against or gate.scene, gate.pair[1]))
+    for name in names:
+        row = finished.rows.get(name)
+        if row is None or row.outcome in ABSENT:
+            why = f"{name[1]} was not run" if row is None else f"{name[1]}: {'; '.join(row.notes)}"
+            return Verdict(gate, None, Status.NOT_RUN, why)
+        if row.outcome is not Outcome.COMPLETED:
+            return Verdict(gate, None, Status.FAIL, f"{name[1]}: {row.outcome.sentence} {'; '.join(row.notes)}")
+    if names[0] == names[-1] and len(names) == 2:
+        return Verdict(gate, None, Status.FAIL, "a run was compared with itself")
+    return judge(gate, _value(gate, names, finished))
+
+
+def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Value:
+    if gate.metric in metrics.PAIR:
+        histories = [finished.history(*name) for name in names]
+        if len(histories) < 2 or histories[0] is None or histories[1] is None:
+            return None
+        first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
+        return metrics.pair(gate.metric, first, second)
+    values = [finished.rows[name].metrics.get(gate.metric) for name in names]
+    return values[0] if len(values) == 1 else metrics.ratio(values[0], values[1])
+
+
+def _manifest(
+    study: Study, cases: Sequence[Case], finished: Finished, comparisons: list[dict[str, Any]]
+) -> dict[str, Any]:
+    listed = [
+        {
+            "scene": case.scene.name,
+            "title": case.scene.title,
+            "solver": case.solver,
+            "key": finished.rows[case.scene.name, case.solver].key,
+            "definition": case.scene.definition(),
+        }
+        for case in cases
+    ]
+    return {
+        "study": study.name,
+        "title": study.title,
+        "purpose": study.purpose,
+        "cases": listed,
+        "comparisons": comparisons,
+        "provenance": provenance(),
+    }

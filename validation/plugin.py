@@ -1,0 +1,13 @@
+"""pytest plugin: registers the marker of the accuracy gates; imports nothing heavy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pytest
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the marker, so that the gates run under strict markers in any project."""
+    config.addinivalue_line("markers", "validation: the accuracy gates of dda-validation, one test a gate")

@@ -1,0 +1,473 @@
+"""Scenes: what is simulated, as TOML in SI units, checked with pydantic; unknown keys are refused.
+
+A scene holds problem data only; no solver is imported here. Every defect of a scene file is reported as one
+:class:`SceneError` line that names the file, the field, the rule and the value.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+SCENE_DIRECTORY = Path(__file__).parent / "scenes"
+FINE_ELEMENTS = 16
+Point = tuple[float, float]
+
+
+class SceneError(ValueError):
+    """A scene, an option or a file that cannot be used; the text names file, field, rule and value."""
+
+
+def _real(value: object) -> float:
+    """Accept a finite TOML number and nothing that merely converts to one."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("must be a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError("must be a finite number")
+    return number
+
+
+def _count(value: object) -> int:
+    """Accept a TOML integer that fits 64 bits."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError("must be a whole number")
+    if abs(value) >= 2**63:
+        raise ValueError("must fit 64 bits")
+    return value
+
+
+Real = Annotated[float, BeforeValidator(_real)]
+Positive = Annotated[Real, Field(gt=0)]
+NonNegative = Annotated[Real, Field(ge=0)]
+Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
+
+
+class Section(BaseModel):
+    """A table of a scene file: immutable, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
+
+
+class BlockSection(Section):
+    """The loaded block A: outline and material.
+
+    The outline is a square (`side`), an upright rectangle (`width`, `height`) with its lower left corner at the
+    origin, or a counter-clockwise polygon (`vertices` with the indices of its `base` and `top` edges).
+    """
+
+    side: Positive | None = None  # m
+    width: Positive | None = None  # m
+    height: Positive | None = None  # m
+    vertices: tuple[tuple[Real, Real], ...] | None = None  # m, counter-clockwise
+    base: Annotated[int, BeforeValidator(_count)] = 0  # edge i runs from vertex i to i + 1
+    top: Annotated[int, BeforeValidator(_count)] = 2
+    density: Positive  # kg/m3
+    young: Positive  # Pa
+    poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
+    hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self._check_one_outline()
+        if self.hypothesis == "plane strain" and self.poisson >= 0.5:
+            raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
+        if self.vertices is not None:
+            check_polygon(self.vertices, self.base, self.top)
+        return self
+
+    def _check_one_outline(self) -> None:
+        given = {
+            "side": self.side is not None,
+            "width and height": self.width is not None or self.height is not None,
+            "vertices": self.vertices is not None,
+        }
+        names = [name for name, present in given.items() if present]
+        if len(names) > 1:
+            raise ValueError(f"{names[0]} and {names[1]} exclude each other, got both")
+        if not names:
+            raise ValueError("one of side, width and height, or vertices must be given, got none")
+        if given["width and height"] and (self.width is None or self.height is None):
+            raise ValueError("width and height must be given together, got one")
+        if self.vertices is None and self.model_fields_set & {"base", "top"}:
+            raise ValueError("base and top go with vertices only, got them with a rectangle")
+
+    @property
+    def outline(self) -> tuple[Point, ...]:
+        """Vertices [m], counter-clockwise."""
+        if self.vertices is not None:
+            return self.vertices
+        w, h = (self.side, self.side) if self.side is not None else (self.width, self.height)
+        return ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))  # type: ignore[return-value]
+
+    @property
+    def base_length(self) -> float:
+        """Length a of the base edge [m]."""
+        (x1, y1), (x2, y2) = self.edge(self.base)
+        return math.hypot(x2 - x1, y2 - y1)
+
+    def edge(self, index: int) -> tuple[Point, Point]:
+        """Return the end points of an edge [m]."""
+        points = self.outline
+        return points[index], points[(index + 1) % len(points)]
+
+
+class ContactSection(Section):
+    """Locked corner springs at the two ends of the base edge."""
+
+    stiffness: Positive  # p, N/m per corner spring
+    shear_stiffness: Positive | None = None  # N/m; p if absent
+
+    @property
+    def shear(self) -> float:
+        """Shear stiffness of a corner spring [N/m]."""
+        return self.stiffness if self.shear_stiffness is None else self.shear_stiffness
+
+
+class LoadSection(Section):
+    """The load that is switched on at t = 0."""
+
+    pressure: Real  # q, Pa, downwards on the top edge
+
+
+class TimeSection(Section):
+    """The Newmark scheme of equations (6) and (7) and its steps."""
+
+    step: Positive  # s
+    steps: Count
+    alpha: NonNegative = 0.5
+    delta: NonNegative = 1.0
+    gg: Annotated[Real, Field(ge=0, le=1)] | None = None  # kinetic discount per step
+    gg_rate: NonNegative | None = None  # 1/s: gg = exp(-gg_rate * step)
+    start: Literal["zero", "consistent"] = "zero"  # initial acceleration
+    allow_unstable: bool = False
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.gg is not None and self.gg_rate is not None:
+            raise ValueError("gg and gg_rate exclude each other, got both")
+        return self
+
+    @property
+    def discount(self) -> float:
+        """Factor gg on the velocity at the start of each step."""
+        if self.gg_rate is not None:
+            return math.exp(-self.gg_rate * self.step)
+        return 1.0 if self.gg is None else self.gg
+
+    @property
+    def duration(self) -> float:
+        """Simulated time [s]."""
+        return self.step * self.steps
+
+
+class FemSection(Section):
+    """The finite-element pair: mesh and foundation."""
+
+    elements: Count | None = None  # per side
+    mesh: str | None = None  # file with tagged edges base, top
+    degree: Annotated[int, BeforeValidator(_count), Field(ge=1, le=2)] = 2
+    foundation: Literal["distributed", "patch", "corner"] = "distributed"
+    patch_width: Positive | None = None  # m
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.elements is not None and self.mesh is not None:
+            raise ValueError("elements and mesh exclude each other, got both")
+        if (self.foundation == "patch") != (self.patch_width is not None):
+            raise ValueError(
+                'patch_width goes with foundation = "patch" and only with it, '
+                f"got foundation {self.foundation!r} and patch_width {self.patch_width}"
+            )
+        return self
+
+    @property
+    def per_side(self) -> int:
+        """Elements per side of a structured mesh."""
+        return FINE_ELEMENTS if self.elements is None else self.elements
+
+
+class RunSection(Section):
+    """What to run and what to keep."""
+
+    solvers: tuple[str, ...] = Field(default=("dda", "fem", "bar"), min_length=1)
+    columns: tuple[str, ...] = Field(default=("displacement", "contact_pressure"), min_length=1)
+
+
+class GateSection(Section):
+    """A user's own gate on a pair of solvers (or one solver)."""
+
+    pair: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)]
+    metric: str
+    band: tuple[Real, Real]
+    reason: Annotated[str, Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.band[0] > self.band[1]:
+            raise ValueError(f"band must be [low, high] with low <= high, got {list(self.band)}")
+        return self
+
+
+class Scene(Section):
+    """A scene as its file states it; `expand` resolves the sweep into single cases."""
+
+    name: str = "scene"
+    title: str = ""
+    block: BlockSection
+    contact: ContactSection
+    load: LoadSection
+    time: TimeSection
+    fem: FemSection = FemSection()
+    run: RunSection = RunSection()
+    sweep: dict[str, Any] = Field(default_factory=dict)
+    gate: tuple[GateSection, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for field, values in self.sweep.items():
+            if field != "mode" and not (isinstance(values, list) and values):
+                raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
+        mode, lists = self.sweep.get("mode", "product"), self._swept()
+        if mode not in ("product", "zip"):
+            raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
+        if mode == "zip" and len({len(v) for v in lists.values()}) > 1:
+            raise ValueError(f"sweep: lists of a zip must have one length, got {[*map(len, lists.values())]}")
+        if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
+            raise ValueError(
+                f"fem: patch_width must be at most half the base length "
+                f"{self.block.base_length / 2:g}, got {self.fem.patch_width:g}"
+            )
+        return self
+
+    def _swept(self) -> dict[str, list[Any]]:
+        return {field: values for field, values in self.sweep.items() if field != "mode"}
+
+    def expand(self) -> tuple[Scene, ...]:
+        """Return one scene per value of the sweep, named ``name[field=value,...]``.
+
+        Raises
+        ------
+        SceneError
+            A swept field or value is not allowed.
+        """
+        lists = self._swept()
+        if not lists:
+            return (self,)
+        rows = (
+            zip(*lists.values(), strict=True) if self.sweep.get("mode") == "zip" else itertools.product(*lists.values())
+        )
+        return tuple(self.with_values(dict(zip(lists, row, strict=True)), label=True) for row in rows)
+
+    def with_values(self, values: dict[str, Any], label: bool = False) -> Scene:
+        """Return a copy with dotted keys replaced; a key that is set leaves the sweep."""
+        data = self.definition()
+        for field, value in values.items():
+            _set_dotted(data, field, value, self.name)
+        sweep = {f: v for f, v in self.sweep.items() if f not in values}
+        data["sweep"] = sweep if set(sweep) - {"mode"} else {}
+        if label:
+            inside = ",".join(f"{field}={_short(value)}" for field, value in values.items())
+            data["name"] = f"{self.name}[{inside}]"
+        return parse_scene(data, self.name)
+
+    def definition(self) -> dict[str, Any]:
+        """Return the scene as plain data (what a file would state)."""
+        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True))
+        return data
+
+
+def _short(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> None:
+    """Set ``section.key`` in place; exclusive partners of the key are taken out."""
+    section, _, key = field.partition(".")
+    if not key:
+        section, key = "", section
+    table = data.setdefault(section, {}) if section else data
+    if not isinstance(table, dict):
+        raise SceneError(f"{where}: {field}: must be section.key, got {field!r}")
+    for partner in _EXCLUSIVE.get(field, ()):
+        table.pop(partner, None)
+    table[key] = value
+
+
+_EXCLUSIVE = {
+    "time.gg": ("gg_rate",),
+    "time.gg_rate": ("gg",),
+    "fem.elements": ("mesh",),
+    "fem.mesh": ("elements",),
+    "block.side": ("width", "height", "vertices", "base", "top"),
+    "block.vertices": ("side", "width", "height"),
+    "block.width": ("side", "vertices"),
+    "block.height": ("side", "vertices"),
+}
+
+
+def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:
+    """Check that a polygon is simple, counter-clockwise and has the two edges.
+
+    Raises
+    ------
+    ValueError
+        Fewer than three vertices, an edge index out of range, a clockwise or self-crossing outline.
+    """
+    n = len(vertices)
+    if n < 3:
+        raise ValueError(f"vertices must be three or more, got {n}")
+    for name, index in (("base", base), ("top", top)):
+        if not 0 <= index < n:
+            raise ValueError(f"{name} must be an edge index from 0 to {n - 1}, got {index}")
+    if base == top:
+        raise ValueError(f"base and top must be different edges, got {base} twice")
+    edges = [(vertices[i], vertices[(i + 1) % n]) for i in range(n)]
+    if any(start == end for start, end in edges):
+        raise ValueError("vertices must not repeat, got an edge of length zero")
+    for i, j in itertools.combinations(range(n), 2):
+        adjacent = j == i + 1 or (i == 0 and j == n - 1)
+        if _folds_back(edges[i], edges[j]) if adjacent else _cross(edges[i], edges[j]):
+            raise ValueError(f"vertices must not cross themselves, got edges {i} and {j} that do")
+    if _signed_area(vertices) <= 0:
+        raise ValueError("vertices must run counter-clockwise, got a clockwise outline")
+
+
+def _turn(o: Point, a: Point, b: Point) -> float:
+    """Twice the signed area of a triangle [m2]."""
+    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+
+
+def _signed_area(points: tuple[Point, ...]) -> float:
+    origin = points[0]
+    return sum(_turn(origin, a, b) for a, b in itertools.pairwise(points[1:])) / 2
+
+
+def _within(p: Point, a: Point, b: Point) -> bool:
+    """Whether p, on the line through a and b, lies between them."""
+    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+
+
+def _cross(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
+    """Whether two closed segments have a point in common."""
+    (a, b), (c, d) = first, second
+    t1, t2, t3, t4 = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
+    if ((t1 > 0) - (t1 < 0)) * ((t2 > 0) - (t2 < 0)) < 0 and ((t3 > 0) - (t3 < 0)) * ((t4 > 0) - (t4 < 0)) < 0:
+        return True
+    touches = ((t1, c, a, b), (t2, d, a, b), (t3, a, c, d), (t4, b, c, d))
+    return any(t == 0 and _within(p, s, e) for t, p, s, e in touches)
+
+
+def _folds_back(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
+    """Whether two edges that share a vertex overlap."""
+    shared = first[1] if first[1] in second else first[0]
+    a = first[0] if first[1] == shared else first[1]
+    b = second[1] if second[0] == shared else second[0]
+    forward = (a[0] - shared[0]) * (b[0] - shared[0]) + (a[1] - shared[1]) * (b[1] - shared[1])
+    return _turn(shared, a, b) == 0 and forward > 0
+
+
+def parse_scene(data: dict[str, Any], source: str) -> Scene:
+    """Check plain data and return the scene.
+
+    Raises
+    ------
+    SceneError
+        With one line: source, field, rule and value of the first defect.
+    """
+    try:
+        return Scene.model_validate(data)
+    except ValidationError as error:
+        raise SceneError(_one_line(error, source)) from None
+
+
+def _one_line(error: ValidationError, source: str) -> str:
+    """Return the first defect of a pydantic report as ``source: field: rule, got value``."""
+    first = error.errors(include_url=False)[0]
+    field = ".".join(str(part) for part in first["loc"]) or "scene"
+    rule = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    if first["type"] == "extra_forbidden":
+        rule = "unknown key"
+    elif first["type"] == "missing":
+        return f"{source}: {field}: is required, got nothing"
+    elif rule == first["msg"].removeprefix("Input should be ") and "Input should be" in first["msg"]:
+        rule = f"must be {rule}"
+    if ", got " not in rule:
+        rule = f"{rule}, got {_clip(first['input'])}"
+    more = error.error_count() - 1
+    return f"{source}: {field}: {rule}" + (f" (and {more} more)" if more else "")
+
+
+def _clip(value: object, width: int = 60) -> str:
+    text = repr(value)
+    return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+def scene_names() -> list[str]:
+    """Return the names of the built-in scenes."""
+    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
+
+
+def load_scene(source: str | Path) -> Scene:
+    """Return the scene of a TOML file or of a built-in name.
+
+    Parameters
+    ----------
+    source
+        Path of a scene file, or a name that `scene_names` lists.
+
+    Raises
+    ------
+    SceneError
+        The file cannot be read, is not TOML, or states something that is not allowed.
+    """
+    path = Path(source)
+    if path.suffix != ".toml" and str(source) in scene_names():
+        path = SCENE_DIRECTORY / f"{source}.toml"
+    data = _read_toml(path)
+    if "name" in data:
+        raise SceneError(f"{path.name}: name: unknown key, got {_clip(data['name'])}")
+    if isinstance(mesh := data.get("fem", {}) and isinstance(data["fem"], dict) and data["fem"].get("mesh"), str):
+        data["fem"]["mesh"] = str(path.parent / mesh)
+    return parse_scene({"name": path.stem} | data, path.name)
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode())
+    except FileNotFoundError:
+        known = ", ".join(scene_names())
+        raise SceneError(f"{path}: no such scene file; built-in scenes: {known}") from None
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise SceneError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise SceneError(f"{path}: must be TOML: {' '.join(str(error).split())}") from None
+
+
+def parse_assignment(text: str) -> tuple[str, Any]:
+    """Split ``key=value`` of the command line; the value is TOML, or else a plain word.
+
+    Raises
+    ------
+    SceneError
+        There is no ``=`` or no key.
+    """
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise SceneError(f"--set: must be key=value, got {text!r}")
+    try:
+        parsed = tomllib.loads(f"value = {value}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        parsed = value
+    return key.strip(), parsed

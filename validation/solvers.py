@@ -1,0 +1,114 @@
+"""The contract of a solver and the registry of solvers, which imports none of them."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from pathlib import Path
+
+from validation.history import Mode, Run
+from validation.scene import Scene, SceneError
+
+
+class NotReported(LookupError):
+    """A solver does not offer this part of the contract."""
+
+
+class Solver:
+    """Base of all solvers; a new one is this checklist.
+
+    1. `name`: how the command line and the tables call it.
+    2. `sections`: the tables of a scene that it reads; a change elsewhere does not make it run again.
+    3. `sources`: modules or packages whose files enter the key of its results.
+    4. `applicable(scene)`: None, or the reason in words why it cannot run this scene.
+    5. `solve(scene, full)`: a `Run` whose history holds one value per step, from the first step on, for every
+       column in `scene.run.columns`; numerical failure is an outcome, bad input a `SceneError`.
+    6. Optional: `static(scene)`, `modes(scene)` and `diagnostics(scene)`; `NotReported` where absent.
+    """
+
+    name: str = ""
+    sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
+    sources: tuple[str, ...] = ()
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why this solver cannot run the scene."""
+        return None
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; `full` switches the numerical savings off, `fields` names a file for the fields."""
+        raise NotImplementedError
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution, column name to value."""
+        raise NotReported(f"{self.name} reports no static solution")
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the modes, the one with the largest share of the static response first."""
+        raise NotReported(f"{self.name} reports no modes")
+
+    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
+        """Return spectral radius, condition number and residual."""
+        raise NotReported(f"{self.name} reports no diagnostics")
+
+
+BUILT_IN = {
+    "dda": "validation.adapters:DDA",
+    "dda-textbook": "validation.adapters:Textbook",
+    "fem": "validation.adapters:FiniteElements",
+    "bar": "validation.adapters:ExactBar",
+    "continuum": "validation.adapters:Continuum",
+}
+REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
+
+
+def solver_names() -> list[str]:
+    """Return the names of all solvers."""
+    return list(BUILT_IN)
+
+
+def get_solver(name: str) -> Solver:
+    """Return a solver by name, importing its adapter now.
+
+    Raises
+    ------
+    SceneError
+        There is no such solver.
+    """
+    if name not in BUILT_IN:
+        raise SceneError(f"solver: must be one of {', '.join(solver_names())}, got {name!r}")
+    module, _, attribute = BUILT_IN[name].partition(":")
+    solver: Solver = getattr(importlib.import_module(module), attribute)()
+    return solver
+
+
+def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
+    """Run one scene with one solver.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep; pick a case with `Scene.expand` or `Scene.with_values`.
+    solver
+        A solver or its name.
+    full
+        Switch the numerical savings off.
+
+    Raises
+    ------
+    SceneError
+        The scene has a sweep, the solver is unknown or refuses the scene.
+
+    Examples
+    --------
+    >>> from validation import load_scene, solve
+    >>> run = solve(load_scene("figures-3-4").expand()[0], "dda")
+    >>> round(float(run.displacement[-1]), 6)
+    -0.01
+    """
+    chosen = get_solver(solver) if isinstance(solver, str) else solver
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise SceneError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if reason := chosen.applicable(scene):
+        raise SceneError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
+    return chosen.solve(scene, full=full)

@@ -1,0 +1,163 @@
+"""Studies: scenes x variations x solvers, with the gates that judge them."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from validation.cases import FULL, Case
+from validation.gates import Gate
+from validation.metrics import METRICS, PAIR
+from validation.scene import Scene, SceneError, load_scene, scene_names
+from validation.solvers import solver_names
+
+
+def _no_gates() -> tuple[Gate, ...]:
+    return ()
+
+
+@dataclass(frozen=True)
+class Study:
+    """A declaration that the engine runs.
+
+    Attributes
+    ----------
+    name, title, purpose
+        Name on the command line, heading and first sentence of its chapter.
+    scenes
+        Names of built-in scenes, or scenes.
+    solvers
+        Solvers for every scene; by default those of the scene's `[run]` table.
+    variations
+        Dotted key to values, in product with the scenes' own sweeps.
+    extra
+        Further (case name, solver) pairs, such as a run without savings.
+    gates
+        Function that returns the gates, so that listing studies computes nothing.
+    timed
+        Whether the study is one of timings, which always run afresh.
+    """
+
+    name: str
+    title: str
+    purpose: str
+    scenes: Sequence[str | Scene]
+    solvers: tuple[str, ...] | None = None
+    variations: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    extra: tuple[tuple[str, str], ...] = ()
+    gates: Callable[[], tuple[Gate, ...]] = _no_gates
+    timed: bool = False
+
+    def cases(self, full: bool = False) -> list[Case]:
+        """Return all cases; with `full` those of every solver's full model."""
+        scenes = [case for scene in self.scenes for case in self._varied(scene).expand()]
+        named = {scene.name: scene for scene in scenes}
+        pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
+        pairs += [(named[name], solver) for name, solver in self.extra if name in named]
+        return [Case(scene, solver, full) for scene, solver in pairs]
+
+    def _varied(self, scene: str | Scene) -> Scene:
+        loaded = load_scene(scene) if isinstance(scene, str) else scene
+        if not self.variations:
+            return loaded
+        sweep = dict(loaded.sweep) | {key: list(values) for key, values in self.variations.items()}
+        return loaded.model_copy(update={"sweep": sweep})
+
+
+STUDIES = {
+    "core": "validation.core:CORE",
+}
+
+
+def get_study(name: str) -> Study:
+    """Return a study of the suite by name."""
+    module, _, attribute = STUDIES[name].partition(":")
+    study: Study = getattr(importlib.import_module(module), attribute)
+    return study
+
+
+def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
+    """Return the study of one scene, built-in or a file, with the gates that belong to it.
+
+    Raises
+    ------
+    SceneError
+        The scene, a solver, a column or a gate in it is not allowed.
+    """
+    scene = load_scene(source)
+    scene = scene.with_values(dict(assignments)) if assignments else scene
+    for solver in scene.run.solvers:
+        if solver.removesuffix(FULL) not in solver_names():
+            raise SceneError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {solver!r}")
+    own = tuple(gate for case in scene.expand() for gate in own_gates(case, source))
+    return Study(
+        scene.name,
+        scene.title or scene.name,
+        f"The scene {scene.name}.",
+        [scene],
+        extra=built_in_extra(scene),
+        gates=lambda: own + built_in_gates(scene),
+    )
+
+
+def own_gates(case: Scene, source: str) -> tuple[Gate, ...]:
+    """Return the gates that a scene file states for one of its cases."""
+    for number, section in enumerate(case.gate):
+        if section.metric not in METRICS:
+            raise SceneError(
+                f"{source}: gate.{number}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}"
+            )
+        missing = [name for name in section.pair if name not in case.run.solvers]
+        if missing:
+            raise SceneError(
+                f"{source}: gate.{number}.pair: must be solvers that run.solvers lists, got {missing[0]!r}"
+            )
+        if section.metric in PAIR and len(section.pair) < 2:
+            raise SceneError(
+                f"{source}: gate.{number}.pair: must name a solver and a reference for {section.metric}, "
+                f"got {list(section.pair)}"
+            )
+    return tuple(Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate)
+
+
+def is_built_in(scene: Scene) -> bool:
+    """Whether a scene is a built-in one, unchanged."""
+    return scene.name in scene_names() and scene == load_scene(scene.name)
+
+
+def built_in_gates(scene: Scene) -> tuple[Gate, ...]:
+    """Return the suite's own gates for the cases of a scene, where it is the built-in one unchanged."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(gate for study in STUDIES for gate in get_study(study).gates() if gate.scene in names)
+
+
+def built_in_extra(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Return the further runs that the suite's gates on a built-in scene compare with."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(pair for study in STUDIES for pair in get_study(study).extra if pair[0] in names)
+
+
+def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:
+    """Return the studies that the command line names: studies (`all` of them), scenes or scene files.
+
+    Raises
+    ------
+    SceneError
+        A name is neither, or values are set on a study.
+    """
+    studies = []
+    for target in STUDIES if list(targets) == ["all"] else targets:
+        if target in STUDIES and not assignments:
+            studies.append(get_study(target))
+        elif target in STUDIES:
+            raise SceneError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
+        elif target in scene_names() or target.endswith(".toml"):
+            studies.append(scene_study(target, assignments))
+        else:
+            raise SceneError(
+                f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
+                f"({', '.join(scene_names())}) or a scene file ending in .toml"
+            )
+    return studies
