@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from conftest import SCENE
+
 from validation import engine, solvers
 from validation.cases import Case, attempt, check, execute
 from validation.engine import Finished, evaluate, finish, run_study

@@ -6,8 +6,8 @@ import tomllib
 from typing import Any
 
 import pytest
-
 from conftest import SCENE
+
 from validation.scene import Scene, SceneError, load_scene, parse_assignment, parse_scene, scene_names
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]

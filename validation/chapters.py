@@ -14,7 +14,7 @@ from validation import figures
 from validation.chapters_curves import COLUMNS, Panel
 from validation.chapters_data import Case, Group, groups, varied_fields
 from validation.chapters_ledger import METRICS
-from validation.chapters_text import cell, parameters, percent, plain, short, span, word_notes
+from validation.chapters_text import AS_STATED, bounded, cell, parameters, percent, plain, short, span, word_notes
 from validation.history import DISPLACEMENT, PRESSURE, Outcome
 from validation.report import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.results import Results, Value
@@ -48,7 +48,8 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
     blocks += [_history_block(group, column, directory) for column in _columns(group)]
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
+    if any(_finished(case) for case in group.cases):
+        blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
     if group.verdicts:
         blocks += [Heading("Gates", 3), gate_table(group.verdicts, {case.name: case.label for case in group.cases})]
     return blocks
@@ -126,10 +127,8 @@ def _damped_agreement(group: Group) -> str:
     falls = all(a[0] < b[0] and a[1] > b[1] for a, b in itertools.pairwise(pairs))
     if len(pairs) < 3 or not falls:
         return ""
-    return (
-        f"the difference falls as the damping grows, from {percent(pairs[0][1])} at ξ₁ = {100 * pairs[0][0]:.2f}\u00a0% "
-        f"to {percent(pairs[-1][1])} at {100 * pairs[-1][0]:.2f}\u00a0%: a damped run agrees because both are damped"
-    )
+    least, most = (f"{percent(error)} at ξ₁ = {100 * xi:.2f}\u00a0%" for xi, error in (pairs[0], pairs[-1]))
+    return f"the difference falls as the damping grows, from {least} to {most}: both are damped, which is no merit"
 
 
 def outcomes(group: Group) -> list[Block]:
@@ -140,9 +139,13 @@ def outcomes(group: Group) -> list[Block]:
             if row.outcome is not Outcome.COMPLETED:
                 said.setdefault((solver, row.outcome, row.notes), []).append(case.label)
     return [
-        Callout(f"{solver} at {', '.join(labels)}: {outcome}. {outcome.sentence} {' '.join(notes)}".strip(), "warn")
+        Callout(f"{solver}{_where(labels)}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn")
         for (solver, outcome, notes), labels in said.items()
     ]
+
+
+def _where(labels: Sequence[str]) -> str:
+    return "" if list(labels) == [AS_STATED] else f" at {'; '.join(labels)}"
 
 
 # ---- figures ------------------------------------------------------------------------------------------------------
@@ -177,7 +180,7 @@ def _panel(case: Case, column: str) -> Panel:
     reference = case.reference if case.reference in histories else None
     metric = f"{_PREFIX.get(column, column)}.static"
     known = [case.number(solver, metric) for solver in (reference or "", "dda", *histories)]
-    title = "" if case.label == "as stated" else case.label
+    title = "" if case.label == AS_STATED else case.label
     return Panel(title, histories, next((v for v in known if v is not None), None), reference)
 
 
@@ -259,18 +262,15 @@ def damping_table(group: Group) -> Table:
 
 
 def _finished(case: Case) -> list[str]:
-    return [s for s, row in case.rows.items() if row.outcome not in (Outcome.NOT_APPLICABLE, Outcome.NOT_RUN)]
+    return [solver for solver, row in case.rows.items() if row.metrics]
 
 
 def _measured(measure: Measure, value: Value, scene: Scene) -> str:
-    if (
-        measure.metric == "pressure.minimum"
-        and isinstance(value, float)
-        and abs(value) < NOISE * abs(scene.load.pressure)
-    ):
-        return "0"
-    if measure.decimals is None or not isinstance(value, int | float):
-        return cell(value, measure.factor)
+    if not isinstance(value, int | float):
+        return cell(value)
+    if measure.decimals is None:
+        noise = NOISE * abs(scene.load.pressure) if measure.metric == "pressure.minimum" else 0.0
+        return cell(value if abs(value) > noise else 0.0, measure.factor)
     return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")
 
 
@@ -305,7 +305,7 @@ def _gate_row(v: Mapping[str, Any], labels: Mapping[str, str]) -> tuple[str, ...
 
 def value_cell(value: Value) -> str:
     """Return the value of a verdict without needless zeros."""
-    return short(value) if isinstance(value, int | float) else cell(value)
+    return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
 
 
 def band(v: Mapping[str, Any]) -> str:

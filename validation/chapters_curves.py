@@ -166,6 +166,4 @@ def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
     others = {s: h for s, h in panel.histories.items() if s != panel.reference and h.time.size == base.time.size}
     with np.errstate(all="ignore"):  # a run that blew up differs by infinity
         scaled = {s: (h.columns[column] - base.columns[column]) / scale for s, h in others.items()}
-    return {
-        s: envelope(base.time, np.nan_to_num(d, nan=np.inf, posinf=np.inf, neginf=np.inf)) for s, d in scaled.items()
-    }
+    return {s: envelope(base.time, np.where(np.isfinite(d), d, np.inf)) for s, d in scaled.items()}

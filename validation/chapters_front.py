@@ -30,13 +30,12 @@ def front_matter(results: Results, studies: Sequence[str], directory: Path) -> l
     ]
     if not found:
         return blocks
-    figures.save(figures.ledger_figure(ledger_lines(found)), directory / LEDGER_FIGURE)
-    return [
-        *blocks,
-        Heading("Error ledger", 3),
-        ledger_table(found),
-        FigureBlock(LEDGER_FIGURE, "The error ledger: displacement filled, contact pressure open."),
-    ]
+    blocks += [Heading("Error ledger", 3), ledger_table(found)]
+    lines = ledger_lines(found)
+    if any(value is not None for line in lines for pair in line.parts.values() for value in pair):
+        figures.save(figures.ledger_figure(lines), directory / LEDGER_FIGURE)
+        blocks.append(FigureBlock(LEDGER_FIGURE, "The error ledger: displacement filled, contact pressure open."))
+    return blocks
 
 
 def headline(found: Sequence[Group], verdicts: Sequence[Mapping[str, Any]]) -> str:
@@ -55,15 +54,15 @@ def headline(found: Sequence[Group], verdicts: Sequence[Mapping[str, Any]]) -> s
 def _shares(found: Sequence[Group], form: float) -> str:
     """Say what code and mesh contribute, and call the rest model form where both are below the least difference."""
     parts = {
-        "rounding and code": part_values(found, "code", 0),
-        "the finite-element mesh": part_values(found, "mesh", 0),
+        "code and rounding are": part_values(found, "code", 0),
+        "the finite-element mesh is": part_values(found, "mesh", 0),
     }
-    said = [f"{name} for at most {percent(max(values))}" for name, values in parts.items() if values]
+    said = [f"{name} at most {percent(max(values))}" for name, values in parts.items() if values]
     if not said:
         return ""
     small = all(max(values) < form for values in parts.values() if values)
     rest = "; the rest is model form, one strain in the block against a wave" if small else ""
-    return f", and {' and '.join(said)} in displacement{rest}"
+    return f"; of the displacement's difference {' and '.join(said)}{rest}"
 
 
 def _failures(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:

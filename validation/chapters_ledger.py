@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from validation.chapters_data import Case, Group
-from validation.chapters_text import DASH, power, raised
+from validation.chapters_text import DASH, bounded, power, raised
 from validation.figures import LedgerLine
 from validation.history import Outcome
 from validation.report import Column, Table
@@ -86,7 +86,7 @@ def ledger_table(groups: Sequence[Group]) -> Table:
     return Table(
         tuple(columns),
         tuple(named),
-        "Relative L2 difference over the whole history, as a fraction.",
+        "Relative L2 difference over the whole history, as a fraction; below 10⁻⁹ a bound.",
         tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)),
     )
 
@@ -99,10 +99,14 @@ def _row(group: Group, case: Case, notes: list[str]) -> tuple[str, ...]:
         if text and text not in notes:
             notes.append(text)
         mark = raised(notes.index(text) + 1) if text else ""
-        cells += [
-            f"{DASH}{mark}" if value is None else power(value) + (f" {mark}" if mark else "") for value in found.values
-        ]
+        cells += [_cell(value, mark) for value in found.values]
     return case.label, *cells
+
+
+def _cell(value: float | None, mark: str) -> str:
+    if value is None:
+        return f"{DASH}{mark}"
+    return bounded(value, power(value)) + (f" {mark}" if mark else "")
 
 
 def ledger_lines(groups: Sequence[Group]) -> list[LedgerLine]:

@@ -10,6 +10,7 @@ from validation.results import Value
 from validation.scene import Scene
 
 DASH = "–"
+AS_STATED = "as stated"  # label of a case without swept values
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
@@ -64,6 +65,14 @@ def short(value: float, digits: int = 4) -> str:
     return re.sub(r"(\.\d*?)0+(?=×|$)", r"\1", plain(value, digits)).replace(".×", "×").removesuffix(".")
 
 
+def bounded(value: float, text: str) -> str:
+    """Return the text of a kept value; where only the next power of ten was kept, say that it is a bound."""
+    if not 0 < abs(value) <= 1e-9 or f"{value:.12e}".lstrip("-")[:14] != "1.000000000000":
+        return text
+    bound = f"10{raised(round(math.log10(abs(value))))}"
+    return f"<{bound}" if value > 0 else f">−{bound}"
+
+
 def percent(value: float) -> str:
     """Return a fraction in per cent, or as a power of ten below 0.01 %."""
     return f"{short(100 * value, 3)}\u00a0%" if value == 0 or value >= 1e-4 else power(value)
@@ -114,7 +123,7 @@ def _label(values: dict[str, str], scene: Scene) -> str:
         if field == "contact.stiffness":
             symbol, value, unit = "p", f"{scene.contact.stiffness / scene.block.young:.4g}E", ""
         parts.append(f"{symbol} = {value}{unit}".replace("-", "−"))
-    return ", ".join(parts) or "as stated"
+    return ", ".join(parts) or AS_STATED
 
 
 def parameters(scene: Scene, varied: set[str]) -> str:

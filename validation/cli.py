@@ -6,7 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -100,8 +100,9 @@ def run(
     for study in studies:
         with _progress(study.name) as progress:
             verdicts += run_study(study, kept, full=full, jobs=jobs or os.cpu_count() or 1, progress=progress)
-    _print_verdicts(verdicts, kept)
-    refused = _print_failures(kept, [study.name for study in studies])
+    names = [study.name for study in studies]
+    _print_verdicts(verdicts, kept, names)
+    refused = _print_failures(kept, names)
     raise typer.Exit(_status(verdicts, require or [], refused))
 
 
@@ -125,23 +126,24 @@ def solve(
     Example: [bold]dda-validate solve figures-3-4 --set time.step=0.002 --solver dda --csv history.csv[/bold]
     """
     from validation.cases import attempt, check
-    from validation.history import Outcome, write_csv
+    from validation.history import Outcome, atomic_path, write_csv
     from validation.scene import SceneError
     from validation.solvers import get_solver
 
     case, chosen = _one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise SceneError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
-    done = check(attempt(chosen, case, full or solver.endswith(":full"), fields), case)
+    with atomic_path(fields) if fields is not None else nullcontext() as part:
+        done = check(attempt(chosen, case, full or solver.endswith(":full"), part), case)
+        if done.outcome in (Outcome.REFUSED, Outcome.NOT_APPLICABLE):
+            raise SceneError("; ".join(done.notes))
+    if csv is not None and done.outcome is Outcome.COMPLETED and done.history is not None:
+        write_csv(done.history, csv)
     for note in done.notes:
         typer.echo(f"note: {note}", err=True)
-    if done.outcome in (Outcome.REFUSED, Outcome.NOT_APPLICABLE):
-        raise typer.Exit(BAD_INPUT)
     if done.outcome is not Outcome.COMPLETED:
         typer.echo(f"{case.name} {solver}: {done.outcome}: {done.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
-    if csv is not None and done.history is not None:
-        write_csv(done.history, csv)
     _print_run(case, solver, done)
 
 
@@ -170,7 +172,7 @@ def figures(
 
     Example: [bold]dda-validate figures core --out figures[/bold]
     """
-    from validation.report import write_figures
+    from validation.report import figures as write_figures
     from validation.results import Results
 
     for path in write_figures(study, Results(results), out):
@@ -228,13 +230,15 @@ def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
             bar.stop()
 
 
-def _print_verdicts(verdicts: list[Verdict], results: Results) -> None:
+def _print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
     """Print one table: scene, pair, metric, value, band, verdict, seconds."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
-    seconds = {(row.scene, row.solver): sum(row.seconds.values()) for row in results.rows().values()}
+    rows = results.rows()
+    cases = [case for study in studies for case in results.manifest(study)["cases"]]
+    seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("scene", "pair", "metric"):
         table.add_column(name, overflow="fold")

@@ -70,7 +70,7 @@ def decimals(text: float) -> float:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the core study."""
-    return (*statics(), *settling(), *frequencies(), *damping(), *mesh(), *model_form(), *code(), *drift())
+    return (*statics(), *settling(), *frequencies(), *damping(), *mesh(), *model_form(), *poisson(), *code(), *drift())
 
 
 def statics() -> Iterator[Gate]:
@@ -258,6 +258,35 @@ def model_form() -> Iterator[Gate]:
             value + half,
             "the locked contact pulls: independent program, half a unit of its last digit",
             reference_uncertainty=half,
+        )
+
+
+def poisson() -> Iterator[Gate]:
+    """Yield the gates at Poisson's ratio 0.25, where the finest mesh is the reference."""
+    coarse, middle, fine = (scene.name for scene in cases("poisson"))
+    for quantity, steps in (("displacement", (1.3e-4, 2.2e-5)), ("pressure", (2.4e-5, 4.4e-6))):
+        for name, value in zip((coarse, middle), steps, strict=True):
+            yield Gate(
+                name,
+                ("fem", "fem"),
+                f"{quantity}.l2",
+                value / 1.5,
+                value * 1.5,
+                "distance from the finest mesh: it falls five to six times a halving, the corners' singular stress "
+                "keeps it from sixteen; so the finest mesh is within a quarter of the middle one's distance",
+                reference_kind="own last value",
+                against=fine,
+            )
+    for quantity, percent in (("displacement", 2.753), ("pressure", 2.958)):
+        yield Gate(
+            fine,
+            ("dda", "fem"),
+            f"{quantity}.l2",
+            (percent - 0.01) / 100,
+            (percent + 0.01) / 100,
+            "model form, physics, at mu = 0.25: both meshes that are finer than four give this to its last digit",
+            reference_kind="own last value",
+            reference_uncertainty=6e-6,
         )
 
 

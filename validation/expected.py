@@ -76,7 +76,7 @@ def bar_frequency(scene: Scene) -> float:
 
 
 def roots(scene: Scene, frequency: float) -> tuple[complex, complex]:
-    """Eigenvalues of one Newmark step of a mode: lambda^2 - trace lambda + det = 0 (equations (10) to (12), with gg)."""
+    """Eigenvalues of one Newmark step of a mode: lambda^2 - trace lambda + det = 0, (10) to (12) with gg."""
     t = scene.time
     omega2 = (frequency * t.step) ** 2
     beta = 1 + t.alpha * omega2

@@ -1,8 +1,4 @@
-"""Figures in one house style; matplotlib is imported here and nowhere else.
-
-Every solver has one colour and one line style everywhere (a palette that colour-blind readers can tell apart),
-lines carry their names at their ends instead of a legend, and axes carry units.
-"""
+"""Figures in one house style: lines carry their names at their ends instead of a legend, axes carry units."""
 
 from __future__ import annotations
 
@@ -35,6 +31,7 @@ from validation.history import Array, write_atomically
 WIDTH = 166.0  # mm, text width of the report
 DOT = "#0072b2"
 LABEL_GAP = 3.0  # mm between the names of two lines
+LETTER = 1.5  # mm, width of a letter of a name, amply
 COLUMN_GAP = 4.0  # mm between two panels
 FLOOR = 1e-17  # differences below count as zero on a logarithmic axis
 
@@ -52,9 +49,6 @@ def save(figure: Figure, path: Path) -> Path:
     with house_style():
         write_atomically(path, lambda stream: figure.savefig(stream, format="svg", metadata={"Date": None}))
     return path
-
-
-# ---- axes ---------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -133,9 +127,6 @@ def _log_axis(axes: Axes, low: float, high: float) -> None:
     axes.yaxis.set_minor_locator(NullLocator())
 
 
-# ---- histories ----------------------------------------------------------------------------------------------------
-
-
 def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     """Draw a column of all solvers, one panel per case, with the differences from the reference below.
 
@@ -145,12 +136,17 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     columns = _columns(len(panels))
     bands = -(-len(panels) // columns)
     with house_style():
-        figure, grid = _grid([(24.0, 2.5), (15.0, 13.0)] * bands, columns, Margins())
+        figure, grid = _grid([(24.0, 2.5), (15.0, 13.0)] * bands, columns, Margins(right=_label_room(panels)))
         for band in range(bands):
             some = panels[band * columns : (band + 1) * columns]
             _history_row(grid[2 * band], some, column)
             _difference_row(grid[2 * band + 1], some, column)
     return figure
+
+
+def _label_room(panels: Sequence[Panel]) -> float:
+    """Return the width that the longest solver's name takes beside the last panel [mm]."""
+    return max(21.0, *(4.0 + LETTER * len(name) for panel in panels for name in panel.histories), 0.0)
 
 
 def _columns(count: int) -> int:
@@ -223,9 +219,6 @@ def _time_axis(axes: Axes, panel: Panel) -> None:
         labels[-1].set_horizontalalignment("right")
 
 
-# ---- the error ledger, and figures that any study may use ---------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class LedgerLine:
     """One case of the ledger: for each part the displacement's and the pressure's relative L2 error, or None."""
@@ -238,7 +231,7 @@ def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
     """Draw the parts of the error side by side, one line per case: displacement filled, contact pressure open."""
     parts = list(dict.fromkeys(part for line in lines for part in line.parts))
     values = [v for line in lines for pair in line.parts.values() for v in pair if v]
-    low, high = (min(values), max(values)) if values else (1e-16, 1.0)
+    low, high = min(values, default=1e-16), max(values, default=1.0)
     limits = 10.0 ** math.floor(math.log10(max(low, 1e-17))), 10.0 ** math.ceil(math.log10(min(high, 1e3)) + 0.05)
     with house_style():
         figure, (row,) = _grid([(max(12.0, 3.3 * len(lines)), 0.0)], len(parts), Margins(left=48.0, right=4.0))
@@ -336,7 +329,7 @@ def error_figure(lines: Sequence[Line], x_label: str, y_label: str) -> Figure:
 
 def digits_figure(error: Array, rows: Sequence[str], columns: Sequence[str], x_label: str, y_label: str) -> Figure:
     """Draw a map of correct digits, -log10 of the error cut to 0..16, with the number in every cell."""
-    digits = np.clip(-np.log10(np.clip(np.nan_to_num(error, nan=1.0, posinf=1.0), 1e-16, 1.0)), 0, 16)
+    digits = np.clip(-np.log10(np.clip(np.nan_to_num(error, nan=1.0, posinf=1.0), 1e-16, 1.0)), 0, 16) + 0.0
     with house_style():
         figure, ((axes,),) = _grid(
             [(5.0 * len(rows), 0.0)], 1, Margins(24.0, 4.0, 3.0, 11.0), min(WIDTH, 32.0 + 10.0 * len(columns))

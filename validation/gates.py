@@ -117,10 +117,10 @@ def judge(gate: Gate, value: Value) -> Verdict:
     return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)
 
 
-def rounded(value: float, digits: int = 4, noise: float = 1e-9) -> float:
-    """Round to four significant digits; below the noise level only the next power of ten is kept."""
+def rounded(value: float, digits: int = 4) -> float:
+    """Round well above the last bits: fewer digits for small values, below 1e-12 the next power of ten."""
     if value == 0 or not math.isfinite(value):
         return value if math.isfinite(value) else math.copysign(1.7976931348623157e308, value)
-    if abs(value) < noise:
+    if abs(value) < 1e-12:
         return math.copysign(10.0 ** math.ceil(math.log10(abs(value))), value)
-    return float(f"{value:.{digits - 1}e}")
+    return float(f"{value:.{(digits if abs(value) >= 1e-9 else 2) - 1}e}")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from validation.history import Array
 
 LONGEST = 400  # samples: enough for a pencil, small enough for its singular values
+HELD = 1e-6  # of the maximum
 
 
 @dataclass(frozen=True)
@@ -40,20 +41,23 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
 
     Notes
     -----
-    xi = -Re(ln z) / |ln z| and w' dt = |ln z| for a complex pair; real poles carry no xi and are left out.
+    xi = -Re(ln z) / |ln z| and w' dt = |ln z| for a complex pair; real poles carry no xi and are left out. A signal
+    that the poles do not give back to `HELD` of its maximum holds more modes than can be told apart: no poles.
     """
     thin = max(1, len(signal) // LONGEST)
     y = signal[: LONGEST * thin : thin]
     if len(y) < 6 or not np.any(y):
         return []
     size = float(np.max(np.abs(y)))
-    z, c = _fit(y / size, order, tolerance)
+    z, c, misfit = _fit(y / size, order, tolerance)
+    if misfit > HELD:
+        return []
     found = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-9]
     return sorted(found, key=lambda pole: -pole.amplitude)
 
 
-def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return the powers z and their coefficients c."""
+def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:
+    """Return the powers z, their coefficients c and the largest misfit."""
     half = len(y) // 2
     hankel = np.lib.stride_tricks.sliding_window_view(y, half)
     u, s, _ = np.linalg.svd(hankel, full_matrices=False)
@@ -62,7 +66,8 @@ def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.comp
     z = np.linalg.eigvals(np.linalg.lstsq(u[:-1], u[1:], rcond=None)[0]).astype(complex)
     z = z[(np.abs(z) < 1.5) & (np.abs(z) > 1e-6)]
     powers = z[None, :] ** np.arange(len(y))[:, None]
-    return z, np.linalg.lstsq(powers, y.astype(complex), rcond=None)[0]
+    c = np.linalg.lstsq(powers, y.astype(complex), rcond=None)[0]
+    return z, c, float(np.max(np.abs(powers @ c - y)))
 
 
 def _pole(z: complex, c: complex, step: float) -> Pole:

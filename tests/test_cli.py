@@ -1,0 +1,109 @@
+"""The command line as a user types it: exit status, one line for bad input, nothing half-written."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE, cli
+
+from validation.history import read_csv
+
+
+def test_solve_writes_a_history(scene_file: Path, tmp_path: Path) -> None:
+    done = cli("solve", scene_file, "--solver", "dda", "--csv", tmp_path / "h.csv")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "h.csv").read_text().startswith("time,displacement,contact_pressure\n0.002,")
+    assert len(read_csv(tmp_path / "h.csv").time) == 50
+
+
+def test_fields_are_written_for_paraview(scene_file: Path, tmp_path: Path) -> None:
+    done = cli("solve", scene_file, "--solver", "fem", "--fields", tmp_path / "f.vtu")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "f.vtu").stat().st_size > 1000
+
+
+def test_a_run_prints_one_table_and_keeps_everything(scene_file: Path, tmp_path: Path) -> None:
+    gate = '\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [{}, {}]\nreason = "model form"\n'
+    scene_file.write_text(SCENE + gate.format(0.03, 0.07))
+    passed = cli("run", scene_file, "--results", tmp_path / "r")
+    assert passed.returncode == 0, passed.stderr
+    assert all(word in passed.stdout for word in ("scene", "pair", "metric", "value", "band", "verdict", "seconds"))
+    assert "1 PASS, 0 FAIL, 0 NOT RUN" in passed.stdout
+    scene_file.write_text(SCENE + gate.format(0.0, 0.001))
+    failed = cli("run", scene_file, "--results", tmp_path / "r")
+    assert failed.returncode == 1
+    assert "model form" in failed.stdout
+    verdict = json.loads((tmp_path / "r" / "verdicts.json").read_text())[0]
+    assert (verdict["id"], verdict["verdict"]) == ("small:dda-bar:displacement.l2", "FAIL")
+
+
+def test_full_gives_the_same_numbers(scene_file: Path, tmp_path: Path) -> None:
+    for name, options in (("a", []), ("b", ["--full"])):
+        assert cli("solve", scene_file, "--solver", "fem", "--csv", tmp_path / name, *options).returncode == 0
+    a, b = (read_csv(tmp_path / name) for name in "ab")
+    for column in ("displacement", "contact_pressure"):
+        error = np.max(np.abs(a.columns[column] - b.columns[column]))
+        assert 0 < error <= 1e-11 * np.max(np.abs(b.columns[column]))
+
+
+BAD = [
+    (["run", "nonsense"], "nonsense: must be a study"),
+    (["run", "missing.toml"], "missing.toml: no such scene file; built-in scenes: "),
+    (["run", "core", "--set", "time.step=1"], "--set: goes with a scene, got the study 'core'"),
+    (["run", "figure-8", "--set", "time.step"], "--set: must be key=value, got 'time.step'"),
+    (["run", "figure-8", "--set", "time.stop=1"], "figure-8: time.stop: unknown key, got 1"),
+    (["solve", "figure-8"], "figure-8: sweep: one value must be picked for time.alpha, time.delta"),
+    (["solve", "corner-springs", "--set", "fem.elements=4", "--solver", "sofa"], "solver: must be one of dda, "),
+    (
+        ["solve", "corner-springs", "--set", "fem.elements=4", "--csv", "no/where.csv"],
+        "no/where.csv: cannot be written",
+    ),
+    (
+        ["solve", "corner-springs", "--set", "fem.elements=4", "--fields", "f.png"],
+        "--fields: must end in .xdmf or .vtu",
+    ),
+    (["solve", "corner-springs", "--set", "fem.elements=4", "--fields", "f.vtu"], "--fields: needs the solver fem"),
+    (
+        ["solve", "corner-springs", "--set", "fem.elements=4", "--set", 'run.columns=["heat"]'],
+        "run.columns: must be among",
+    ),
+    (["solve", "corner-springs", "--set", "fem.elements=4", "--solver", "bar"], "foundation"),
+    (["report", "--results", "nowhere"], "nowhere"),
+    (["figures", "core", "--results", "nowhere"], "nowhere"),
+    (["frob"], "No such command 'frob'"),
+    (["solve"], "Missing argument"),
+]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"), BAD, ids=lambda value: " ".join(value) if isinstance(value, list) else ""
+)
+def test_bad_input_is_one_line_and_status_two(arguments: list[str], words: str, tmp_path: Path) -> None:
+    done = cli(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene_file: Path) -> None:
+    explicit = ["solve", scene_file, "--set", "time.alpha=0", "--set", "time.delta=0.5"]
+    done = cli(*explicit)
+    assert done.returncode == 2
+    assert "time.step: must not exceed 0.0015" in done.stderr
+
+
+def test_overflow_is_a_numerical_failure(scene_file: Path) -> None:
+    sets = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    done = cli("solve", scene_file, *(part for text in sets for part in ("--set", text)))
+    assert done.returncode == 3
+    assert "overflow: The numbers left the range of double precision." in done.stdout
+
+
+def test_help_has_an_example_everywhere() -> None:
+    for command in ("", "list", "run", "solve", "report", "figures"):
+        done = cli(*command.split(), "--help")
+        assert done.returncode == 0
+        assert "Example: " in done.stdout

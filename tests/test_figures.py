@@ -1,0 +1,182 @@
+"""Figures: nothing is lost by thinning, names never overlap, the same data give the same bytes."""
+
+from __future__ import annotations
+
+import io
+import itertools
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from validation import chapters_curves as curves
+from validation import figures
+from validation.history import History
+
+SOLVERS = ("dda", "dda-textbook", "fem", "bar", "continuum", "somebody's own")
+
+
+def histories(solvers=SOLVERS, steps=300, static=-0.01, blown=None):
+    time = 0.001 * np.arange(1, steps + 1)
+    found = {}
+    for i, solver in enumerate(solvers):
+        shape = 1 - np.exp(-8 * time) * np.cos((300 + 5 * i) * time)
+        found[solver] = History(time, {"displacement": static * shape, "contact_pressure": 5e6 * shape})
+    if blown:
+        found[blown] = History(time, {"displacement": 1e300 * np.cos(time), "contact_pressure": 1e300 * np.cos(time)})
+    return found
+
+
+def panel(title="dt = 0.001 s", reference="bar", **kwargs):
+    return curves.Panel(title, histories(**kwargs), -0.01, reference)
+
+
+def texts(axes, renderer):
+    """Return the boxes of the names beside the lines."""
+    return [t.get_window_extent(renderer) for t in axes.texts]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "gap", "expected"),
+    [
+        ([0.2, 0.8], 0.1, [0.2, 0.8]),  # apart already: nothing moves
+        ([0.5, 0.5], 0.1, [0.45, 0.55]),  # equal: both move by half the gap
+        ([0.9, 0.5, 0.51], 0.2, [0.9, 0.405, 0.605]),  # order kept, only the close pair moves
+        ([0.0, 0.0, 0.0], 0.1, [0.0, 0.1, 0.2]),  # the lower limit holds
+        ([1.0, 1.0, 1.0], 0.1, [0.8, 0.9, 1.0]),  # the upper limit holds
+    ],
+)
+def test_nudge_moves_as_little_as_possible(wanted, gap, expected):
+    assert curves.nudge(wanted, gap, 0.0, 1.0) == pytest.approx(expected, abs=1e-12)  # rounding
+
+
+def test_nudge_keeps_gap_order_and_limits():
+    random = np.random.default_rng(3)
+    for n in range(1, 9):
+        wanted = random.uniform(0, 1, n)
+        places = curves.nudge(wanted, 0.1, 0.0, 1.0)
+        order = np.argsort(wanted)
+        assert np.all(np.diff(places[order]) >= 0.1 - 1e-12)  # rounding
+        assert places.min() >= 0
+        assert places.max() <= 1 + 1e-12
+
+
+def test_thin_keeps_ends_and_every_spike():
+    x = np.arange(20_000.0)
+    y = np.sin(x / 50)
+    y[[3, 7777, 19_990]] = 9.0, -9.0, 8.0
+    tx, ty = curves.thin(x, y, 800)
+    assert tx.size <= 802
+    assert {3.0, 7777.0, 19_990.0, 0.0, 19_999.0} <= set(tx)
+    assert np.all(np.diff(tx) > 0)
+    assert np.array_equal(ty, y[tx.astype(int)])
+
+
+def test_thin_leaves_a_short_curve_alone():
+    x = np.arange(100.0)
+    assert curves.thin(x, x, 100)[0] is x
+
+
+def test_envelope_is_the_largest_magnitude_of_each_part():
+    x = np.arange(8.0)
+    middles, largest = curves.envelope(x, np.array([1.0, -3.0, 0.0, 2.0, -5.0, 4.0, 0.5, 0.0]), bins=4)
+    assert middles.tolist() == [0.5, 2.5, 4.5, 6.5]
+    assert largest.tolist() == [3.0, 2.0, 5.0, 0.5]
+
+
+def test_differences_are_scaled_by_the_static_value():
+    time = np.arange(1.0, 5.0)
+    first = History(time, {"displacement": np.array([0.0, -0.5, -1.0, -2.0])})
+    second = History(time, {"displacement": np.array([0.0, -0.5, -1.5, -2.5])})
+    found = curves.differences(curves.Panel("", {"dda": first, "bar": second}, -2.0, "bar"), "displacement")
+    assert list(found) == ["dda"]
+    assert found["dda"][1].tolist() == [0.0, 0.0, 0.25, 0.25]
+
+
+def test_a_run_that_blew_up_neither_warns_nor_sets_the_scale():
+    some = [panel(blown="dda-textbook")]
+    low, high = curves.common_range(some, "displacement")
+    assert low == min(h.displacement.min() for h in histories().values())
+    assert high == pytest.approx(0.06)  # six static values cut the one that blew up
+    figures.history_figure(some, "displacement").savefig(io.BytesIO(), format="svg")
+
+
+@pytest.mark.parametrize(
+    ("largest", "unit", "expected"),
+    [
+        (0.02, "m", (1e3, "mm")),
+        (5e6, "Pa", (1e-6, "MPa")),
+        (999.0, "Pa", (1.0, "Pa")),
+        (3e-6, "m", (1e6, "µm")),
+        (0.0, "m", (1.0, "m")),
+        (5e6, "", (1.0, "")),
+    ],
+)
+def test_engineering_prefix(largest, unit, expected):
+    factor, name = curves.engineering(largest, unit)
+    assert (factor, name) == (pytest.approx(expected[0]), expected[1])
+
+
+def test_each_solver_has_one_style_and_no_two_share_it():
+    styles = [curves.style_of(name) for name in SOLVERS]
+    assert len({(s.color, s.dash) for s in styles}) == len(SOLVERS)
+    assert curves.style_of("abaqus") == curves.LineStyle("#cc79a7", (1.5, 1.0), 1.0, 2)  # depends on the name alone
+
+
+@pytest.mark.parametrize("count", [1, 3, 5, 7])
+def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
+    figure = figures.history_figure([panel(f"dt = {i}") for i in range(count)], "contact_pressure")
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    labelled = [axes for axes in figure.axes if axes.texts]
+    assert labelled
+    for axes in labelled:
+        boxes = texts(axes, renderer)
+        assert len(boxes) in (len(SOLVERS), len(SOLVERS) - 1)  # all, and all but the reference
+        assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+        assert all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 for b in boxes)
+
+
+def test_axes_carry_units_and_share_their_limits():
+    figure = figures.history_figure([panel(static=-0.01), panel(static=-0.02)], "displacement")
+    top, bottom = figure.axes[:2], figure.axes[2:]
+    assert top[0].get_ylabel() == "Displacement [mm]"
+    assert top[0].get_ylim() == top[1].get_ylim()
+    assert top[0].get_ylim()[0] < -20  # mm: the deeper history fits
+    assert [axes.get_xlabel() for axes in bottom] == ["Time [s]", "Time [s]"]
+
+
+def test_the_same_data_give_the_same_bytes(tmp_path):
+    first, second = (
+        figures.save(figures.history_figure([panel()], "displacement"), tmp_path / f"{i}.svg") for i in "ab"
+    )
+    assert first.read_bytes() == second.read_bytes()
+    assert b"<text" not in first.read_bytes()  # letters are paths: no font is needed to show them
+
+
+def test_ledger_figure_shows_each_number_once():
+    lines = [
+        figures.LedgerLine("one", {"code": (1e-13, 2e-13), "mesh": (None, None)}),
+        figures.LedgerLine("two", {"code": (1e-12, None), "mesh": (1e-6, 1e-5)}),
+    ]
+    figure = figures.ledger_figure(lines)
+    assert [len(axes.lines) for axes in figure.axes] == [3, 2]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]
+
+
+@pytest.mark.parametrize("order", [2.0, 4.0, -1.0])
+def test_error_figure_names_the_order_with_its_sign(order):
+    h = np.array([0.5, 0.25, 0.125, 0.0625])
+    figure = figures.error_figure([figures.Line("fem", h, 3 * h**order)], "h [m]", "error")
+    assert [t.get_text() for t in figure.axes[0].texts] == [f"fem (order {order:.2f})"]
+
+
+def test_line_figure_names_lines_and_levels():
+    n = np.array([4.0, 8.0, 16.0])
+    figure = figures.line_figure([figures.Line("fem", n, -n, ": steep")], "n", "v [mm]", {"dda": -1.0}, log2_x=True)
+    assert {t.get_text() for t in figure.axes[0].texts} == {"fem: steep", "dda"}
+
+
+def test_digits_figure_counts_digits():
+    error = np.array([[1e-3, 0.0], [np.nan, 2.0]])
+    figure = figures.digits_figure(error, ["a", "b"], ["c", "d"], "dt [s]", "p/E")
+    assert [t.get_text() for t in figure.axes[0].texts] == ["3", "16", "0", "0"]
