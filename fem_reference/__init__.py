@@ -13,8 +13,8 @@ from fem_reference.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
     from fem_reference.bar import Bar, applicable
-    from fem_reference.model import assemble
     from fem_reference.eigen import highest_frequency, modes
+    from fem_reference.model import assemble
     from fem_reference.solver import solve, static
 
 _HOMES = {

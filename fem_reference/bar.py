@@ -172,7 +172,7 @@ class Bar:
         if scheme.gg == 0:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         began = time.perf_counter()
-        s = scheme.step * np.arange(1, steps + 1) / self.travel
+        s: Array = scheme.step * np.arange(1.0, steps + 1) / self.travel
         rate = -float(np.log(scheme.gg)) / scheme.step * self.travel
         history = continuum.histories(s, self.kappa, rate, tuple(columns))
         return self._result(scheme.step, history, 0, tuple(columns), None, began)
@@ -223,9 +223,10 @@ def wave_numbers(kappa: float, count: int) -> Array:
         proposed = theta - miss / slope
         inside = (proposed > low) & (proposed < high)
         following = np.where(inside, proposed, (low + high) / 2)
-        if np.all(np.abs(following - theta) <= 2 * np.finfo(float).eps * theta):
-            break
+        settled = np.all(np.abs(following - theta) <= 2 * np.finfo(float).eps * theta)
         theta = following
+        if settled:
+            break
     roots: Array = turn + theta
     return roots
 

@@ -97,8 +97,9 @@ def roots(omega: float, scheme: Scheme) -> Complex:
     """The two roots of one mode, shape (2,)."""
     s = spectrum(np.array([omega]), scheme)
     if s.discriminant[0] < 0:
-        upper = np.exp(_log_pair(s, scheme, h_of(np.array([omega]), scheme))[0])
-        return np.array([upper, np.conj(upper)])
+        log, sign = _pair(s, scheme, h_of(np.array([omega]), scheme))
+        root = sign * np.exp(log)
+        return np.concatenate([root, np.conj(root)])
     near, far = _distances(s)
     return np.array([1 - near[0], 1 - far[0]], complex)
 
@@ -112,23 +113,34 @@ def _distances(s: Spectrum) -> tuple[Array, Array]:
     return near, far
 
 
-def _log_pair(s: Spectrum, scheme: Scheme, h: Array) -> Complex:
-    """Logarithm of the root in the upper half plane."""
+class _Power(NamedTuple):
+    """Roots in the form sign * exp(log), so that a root near the negative axis keeps its distance from it."""
+
+    log: Array | Complex
+    """Logarithm of sign times the root."""
+    sign: Array
+    """1 or -1."""
+
+    def minus_one(self, k: NDArray[np.int64]) -> Array | Complex:
+        """Power k less one, without cancellation for roots near one."""
+        alternating = self.sign**k
+        result: Array | Complex = np.where(alternating > 0, np.expm1(k * self.log), -np.exp(k * self.log) - 1)
+        return result
+
+
+def _pair(s: Spectrum, scheme: Scheme, h: Array) -> _Power:
+    """One root of each complex pair: the upper one where the trace is positive, else the lower one."""
     radius = np.log1p((scheme.gg - 1) + scheme.gg * (0.5 - scheme.delta) * h) / 2
-    angle: Array = np.arctan2(np.sqrt(-s.discriminant), s.trace)
-    result: Complex = radius + 1j * angle
-    return result
+    angle = np.arctan2(np.sqrt(-s.discriminant), np.abs(s.trace))
+    return _Power(radius + 1j * angle, np.where(s.trace < 0, -1.0, 1.0))
 
 
-def _log_one_minus(mu: Array) -> Complex:
-    """Complex logarithm of 1 - mu for any real mu; a zero root becomes the least positive power."""
+def _one_minus(mu: Array) -> _Power:
+    """The real root 1 - mu; a zero root becomes the least positive power."""
     tiny = np.log(1e-300)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        small = np.log1p(-np.minimum(mu, 0.5))
-        modulus = np.where(mu < 0.5, small, np.log(np.abs(1 - mu)))
-    angle = np.where(mu > 1, np.pi, 0.0)
-    result: Complex = np.maximum(np.nan_to_num(modulus, nan=tiny, neginf=tiny), tiny) + 1j * angle
-    return result
+    with np.errstate(divide="ignore"):
+        modulus = np.where(mu < 0.5, np.log1p(-np.minimum(mu, 0.5)), np.log(np.abs(1 - mu)))
+    return _Power(np.maximum(modulus, tiny), np.where(mu > 1, -1.0, 1.0))
 
 
 def first_steps(omega: Array, scheme: Scheme) -> tuple[Array, Array]:
@@ -168,7 +180,8 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
         Shape (quantities, steps).
     """
     # On a soft spring the lowest mode barely moves and is all that moves: 1 - x would cancel there.
-    total = weights[:, :1] * _lowest(omega[:1], scheme, steps) + weights[:, 1:].sum(axis=1, keepdims=True)
+    slowest = _lowest(omega[:1], scheme, steps)
+    total: Array = weights[:, :1] * slowest + weights[:, 1:].sum(axis=1, keepdims=True)
     for begin in range(1, len(omega), CHUNK):
         part = slice(begin, begin + CHUNK)
         used = np.any(weights[:, part] != 0, axis=0)
@@ -180,18 +193,17 @@ def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
     """1 - x of one mode at steps 1 to `steps`, keeping the digits of small values."""
     s, (y1, y2) = spectrum(omega, scheme), first_steps(omega, scheme)
     x1, rise, k = 1 - y1, y1 - y2, np.arange(steps)
+    if s.trace[0] < 0 or abs(s.discriminant[0]) < (CLOSE * s.trace[0]) ** 2:
+        return np.asarray(1 - _chunk(omega, np.ones((1, 1)), scheme, steps)[0], dtype=np.float64)
     gap = np.sqrt(np.abs(s.discriminant))
     if s.discriminant[0] < 0:
         amplitude = x1 - 2j * (rise + s.mu / 2 * x1) / gap
-        departure: Array = y1 - (amplitude * np.expm1(k * _log_pair(s, scheme, h_of(omega, scheme)))).real
-        return departure
-    if gap[0] < CLOSE * abs(s.trace[0]):
-        return 1 - _chunk(omega, np.ones((1, 1)), scheme, steps)[0]
+        turned = amplitude * _pair(s, scheme, h_of(omega, scheme)).minus_one(k)
+        return np.asarray(y1 - turned.real, dtype=np.float64)
     near, far = _distances(s)
-    slow = (rise + far * x1) / gap * np.expm1(k * _log_one_minus(near))
-    fast = (rise + near * x1) / gap * np.expm1(k * _log_one_minus(far))
-    decay: Array = y1 - (slow - fast).real
-    return decay
+    slow = (rise + far * x1) / gap * _one_minus(near).minus_one(k)
+    fast = (rise + near * x1) / gap * _one_minus(far).minus_one(k)
+    return np.asarray(y1 - (slow - fast).real, dtype=np.float64)
 
 
 def _chunk(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
@@ -211,16 +223,17 @@ def _chunk(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
 def _turning(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, scheme: Scheme, steps: int) -> Array:
     """Complex pairs: r^k (x1 cos k phi + (x2 - x1 r cos phi) sin k phi / (r sin phi))."""
     sine = np.sqrt(-s.discriminant) / 2
-    amplitude = x1 - 1j * ((rise + s.mu / 2 * x1) / sine)
-    return _powers(_log_pair(s, scheme, h), weights * amplitude, steps)
+    root = _pair(s, scheme, h)
+    amplitude = x1 - 1j * root.sign * ((rise + s.mu / 2 * x1) / sine)
+    return _powers(root, weights * amplitude, steps)
 
 
 def _decaying(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, scheme: Scheme, steps: int) -> Array:
     """Two distinct real roots: ((x2 - l2 x1) l1^k - (x2 - l1 x1) l2^k) / (l1 - l2)."""
     near, far = _distances(s)
     gap = np.sqrt(s.discriminant)
-    total = _powers(_log_one_minus(near), weights * ((rise + far * x1) / gap), steps)
-    return total - _powers(_log_one_minus(far), weights * ((rise + near * x1) / gap), steps)
+    total = _powers(_one_minus(near), weights * ((rise + far * x1) / gap), steps)
+    return total - _powers(_one_minus(far), weights * ((rise + near * x1) / gap), steps)
 
 
 def _confluent(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, scheme: Scheme, steps: int) -> Array:
@@ -230,25 +243,29 @@ def _confluent(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, sc
     gap = np.where(s.trace >= 0, 1.0, -1.0) * np.sqrt(s.discriminant)
     larger, k = 1 - distance, np.arange(steps)
     total = np.zeros((len(weights), steps))
-    for i, log in enumerate(_log_one_minus(distance)):
+    log, sign = _one_minus(distance)
+    for i in range(len(log)):
         quotient = k / larger[i]
         if gap[i] != 0:
             quotient = -np.expm1(k * np.log1p(-gap[i] / larger[i])) / gap[i]
-        x = np.exp(k * log).real * (x1[i] + (rise[i] + distance[i] * x1[i]) * quotient)
+        x = sign[i] ** k * np.exp(k * log[i]) * (x1[i] + (rise[i] + distance[i] * x1[i]) * quotient)
         total += weights[:, [i]] * x
     return total
 
 
-def _powers(log: Complex, weights: Complex, steps: int) -> Array:
-    """Real part of the sum of weights * exp(k log) for k = 0 to steps - 1, as one matrix product.
+def _powers(root: _Power, weights: Array | Complex, steps: int) -> Array:
+    """Real part of the sum of weights * root^k for k = 0 to steps - 1, as one matrix product.
 
     With k = j B + i the powers factor into those of i and those of j B.
     """
     block = int(np.ceil(np.sqrt(steps)))
-    inner = np.exp(np.arange(block)[:, None] * log)
-    outer = np.exp(log[:, None] * (block * np.arange(-(-steps // block))))
+    i, j = np.arange(block)[:, None], block * np.arange(-(-steps // block))
+    inner = root.sign**i * np.exp(i * root.log)
+    outer = root.sign[:, None] ** j * np.exp(root.log[:, None] * j)
     rows = []
     for w in weights:
-        product = (inner.real @ (w[:, None] * outer).real) - (inner.imag @ (w[:, None] * outer).imag)
+        product = inner.real @ (w[:, None] * outer).real
+        if np.iscomplexobj(inner):
+            product -= inner.imag @ (w[:, None] * outer).imag
         rows.append(product.T.ravel()[:steps])
     return np.array(rows).reshape(len(weights), steps)

@@ -38,6 +38,8 @@ NODES = 24
 """Gauss points and Legendre coefficients of a panel."""
 RESOLVED = 1e-12
 """Size of the last Legendre coefficients over the largest history at which a panel is resolved."""
+CHUNK = 2**20
+"""Entries of a work array."""
 LONGEST = 700.0
 """Travel times up to which the waves are summed: then exp(-x / 2) underflows where L_j still matters."""
 
@@ -94,50 +96,63 @@ def _parts(column: str, kappa: float) -> tuple[Waves, float, float, float]:
 
 def pressure(times: Array, kappa: float) -> Array:
     """Contact pressure over q of the undamped bar."""
-    total = np.zeros_like(times)
-    for j in range(_count(times, 1.0)):
-        late = times > 2 * j + 1
-        total[late] += _reflections(times[late] - (2 * j + 1), kappa, j).force
-    return total
+    return _in_chunks(_pressure, times, kappa, 1.0)
 
 
 def displacement(times: Array, kappa: float) -> Array:
     """Downward displacement of the middle times E / (q h) of the undamped bar."""
-    total = np.zeros_like(times)
-    for j in range(_count(times, 0.5)):
-        late = times > 2 * j + 0.5
-        t = times[late] - (2 * j + 0.5)
-        # The wave and its reflection nearly cancel: N_(j+1) = -N_j + I_j / kappa is inserted.
-        down, up = _reflections(t, kappa, j), _reflections(np.maximum(t - 1, 0.0), kappa, j)
-        total[late] += down.step + up.force / kappa
+    return _in_chunks(_displacement, times, kappa, 0.5)
+
+
+def _in_chunks(waves: Callable[[Array, float], Array], times: Array, kappa: float, first: float) -> Array:
+    """Sum the waves that arrive at `first` and every round trip later, in chunks of bounded memory."""
+    trips = int(max(0.0, np.ceil((times.max(initial=0.0) - first) / 2)))
+    arrivals = first + 2 * np.arange(trips)
+    parts = np.array_split(times, 1 + len(times) * trips // CHUNK)
+    return np.concatenate([waves(np.maximum(part[:, None] - arrivals, 0.0), kappa) for part in parts])
+
+
+def _pressure(t: Array, kappa: float) -> Array:
+    """Sum of I_j(t_j), the recurrence run for all waves at once; `t` has shape (times, waves)."""
+    total = np.zeros(len(t))
+    laguerre = _Laguerre(2 * kappa * t)
+    force = -2 * np.expm1(-kappa * t)
+    for _ in range(t.shape[1]):
+        total += force[:, 0]
+        force = 2 * laguerre.advance() - force[:, 1:]
     return total
 
 
-def _count(times: Array, first: float) -> int:
-    """Number of round trips that have arrived."""
-    return int(max(0.0, np.ceil((times.max(initial=0.0) - first) / 2)))
+def _displacement(t: Array, kappa: float) -> Array:
+    """Sum of N_j(t_j) + N_(j+1)(t_j - 1), with N_(j+1) = -N_j + I_j / kappa inserted.
+
+    The wave and its reflection nearly cancel: N_j(t) - N_j(t - 1) has a recurrence of its own.
+    """
+    total = np.zeros(len(t))
+    both = np.array([t, np.maximum(t - 1, 0.0)])
+    laguerre = _Laguerre(2 * kappa * both)
+    force = -2 * np.expm1(-kappa * both)
+    step = np.minimum(t, 1.0)
+    for _ in range(t.shape[1]):
+        total += step[:, 0] + force[1, :, 0] / kappa
+        step = ((force[0] - force[1]) / kappa - step)[:, 1:]
+        force = 2 * laguerre.advance() - force[..., 1:]
+    return total
 
 
-class Reflection(NamedTuple):
-    """What a wave brings after it has met the spring j times."""
+class _Laguerre:
+    """l_j(x) = exp(-x / 2) L_j(x) for the waves that go on beyond reflection j, the last axis of x."""
 
-    force: Array
-    """I_j, its pressure on the spring."""
-    step: Array
-    """N_j(t) - N_j(t - 1), its displacement less that of one travel time before."""
+    def __init__(self, x: Array) -> None:
+        self._x, self._j = x, 0
+        self._before, self._now = np.zeros_like(x), np.exp(-x / 2)
 
-
-def _reflections(t: Array, kappa: float, j: int) -> Reflection:
-    """Pressure and displacement at times since the wave's arrival."""
-    x = 2 * kappa * np.array([t, np.maximum(t - 1, 0.0)])
-    before, laguerre = np.zeros_like(x), np.exp(-x / 2)
-    force, step = -2 * np.expm1(-x / 2), np.minimum(t, 1.0)
-    for i in range(j):
-        following = ((2 * i + 1 - x) * laguerre - i * before) / (i + 1)
-        step = -step + (force[0] - force[1]) / kappa
-        force = -force + 2 * (laguerre - following)
-        before, laguerre = laguerre, following
-    return Reflection(force[0], step)
+    def advance(self) -> Array:
+        """Drop the first wave, raise j by one and return l_j - l_(j+1)."""
+        j, x, now, before = self._j, self._x[..., 1:], self._now[..., 1:], self._before[..., 1:]
+        following = ((2 * j + 1 - x) * now - j * before) / (j + 1)
+        self._j, self._x, self._before, self._now = j + 1, x, now, following
+        return now - following
 
 
 def damped(times: Array, kappa: float, a: float, waves: Waves, first: float, gap: float) -> Array:
@@ -175,7 +190,7 @@ def damped(times: Array, kappa: float, a: float, waves: Waves, first: float, gap
 
 
 def kernel(t: Array, u: Array, a: float) -> Array:
-    """a exp(-a t) (I0(a z) + t I1(a z) / z) with z = sqrt(t^2 - u^2)."""
+    """Kernel a exp(-a t) (I0(a z) + t I1(a z) / z) with z = sqrt(t^2 - u^2)."""
     z = np.sqrt(np.maximum((t - u) * (t + u), 0.0))
     ratio = np.divide(i1e(a * z), z, out=np.full_like(z, a / 2), where=z > 0)
     # i0e and i1e carry exp(-a z), and t - z = u^2 / (t + z).
@@ -186,22 +201,21 @@ def kernel(t: Array, u: Array, a: float) -> Array:
 def _panels(waves: Waves, kappa: float, arrivals: Array, end: float, widest: float, scale: float) -> list[Panel]:
     """Panels from the first arrival to the end, each resolved or too narrow to matter."""
     nodes, weights = legendre.leggauss(NODES)
-    to_series = (legendre.legvander(nodes, NODES - 1) * weights[:, None]).T * (np.arange(NODES)[:, None] + 0.5)
-    waiting = list(zip(arrivals, np.append(arrivals[1:], end), strict=True))
+    to_series = (legendre.legvander(nodes, NODES - 1) * weights[:, None]) * (np.arange(NODES) + 0.5)
+    left, right = arrivals, np.append(arrivals[1:], end)[: len(arrivals)]
     done = []
-    while waiting:
-        left, right = waiting.pop()
+    while len(left):
+        points = (left + right)[:, None] / 2 + nodes * (right - left)[:, None] / 2
+        series = waves(points.ravel(), kappa).reshape(points.shape) @ to_series
+        resolved = (np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * scale) & (right - left <= widest)
+        resolved |= right - left < RESOLVED * end
+        done += [Panel(*item) for item in zip(left[resolved], right[resolved], series[resolved], strict=True)]
+        left, right = left[~resolved], right[~resolved]
         middle = (left + right) / 2
-        series = to_series @ waves(middle + nodes * (right - left) / 2, kappa)
-        resolved = np.abs(series[-3:]).max() <= RESOLVED * scale and right - left <= widest
-        if resolved or right - left < RESOLVED * end:
-            done.append(Panel(left, right, series))
-        else:
-            waiting += [(left, middle), (middle, right)]
+        left, right = np.append(left, middle), np.append(middle, right)
     return done
 
 
 def _value(panel: Panel, t: Array) -> Array:
     local = (2 * t - panel.left - panel.right) / (panel.right - panel.left)
-    value: Array = legendre.legval(local, panel.series)
-    return value
+    return np.asarray(legendre.legval(local, panel.series), dtype=np.float64)

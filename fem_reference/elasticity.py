@@ -27,19 +27,19 @@ ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4
 """Scalar element by (corners of a cell, degree)."""
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm
 def mass_form(u, v, w):  # type: ignore[no-untyped-def]
     """(u, v)."""
     return dot(u, v)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm
 def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
     """(div u, div v)."""
     return div(u) * div(v)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm
 def strain_form(u, v, w):  # type: ignore[no-untyped-def]
     """2 (eps(u), eps(v))."""
     return 2 * ddot(sym_grad(u), sym_grad(v))
@@ -89,10 +89,7 @@ def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_a
         Cell of each point, shape (count,).
     """
     phi = np.array(
-        [
-            basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0]
-            for k in range(basis.Nbfun)
-        ]
+        [basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0] for k in range(basis.Nbfun)]
     )
     rows = np.tile(np.arange(len(cells)), basis.Nbfun)
     columns = basis.element_dofs[:, cells].ravel()

@@ -163,12 +163,12 @@ def column(problem: Problem) -> Model:
     return Model(M, K, np.concatenate([none, -width * top]), observers, places, "column", ("one column of elements",))
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm
 def _line_mass(u, v, w):  # type: ignore[no-untyped-def]
     return u * v
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm
 def _line_stiffness(u, v, w):  # type: ignore[no-untyped-def]
     return u.grad[0] * v.grad[0]
 

@@ -127,7 +127,8 @@ class Problem:
     def outline(self) -> Array:
         """Corners from the start of the base on, relative to that point, shape (count, 2) [m]."""
         corners = np.roll(np.asarray(self.vertices, float), -self.base, axis=0)
-        return corners - corners[0]
+        relative: Array = corners - corners[0]
+        return relative
 
     @cached_property
     def base_length(self) -> float:
@@ -143,7 +144,8 @@ class Problem:
     @cached_property
     def normal(self) -> Array:
         """Unit vector normal to the base, into the block, shape (2,)."""
-        return np.array([-self.tangent[1], self.tangent[0]])
+        n: Array = np.array([-self.tangent[1], self.tangent[0]])
+        return n
 
     @cached_property
     def _cross(self) -> tuple[Array, Array]:

@@ -22,7 +22,7 @@ def solve(
     full: bool = False,
     fields: str | Path | None = None,
 ) -> Result:
-    """Integrate the block from rest under the step of pressure.
+    """Integrate the block from rest under the step of pressure; row 0 of the result is step 1.
 
     Parameters
     ----------
@@ -36,11 +36,6 @@ def solve(
         Solve the whole block, without the exact savings.
     fields
         Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
-
-    Returns
-    -------
-    Result
-        Row 0 is step 1.
 
     Raises
     ------
@@ -56,7 +51,7 @@ def solve(
     history = problem.pressure * run(stepper, model, steps, tuple(columns), writer)
     ended = time.perf_counter()
     return Result(
-        time=scheme.step * np.arange(1, steps + 1),
+        time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
         columns=dict(zip(columns, history, strict=True)),
         unknowns=len(model.F),
         nonzeros=stepper.work.nonzeros,

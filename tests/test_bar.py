@@ -8,6 +8,7 @@ import pytest
 
 from fem_reference.bar import Bar, applicable, cut_off, shares, wave_numbers
 from fem_reference.bar_scheme import applicable as scheme_applicable
+from fem_reference.bar_scheme import first_steps, roots, weighted_response
 from fem_reference.problem import Problem, Scheme
 
 PAPER = Bar(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6)
@@ -34,9 +35,9 @@ def newmark_by_transform(bar, scheme, steps):
     kappa = bar.base_stiffness * bar.height / (bar.young * bar.width)
     # Over exp(gamma), which overflows for small steps.
     gamma = np.where(gamma.real < 0, -gamma, gamma)
-    e = np.exp(-gamma)
+    e, root = np.exp(-gamma), np.exp(-gamma / 2)
     below = gamma * (1 - e * e) / 2 + kappa * (1 + e * e) / 2
-    middle = (np.sqrt(e) + e * np.sqrt(e)) / 2 + kappa / gamma * (np.sqrt(e) - e * np.sqrt(e)) / 2
+    middle = (root + e * root) / 2 + kappa / gamma * (root - e * root) / 2
     unit = -bar.pressure * bar.height / bar.young * G / below
     base = unit * e
     sequences = (unit * middle, -bar.base_stiffness / bar.width * base)
@@ -59,12 +60,10 @@ def newmark_by_transform(bar, scheme, steps):
 )
 def test_history_against_the_transform(bar, scheme):
     result = bar.solve(scheme, 150)
-    for column, expected in zip(result.columns.values(), newmark_by_transform(bar, scheme, 150), strict=True):
-        scale = np.abs(expected).max()
-        if scale > 1e-6 * bar.pressure or column is result.columns["displacement"]:
-            # Rounding of the transform: its terms are of the size of the static value.
-            floor = 1e-13 * max(abs(v) for v in bar.static().values()) if scale < 1e-3 else 0.0
-            assert np.abs(column - expected).max() <= 1e-9 * scale + floor
+    for (name, column), expected in zip(result.columns.items(), newmark_by_transform(bar, scheme, 150), strict=True):
+        # Before the wave has arrived there is only rounding of the static value to compare with.
+        scale = max(np.abs(expected).max(), 1e-3 * min(1.0, bar.kappa) * abs(bar.static()[name]))
+        assert np.abs(column - expected).max() <= 1e-9 * scale
     assert result.estimate <= 1e-10
 
 
@@ -79,7 +78,7 @@ def test_wave_numbers_to_the_last_digits(kappa):
                 (max(low, mp.mpf(10) ** -12), high),
                 solver="anderson",
             )
-            assert abs(b - root) <= 3e-16 * root
+            assert abs(b - root) <= 5e-16 * root
             # The base's amplitude cos b is what enters the pressure.
             share = 2 * kappa * mp.cos(root) / (root**2 * (1 + mp.sin(2 * root) / (2 * root)))
             assert shares("contact_pressure", wave_numbers(kappa, 6), kappa)[n] == pytest.approx(
@@ -98,7 +97,7 @@ def test_shares_sum_to_one(kappa, column):
 def test_first_frequencies(factor, frequency):
     bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * factor, 5e6)
     assert bar.frequencies(1)[0] == pytest.approx(frequency, abs=5e-4)
-    assert bar.modes(Scheme(0.5, 1.0, 1.0, 1e-3))[0].frequency == bar.frequencies(1)[0]
+    assert bar.modes(Scheme(0.5, 1.0, 1.0, 1e-3))[0].frequency == pytest.approx(bar.frequencies(1)[0], rel=1e-15)
 
 
 def test_mode_roots():
@@ -112,7 +111,7 @@ def test_mode_roots():
 
 @pytest.mark.parametrize("bar", [PAPER, OTHER])
 def test_static_value_is_reached(bar):
-    result = bar.solve(Scheme(0.5, 1.0, 1.0, 5e-3), 4000)
+    result = bar.solve(Scheme(0.5625, 1.0, 1.0, 5e-3), 4000)
     for name, column in result.columns.items():
         assert column[-1] == pytest.approx(bar.static()[name], rel=1e-11)
 
@@ -147,20 +146,32 @@ def test_continuum_waits_for_the_wave():
     assert np.all(early.columns["displacement"][:49] == 0) and early.columns["displacement"][60] < 0
 
 
-@pytest.mark.parametrize(
-    ("scheme", "order"), [(Scheme(0.25, 0.5, 1.0, 1.0, "consistent"), 2.0), (Scheme(0.5, 1.0, 1.0, 1.0), 1.0)]
-)
-def test_scheme_tends_to_the_damped_continuum_mode(scheme, order):
-    # One mode, so that no front spoils the order: frequency and decay of the roots against exp(-c t / 2).
+@pytest.mark.parametrize(("alpha", "delta", "order"), [(0.25, 0.5, 2.0), (0.5, 1.0, 1.0)])
+def test_roots_tend_to_the_damped_continuum_mode(alpha, delta, order):
+    # One mode, so that no front spoils the order: ln(lambda) / dt against -c / 2 + i w_d.
     w, c, steps = 300.0, 40.0, np.array([4e-5, 2e-5, 1e-5, 5e-6])
-    from fem_reference.bar_scheme import roots
-
     exact = -c / 2 + 1j * np.sqrt(w * w - c * c / 4)
     error = []
     for dt in steps:
-        upper = roots(w * dt, Scheme(scheme.alpha, scheme.delta, float(np.exp(-c * dt)), float(dt)))[0]
+        upper = roots(w * dt, Scheme(alpha, delta, float(np.exp(-c * dt)), float(dt)))[0]
         error.append(abs(np.log(upper) / dt - exact))
-    assert np.polyfit(np.log(steps), np.log(error), 1)[0] == pytest.approx(1.0 if c else order, abs=0.05)
+    assert np.polyfit(np.log(steps), np.log(error), 1)[0] == pytest.approx(order, abs=0.02)
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-5, 3e-3])
+def test_nearly_equal_roots(gap):
+    # (1/2, 1) has equal roots at Omega = 4; the recursion with trace and determinant is stable there.
+    scheme = Scheme(0.5, 1.0, 1.0, 1.0)
+    omega = np.array([1.0, 4.0 + gap, 4.0 - gap])
+    weights = np.eye(3)
+    found = weighted_response(omega, weights, scheme, 30)
+    for w, row in zip(omega, found, strict=True):
+        h = w * w / (1 + w * w / 2)
+        y1, y2 = first_steps(np.array([w]), scheme)
+        x = [1 - y1[0], 1 - y2[0]]
+        for _ in range(28):
+            x.append((2 - 1.5 * h) * x[-1] - (1 - h / 2) * x[-2])
+        assert np.abs(row - (1 - np.array(x))).max() <= 1e-13
 
 
 @pytest.mark.parametrize(
@@ -173,9 +184,9 @@ def test_unstable_schemes_are_refused(scheme):
 
 
 def test_continuum_without_rate_is_refused():
-    with pytest.raises(ValueError, match="^gg: "):
+    with pytest.raises(ValueError, match=r"^gg: "):
         PAPER.continuum(Scheme(0.5, 1.0, 0.0, 1e-3), 10)
-    with pytest.raises(ValueError, match="^steps: "):
+    with pytest.raises(ValueError, match=r"^steps: "):
         PAPER.continuum(Scheme(0.5, 1.0, 1.0, 1.0), 10)
 
 
@@ -187,7 +198,7 @@ def test_where_the_bar_is_exact():
     assert "Poisson" in applicable(Problem(square, 0, 2, 2700.0, 1e9, 0.1, *data[3:]))
     assert "foundation" in applicable(Problem(square, 0, 2, *data, foundation="corner"))
     assert "rectangle" in applicable(Problem(square, 0, 1, *data))
-    with pytest.raises(ValueError, match="^young: "):
+    with pytest.raises(ValueError, match=r"^young: "):
         Bar(2.0, 2.0, 2700.0, -1e9, 2e9, 5e6)
 
 

@@ -1,11 +1,14 @@
 """Histories, savings, modes and fields of the finite-element model."""
 
+from dataclasses import replace
+
 import meshio
 import numpy as np
 import pytest
-from test_fem_matrices import INCLINED, SQUARE, make
+from test_fem_matrices import INCLINED, make
 
 from fem_reference import Bar, Scheme, highest_frequency, modes, solve
+from fem_reference.model import build
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
@@ -47,9 +50,10 @@ def test_no_saving_where_none_is_exact(change):
 
 
 @pytest.mark.parametrize(("p", "dt"), [(1e9, 1e-3), (1e10, 2e-3), (1e11, 2e-3), (1e9, 1e-2)])
-def test_fine_mesh_is_the_bar(p, dt):
-    scheme = Scheme(0.5, 1.0, 1.0, dt)
-    problem = make(p=p, elements=32)
+@pytest.mark.parametrize(("gg", "start"), [(1.0, "zero"), (0.93, "consistent")])
+def test_fine_mesh_is_the_bar(p, dt, gg, start):
+    scheme = Scheme(0.5, 1.0, gg, dt, start)
+    problem = make(((0, 0), (1.7, 0), (1.7, 2), (0, 2)), p=p, elements=32)
     assert errors(solve(problem, scheme, 200), Bar.of(problem).solve(scheme, 200)) <= 1e-6
 
 
@@ -79,7 +83,8 @@ def test_first_axial_mode():
     lowest = sorted(mode.frequency for mode in two)[:2]
     assert lowest[0] == pytest.approx(137.4, abs=0.1)
     assert two[0].frequency == lowest[1] == pytest.approx(327.682, abs=1e-3)
-    assert sum(mode.share for mode in two) == pytest.approx(1.0, abs=0.05)
+    assert two[0].share == pytest.approx(0.8286, abs=1e-4)
+    assert 0.9 < sum(mode.share for mode in two) < 1
 
 
 def test_sparse_and_dense_modes_agree(monkeypatch):
@@ -111,17 +116,15 @@ def test_central_differences_are_stable_up_to_the_highest_frequency():
     limit = 2 / highest_frequency(problem)
     inside = solve(problem, Scheme(0.0, 0.5, 1.0, 0.999 * limit), 2000)
     outside = solve(problem, Scheme(0.0, 0.5, 1.0, 1.001 * limit), 2000)
-    assert np.abs(inside.columns["displacement"]).max() < 0.021  # twice the static value
+    assert np.abs(inside.columns["displacement"]).max() < 0.03
     assert np.abs(outside.columns["displacement"]).max() > 1.0
 
 
 @pytest.mark.parametrize("start", ["zero", "consistent"])
-@pytest.mark.parametrize("factor", [1e-3, 1e6, 1e12])
-def test_stiff_and_soft_springs_keep_nine_digits(start, factor):
+@pytest.mark.parametrize(("factor", "dt"), [(1e-3, 0.1), (1e-3, 1e-3), (1e6, 1e-3), (1e12, 1e-3)])
+def test_stiff_and_soft_springs_keep_nine_digits(start, factor, dt):
     mp = pytest.importorskip("mpmath").mp
-    from fem_reference.model import build
-
-    problem, scheme = make(p=factor * 1e9, elements=2), Scheme(0.25, 0.5, 1.0, 1e-3, start)
+    problem, scheme = make(p=factor * 1e9, elements=4), Scheme(0.25, 0.5, 1.0, dt, start)
     result, model = solve(problem, scheme, 100), build(problem)
     with mp.workdps(40):
         M, K, F = (mp.matrix(part.tolist()) for part in (model.M.toarray(), model.K.toarray(), model.F))
@@ -143,30 +146,27 @@ def test_stiff_and_soft_springs_keep_nine_digits(start, factor):
 
 def test_load_scales_out():
     small = solve(make(elements=2), CONSTANT, 5)
-    from dataclasses import replace
-
     large = solve(replace(make(elements=2), pressure=1e300), CONSTANT, 5)
     assert np.allclose(large.columns["displacement"] / 1e300, small.columns["displacement"] / 5e6, rtol=1e-14)
 
 
 @pytest.mark.parametrize("change", [{}, {"poisson": 0.3}, {"vertices": INCLINED, "base": 1, "top": 3}])
 def test_fields_show_the_whole_block(tmp_path, change):
-    problem, scheme = make(**change, elements=4), Scheme(0.5, 1.0, 1.0, 1.0)
+    problem, scheme = make(**change, elements=4), Scheme(0.5625, 1.0, 0.5, 1.0)
     path = tmp_path / "block.vtu"
     # Steps far above the period and much damping: the last step is static.
-    result = solve(problem, Scheme(0.5625, 1.0, 0.5, 1.0), 60, columns=("displacement",), fields=path)
-    whole = solve(problem, scheme, 60, columns=("displacement",), full=True, fields=tmp_path / "full.vtu")
+    result = solve(problem, scheme, 60, columns=("displacement",), fields=path)
+    solve(problem, scheme, 60, columns=("displacement",), full=True, fields=tmp_path / "full.vtu")
     field, full = meshio.read(path), meshio.read(tmp_path / "full.vtu")
     assert field.point_data["displacement"].shape == (25, 3)
     scale = np.abs(full.point_data["displacement"]).max()
-    assert np.abs(field.point_data["displacement"] - full.point_data["displacement"]).max() <= 1e-6 * scale
+    assert np.abs(field.point_data["displacement"] - full.point_data["displacement"]).max() <= 1e-10 * scale
     stress = field.cell_data["stress"][0]
     assert stress.shape == (16, 3)
-    assert np.abs(stress - full.cell_data["stress"][0]).max() <= 1e-5 * np.abs(stress).max()
+    assert np.abs(stress - full.cell_data["stress"][0]).max() <= 1e-9 * np.abs(stress).max()
     if not change:
         assert np.allclose(stress, [0, -5e6, 0], atol=50)
         assert np.isclose(result.columns["displacement"][-1], -0.01, rtol=1e-6)
-    assert len(whole.time) == 60
 
 
 def test_field_series_is_decimated(tmp_path):
@@ -181,10 +181,9 @@ def test_field_series_is_decimated(tmp_path):
 
 def test_bad_requests_are_refused(tmp_path):
     problem = make(elements=2)
-    with pytest.raises(ValueError, match="^steps: "):
+    with pytest.raises(ValueError, match=r"^steps: "):
         solve(problem, CONSTANT, 0)
-    with pytest.raises(ValueError, match="^columns: "):
+    with pytest.raises(ValueError, match=r"^columns: "):
         solve(problem, CONSTANT, 1, columns=("rotation",))
-    with pytest.raises(ValueError, match="^fields: "):
+    with pytest.raises(ValueError, match=r"^fields: "):
         solve(problem, CONSTANT, 1, fields=tmp_path / "block.txt")
-    assert SQUARE == problem.vertices

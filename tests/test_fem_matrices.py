@@ -178,6 +178,34 @@ def test_mesh_file_of_the_square_gives_the_structured_result(tmp_path):
     assert read["displacement"] == pytest.approx(static(make(poisson=0.3, elements=4))["displacement"], rel=1e-12)
 
 
+def corner_block(tmp_path, vertices, top, holes):
+    """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
+    grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
+    middle = grid.p[:, grid.t].mean(axis=1)
+    gone = [int(np.argmin(np.hypot(*(middle - np.array([[x], [y]]))))) for x, y in holes]
+    mesh = grid.remove_elements(np.array(gone)).refined(1)
+    return make(vertices, 0, top, 0.2, mesh=write_mesh(tmp_path / "corner.msh", make(vertices, 0, top), mesh))
+
+
+def test_nonconvex_block_from_a_mesh_file(tmp_path):
+    shape = ((0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (0, 2))
+    problem = corner_block(tmp_path, shape, 4, [(1.5, 1.5), (2.5, 1.5)])
+    # Statics: the base of length 3 carries the load of a top of length 1.
+    assert static(problem)["contact_pressure"] == pytest.approx(5e6 / 3, rel=1e-11)
+    assert assemble(problem).observers["displacement"].sum() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_centroid_outside_the_block_is_refused(tmp_path):
+    shape = ((0, 0), (3, 0), (3, 2), (2.9, 2), (2.9, 0.1), (0.1, 0.1), (0.1, 2), (0, 2))
+    x, y = np.array([0, 0.1, 2.9, 3.0]), np.array([0, 0.1, 2.0])
+    grid = MeshQuad.init_tensor(x, y)
+    middle = grid.p[:, grid.t].mean(axis=1)
+    mesh = grid.remove_elements(np.flatnonzero((np.abs(middle[0] - 1.5) < 1) & (middle[1] > 0.1)))
+    problem = make(shape, 0, 1, mesh=write_mesh(tmp_path / "u.msh", make(shape, 0, 1), mesh))
+    with pytest.raises(ValueError, match="centroid must lie inside"):
+        build(problem)
+
+
 def test_mesh_file_that_is_not_the_block_is_refused(tmp_path):
     problem = make()
     grid = np.linspace(0.0, 2.0, 3)
@@ -187,6 +215,11 @@ def test_mesh_file_that_is_not_the_block_is_refused(tmp_path):
         build(make(tall, mesh=file))
     with pytest.raises(ValueError, match="mesh: tag 'top'"):
         build(make(top=1, mesh=file))
+    short = meshio.read(file)
+    short.cell_data["gmsh:physical"][0][0] = 3
+    meshio.write(tmp_path / "short.msh", short, file_format="gmsh22", binary=False)
+    with pytest.raises(ValueError, match="mesh: tag 'base'"):
+        build(make(mesh=str(tmp_path / "short.msh")))
     with pytest.raises(ValueError, match="mesh: must be a readable"):
         build(make(mesh=str(tmp_path / "absent.msh")))
 

@@ -7,10 +7,11 @@ imported by the adapter that needs them and by no other.
 from __future__ import annotations
 
 import cmath
+import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +46,24 @@ def to_run(scene: Scene, result: dda.Result | fem_reference.Result, notes: tuple
         (*notes, *result.notes, *tension),
         getattr(result, "estimate", None),
     )
+
+
+Solve = Callable[[Any, Scene, bool, Path | None], Run]
+
+
+def named(solve: Solve) -> Callable[..., Run]:
+    """Give what a solver package refuses, a ValueError, the name of the scene: a SceneError."""
+
+    @functools.wraps(solve)
+    def wrapped(self: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        try:
+            return solve(self, scene, full, fields)
+        except SceneError:
+            raise
+        except ValueError as error:
+            raise SceneError(f"{scene.name}: {error}") from None
+
+    return wrapped
 
 
 def _tension_note(history: History) -> tuple[str, ...]:
@@ -105,6 +124,7 @@ class DDA(Solver):
         t = scene.time
         return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
 
+    @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene."""
         import dda
@@ -149,6 +169,7 @@ class Textbook(DDA):
 
         return dda.textbook_applicable(self.model(scene), self.scheme(scene))
 
+    @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
         import dda
@@ -199,6 +220,7 @@ class FiniteElements(Solver):
         t = scene.time
         return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
 
+    @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene."""
         import fem_reference
@@ -244,6 +266,7 @@ class ExactBar(FiniteElements):
 
         return bar.applicable(self.problem(scene)) or bar_scheme.applicable(self.scheme(scene))
 
+    @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
         _no_fields(self.name, scene, fields)
@@ -271,6 +294,7 @@ class Continuum(ExactBar):
         stopped = "gg = 0 has no rate -ln(gg) / dt" if scene.time.discount == 0 else None
         return bar.applicable(self.problem(scene)) or stopped
 
+    @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
         _no_fields(self.name, scene, fields)
