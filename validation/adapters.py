@@ -22,6 +22,7 @@ from validation.solvers import Solver
 if TYPE_CHECKING:
     import dda
     import fem_reference
+    import fem_reference.model
 
 BAR_COLUMNS = ("displacement", "contact_pressure")
 
@@ -106,7 +107,7 @@ class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
-    sources = ("dda",)
+    sources: tuple[str, ...] = ("dda",)
 
     def model(self, scene: Scene) -> dda.TwoBlockModel:
         """Return the two-block model of a scene."""
@@ -185,7 +186,7 @@ class FiniteElements(Solver):
 
     name = "fem"
     sections = ("block", "contact", "load", "time", "run", "fem")
-    sources = ("fem_reference",)
+    sources: tuple[str, ...] = ("fem_reference",)
 
     def problem(self, scene: Scene) -> fem_reference.Problem:
         """Return the finite-element problem of a scene."""
@@ -212,6 +213,12 @@ class FiniteElements(Solver):
             )
         except ValueError as error:
             raise SceneError(f"{scene.name}: {error}") from None
+
+    def equations(self, scene: Scene, full: bool = False) -> fem_reference.model.Model:
+        """Return M D'' + K D = F of the mesh for a pressure of 1 Pa, with every exact saving unless `full`."""
+        from fem_reference.model import build
+
+        return build(self.problem(scene), full)
 
     def scheme(self, scene: Scene) -> fem_reference.Scheme:
         """Return the scheme of a scene."""

@@ -29,6 +29,9 @@ ORDER = (
     "fenicsx",
     "bar",
     "continuum",
+    "dda-60",
+    "fem-60",
+    "bar-60",
 )  # each is compared with the later
 ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 

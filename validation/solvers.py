@@ -57,6 +57,9 @@ BUILT_IN = {
     "fem": "validation.adapters:FiniteElements",
     "bar": "validation.adapters:ExactBar",
     "continuum": "validation.adapters:Continuum",
+    "dda-60": "validation.precise:PreciseDDA",
+    "fem-60": "validation.precise:PreciseFiniteElements",
+    "bar-60": "validation.precise:PreciseBar",
 }
 REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
 

@@ -1,0 +1,89 @@
+"""Sixty-digit references as ordinary solvers: `dda-60`, `bar-60` and `fem-60`.
+
+They take the doubles of a scene as exact (`fem-60` those of the mesh's matrices) and share no step with the solvers
+that they judge. Their histories are rounded to doubles at the end and cost milliseconds to a second.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from validation.adapters import BAR_COLUMNS, DDA, ExactBar, FiniteElements, check_columns
+from validation.history import Array, History, Outcome, Run
+from validation.precise_block import Number
+from validation.scene import Scene
+
+LARGEST = float(np.finfo(float).max)
+MOST_UNKNOWNS = 200  # beyond it sixty digits would take minutes
+
+
+def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
+    """Round the columns to doubles; what a double cannot hold is infinite from there on."""
+    check_columns(scene, BAR_COLUMNS)
+    began = time.perf_counter()
+    columns = {name: _doubles(values) for name, values in compute().items()}
+    seconds = {"setup": 0.0, "stepping": time.perf_counter() - began}
+    times = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    work = {"steps": scene.time.steps}
+    return Run(Outcome.COMPLETED, History(times, columns), work, seconds, ("sixty-digit arithmetic",))
+
+
+def _doubles(values: list[Number]) -> Array:
+    found: Array = np.fromiter((float(v) if abs(v) <= LARGEST else np.inf for v in values), np.float64, len(values))
+    found[~np.logical_and.accumulate(np.isfinite(found))] = np.inf
+    return found
+
+
+class PreciseDDA(DDA):
+    """The two-block model in sixty-digit arithmetic."""
+
+    name = "dda-60"
+    sources = ("validation.precise", "validation.precise_block")
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        from validation import precise_block
+
+        return _run(scene, lambda: precise_block.history(scene, scene.run.columns))
+
+
+class PreciseBar(ExactBar):
+    """The bar under the Newmark scheme in sixty-digit arithmetic."""
+
+    name = "bar-60"
+    sources = ("validation.precise", "validation.precise_bar", "validation.precise_block")
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        from validation import precise_bar
+
+        return _run(scene, lambda: precise_bar.history(scene, scene.run.columns))
+
+
+class PreciseFiniteElements(FiniteElements):
+    """The mesh's own double matrices, taken as exact, in sixty-digit arithmetic."""
+
+    name = "fem-60"
+    sources = ("fem_reference", "validation.precise", "validation.precise_matrices", "validation.precise_block")
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why sixty digits are out of reach for the mesh."""
+        unknowns = len(self.equations(scene).F)
+        if unknowns > MOST_UNKNOWNS:
+            return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"
+        return None
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
+        from validation import precise_matrices
+
+        model = self.equations(scene, full)
+        rows = {name: model.observers[name] for name in scene.run.columns}
+        return _run(
+            scene,
+            lambda: precise_matrices.history(scene, model.M, model.K, model.F, rows, scene.load.pressure),
+        )
