@@ -22,6 +22,7 @@ class Mode:
     frequency: float  # w [rad/s], undamped natural
     share: float  # of the static response, (phi'F)^2 / (w^2 F'D_static) [-]
     eigenvalues: tuple[complex, complex]  # of the mode's own one-step operator, larger modulus first
+    contact_share: float  # static contact pressure that the mode carries, over the applied pressure [-]
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,9 @@ def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
     form = model.gap_form.reduced()
     modal = modal_form(form)
     shares = (modal.load / modal.frequencies) ** 2 / float(form.F @ (form.F / form.K))
+    carried = (form.observers["contact_pressure"] @ modal.shapes) * modal.load / modal.frequencies**2
     return tuple(
-        Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w))
+        Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w), float(carried[i]))
         for i in np.argsort(-shares)
         for w in [float(modal.frequencies[i])]
     )

@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Number = float | Array  # alpha, delta and gg may vary with Omega where a function takes arrays
 ComplexArray = NDArray[np.complex128]
 
 
-def _x(omega: ArrayLike, alpha: float) -> Array:
+def _x(omega: ArrayLike, alpha: Number) -> Array:
     """Return X = Omega^2 / (1 + alpha Omega^2), safe for huge Omega."""
     Omega = np.asarray(omega, dtype=float)
     small = np.minimum(Omega, 1.0)
@@ -29,17 +30,17 @@ def _x(omega: ArrayLike, alpha: float) -> Array:
     return x
 
 
-def trace(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def trace(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return the sum of the two eigenvalues."""
     return (1 + gg) - (0.5 + gg * delta) * _x(omega, alpha)
 
 
-def determinant(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def determinant(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return the product of the two eigenvalues, gg (1 + h) with h of eq. (12)."""
     return gg * (1 + (0.5 - delta) * _x(omega, alpha))
 
 
-def _discriminant(omega: ArrayLike, alpha: float, delta: float, gg: float) -> Array:
+def _discriminant(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> Array:
     """Return trace^2 - 4 det, arranged so that small Omega keeps its digits."""
     X = _x(omega, alpha)
     p = 0.5 + gg * delta
@@ -47,7 +48,7 @@ def _discriminant(omega: ArrayLike, alpha: float, delta: float, gg: float) -> Ar
     return (1 - gg) ** 2 - X * (b - p * p * X)
 
 
-def eigenvalues(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> ComplexArray:
+def eigenvalues(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> ComplexArray:
     """Return the two eigenvalues, last axis of length two, the larger modulus first."""
     t, d = trace(omega, alpha, delta, gg), determinant(omega, alpha, delta, gg)
     disc = _discriminant(omega, alpha, delta, gg)
@@ -60,7 +61,7 @@ def eigenvalues(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -
     return result
 
 
-def spectral_radius(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def spectral_radius(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return max |lambda|; sqrt(det), the paper's (13), holds for a complex pair only."""
     det = determinant(omega, alpha, delta, gg)
     complex_pair = _discriminant(omega, alpha, delta, gg) < 0
@@ -69,7 +70,7 @@ def spectral_radius(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.
     return radius
 
 
-def _logarithms(omega: ArrayLike, alpha: float, delta: float, gg: float) -> tuple[Array, Array, Array]:
+def _logarithms(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> tuple[Array, Array, Array]:
     """Return the real part sum/2 and the half difference of the two logarithms, and the kind.
 
     For a complex pair ln lambda = re +- i half; for positive real roots ln lambda = re +- half.
@@ -87,7 +88,7 @@ def _logarithms(omega: ArrayLike, alpha: float, delta: float, gg: float) -> tupl
     return re, np.where(disc < 0, angle, half), kind
 
 
-def damping_ratio(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def damping_ratio(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return xi; at least one where overdamped, NaN where a root is not positive.
 
     Complex pair: -Re(ln lambda) / |ln lambda|; positive real roots:
@@ -99,7 +100,7 @@ def damping_ratio(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0)
     return xi
 
 
-def numerical_omega(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def numerical_omega(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return w' dt, the undamped frequency of the stepped mode: |ln lambda|, or sqrt(ln l1 ln l2)."""
     re, half, kind = _logarithms(omega, alpha, delta, gg)
     with np.errstate(all="ignore"):
@@ -107,7 +108,7 @@ def numerical_omega(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.
     return value
 
 
-def period_elongation(omega: ArrayLike, alpha: float, delta: float, gg: float = 1.0) -> Array:
+def period_elongation(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return w / w' - 1."""
     with np.errstate(all="ignore"):
         elongation: Array = np.asarray(omega, dtype=float) / numerical_omega(omega, alpha, delta, gg) - 1

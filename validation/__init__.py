@@ -15,6 +15,8 @@ _NAMES = {
     "Run": "history",
     "Scene": "scene",
     "SceneError": "scene",
+    "advise": "advice",
+    "damping": "spectra",
     "load_scene": "scene",
     "solve": "solvers",
     "Solver": "solvers",

@@ -150,7 +150,7 @@ class DDA(Solver):
         import dda
 
         found = dda.modes(self.model(scene), self.scheme(scene))
-        return tuple(Mode(m.frequency, m.share, m.eigenvalues) for m in found)
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
 
     def diagnostics(self, scene: Scene) -> Mapping[str, float]:
         """Return spectral radius, condition numbers and residual."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
 SLOW = 2.0  # seconds after which progress is shown
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",
@@ -130,7 +130,7 @@ def solve(
     from validation.scene import SceneError
     from validation.solvers import get_solver
 
-    case, chosen = _one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
+    case, chosen = one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise SceneError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
     with atomic_path(fields) if fields is not None else nullcontext() as part:
@@ -179,8 +179,8 @@ def figures(
         typer.echo(f"wrote {path}")
 
 
-def _one_case(source: str, assignments: list[str] | None) -> Scene:
-    """Return the single case of a scene, or say which values are to be picked."""
+def one_case(source: str, assignments: list[str] | None) -> Scene:
+    """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
     from validation.scene import SceneError, load_scene, parse_assignment
 
     scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
@@ -321,6 +321,8 @@ def _stop(line: str, status: int) -> None:
     typer.echo(line, err=True)
     sys.exit(status)
 
+
+from validation import cli_damping  # noqa: E402, F401  (adds its commands to app)
 
 if __name__ == "__main__":
     main()

@@ -99,11 +99,14 @@ class Mode:
         Share (phi'F)^2 / (w^2 F'D_static) of the static response [1].
     eigenvalues
         The two eigenvalues of the one-step operator that are not identically zero [1].
+    contact_share
+        Static contact pressure that the mode carries over the applied pressure [1]; None where not reported.
     """
 
     frequency: float
     share: float
     eigenvalues: tuple[complex, complex]
+    contact_share: float | None = None
 
     @property
     def spectral_radius(self) -> float:

@@ -1,0 +1,229 @@
+"""The adviser and its inverse: what is advised is what runs, all of it is found, and what is out of reach is."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from conftest import cli
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from dda import spectral
+from validation import Scene, SceneError, advise, damping, load_scene
+from validation.advice import expected_errors
+
+BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
+LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
+EXAMPLES = settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
+
+
+def decades(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(low, high).map(lambda exponent: 10.0**exponent)
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Scene:
+    side, young = draw(st.floats(0.3, 6.0)), draw(decades(7, 10.5))
+    density, alpha_delta = draw(st.floats(1500, 3500)), draw(SCHEMES)
+    wave = side / math.sqrt(young / density)
+    values = {
+        "block.side": side,
+        "block.young": young,
+        "block.density": density,
+        "block.poisson": draw(st.sampled_from([0.0, 0.2, 0.45])),
+        "contact.stiffness": young * draw(decades(-2, 4)),
+        "time.step": wave * draw(decades(-3, 0.7)),
+        "time.alpha": alpha_delta[0],
+        "time.delta": alpha_delta[1],
+        "time.allow_unstable": True,
+    }
+    kind = draw(st.sampled_from(["none", "gg", "rate"]))
+    if kind == "gg":
+        values["time.gg"] = draw(st.floats(0.3, 0.9999))
+    if kind == "rate":
+        values["time.gg_rate"] = draw(decades(-2, 0.5)) / wave
+    return BASE.with_values(values)
+
+
+def ratio(omega: np.ndarray, alpha: object, delta: object, gg: object) -> np.ndarray:
+    """Ratio xi from the roots of the quadratic, written apart from the code; NaN where a root is not positive."""
+    beta = 1 + alpha * omega**2
+    trace = 1 - omega**2 / (2 * beta) + gg * (1 - delta * omega**2 / beta)
+    det = gg * (1 + (0.5 - delta) * omega**2 / beta)
+    with np.errstate(all="ignore"):
+        root = np.sqrt((trace**2 - 4 * det).astype(complex))
+        a, b = np.log((trace + root) / 2), np.log((trace - root) / 2)
+        xi = -(a + b) / (2 * np.sqrt(a * b))
+        real = (root.imag == 0) & ((trace - root.real <= 0) | (trace + root.real <= 0))
+    return np.where(real | (det <= 0), np.nan, xi.real)
+
+
+def scan(scene: Scene, solve_for: str) -> np.ndarray:
+    """Ratio xi on a fine independent grid of dt, gg or delta, where no mode grows."""
+    modes, t = damping(scene).modes, scene.time
+    w, highest = modes[0].frequency, max(m.frequency for m in modes)
+    alpha, delta, gg, step = t.alpha, t.delta, t.discount, t.step
+    if solve_for == "dt":
+        step = np.geomspace(1e-3, 1e3, 1501) / w
+        gg = gg if t.gg_rate is None else np.exp(-t.gg_rate * step)
+    elif solve_for == "gg":
+        gg = np.linspace(1e-3, 1, 1501)
+    else:
+        delta = np.linspace(0.5, 1.5, 1501)
+        alpha = (0.5 + delta) ** 2 / 4
+    xi = ratio(w * step + 0 * delta, alpha, delta, gg)
+    if solve_for == "scheme":
+        return xi
+    radius = np.abs(spectral.eigenvalues(highest * step, alpha, delta, gg)).max(axis=-1)
+    return np.where(radius <= 1 + 1e-12, xi, np.nan)
+
+
+@EXAMPLES
+@given(scenes(), decades(-3, 0.2), st.sampled_from(["dt", "gg", "scheme"]))
+def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: str) -> None:
+    advice = advise(scene, damping=target, solve_for=solve_for)
+    assert advice.reachable == bool(advice.solutions)
+    for solution in advice.solutions:
+        runs = damping(scene.with_values(solution.settings)).modes[0]
+        assert runs.damping == pytest.approx(target, rel=1e-6)
+        assert solution.damping == runs.damping
+    side = scan(scene, solve_for) - target
+    crossings = np.sum(side[1:] * side[:-1] < 0)  # NaN compares false: what is not defined is not crossed
+    assert crossings <= len(advice.solutions), advice.sentence
+    if not advice.reachable and advice.greatest is not None:
+        assert "No" in advice.sentence and (target > advice.greatest or target < advice.least)
+        word = "greatest" if target > advice.greatest else "least"
+        assert word in advice.sentence
+
+
+def test_both_sides_of_the_maximum_are_listed() -> None:
+    below, above = advise(BASE, damping=0.35, solve_for="dt").solutions
+    assert below.value * 344.561 < 3.27 < above.value * 344.561 < 4
+    assert above.contact.flips and not below.contact.flips
+    assert "or dt =" in advise(BASE, damping=0.35).sentence
+
+
+def test_the_maximum_is_named_where_it_is_out_of_reach() -> None:
+    advice = advise(BASE, damping=0.45)
+    assert not advice.reachable and advice.solutions == ()
+    assert advice.greatest == pytest.approx(0.373, abs=5e-4)
+    assert advice.greatest_at * 344.561196 == pytest.approx(3.27, abs=5e-3)
+    assert "37.3 %" in advice.sentence
+    assert advise(BASE, damping=advice.greatest * (1 - 1e-9)).reachable
+
+
+def test_two_steps_solve_it_where_gg_is_below_one() -> None:
+    scene = LIGHT.with_values({"time.alpha": 0.3025, "time.delta": 0.6})
+    kinetic, algorithmic = advise(scene, damping=0.05).solutions
+    low, high = (damping(scene.with_values(s.settings)).modes[0] for s in (kinetic, algorithmic))
+    assert low.kinetic > low.algorithmic and high.algorithmic > high.kinetic
+    assert "does not converge" in advise(scene, damping=0.05).sentence
+
+
+@pytest.mark.parametrize(("target", "steps"), [(0.05, 457), (0.2, None)])
+def test_settling_is_that_of_the_history(target: float, steps: int | None) -> None:
+    from validation.cases import Case, execute
+
+    solution = advise(BASE, damping=target).solutions[0]
+    case = BASE.with_values(solution.settings | {"time.steps": 2000})
+    row, _ = execute(Case(case, "dda"), "key", "test")
+    assert solution.settling_steps == row.metrics["displacement.settling_step"]
+    assert steps in (None, solution.settling_steps)
+    assert solution.settling_seconds == pytest.approx(solution.settling_steps * solution.value)
+
+
+def test_a_long_settling_is_the_envelope_of_the_history() -> None:
+    from validation import advice
+
+    case = BASE.with_values({"time.step": 1e-4, "time.gg_rate": 10.0})
+    exact, source = advice._settling(case)
+    assert source == "history"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(advice, "LONGEST", 100)
+        rough, source = advice._settling(case)
+    assert source == "envelope"
+    assert rough == pytest.approx(exact, rel=0.1)
+
+
+def test_a_rate_is_kept_as_a_rate() -> None:
+    scene = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg_rate": 40.0})
+    advice = advise(scene, damping=0.06)
+    assert "rate" in advice.sentence
+    for solution in advice.solutions:
+        assert solution.gg == pytest.approx(math.exp(-40 * solution.value), rel=1e-14)
+        assert solution.gg_rate == pytest.approx(40.0, rel=1e-9)
+    gg = advise(scene, damping=0.06, solve_for="gg").solutions[0]
+    assert gg.gg_rate == pytest.approx(-math.log(gg.value) / scene.time.step)
+
+
+def test_the_scheme_family_is_the_boundary_of_14() -> None:
+    solution = advise(BASE, damping=0.05, solve_for="scheme").solutions[0]
+    assert solution.alpha == pytest.approx((0.5 + solution.value) ** 2 / 4, rel=1e-15)
+    assert spectral.bifurcation_omega(solution.alpha, solution.delta) == math.inf
+    assert solution.settings == {"time.alpha": solution.alpha, "time.delta": solution.value}
+
+
+def test_no_damping_wanted_of_a_scheme_that_has_none() -> None:
+    undamped = LIGHT.with_values({"time.gg": 1.0})
+    advice = advise(undamped, damping=0.0)
+    assert advice.reachable and advice.solutions[0].settling_steps is None
+    assert advise(undamped, damping=0.01, solve_for="dt").reachable is False
+
+
+def test_errors_at_the_answer_are_those_of_the_solvers() -> None:
+    from validation import solve
+    from validation.metrics import relative_l2
+
+    solution = advise(BASE, damping=0.1).solutions[0]
+    errors = expected_errors(BASE, solution)
+    steps = round(0.4 / solution.value)
+    case = BASE.with_values(solution.settings | {"time.steps": steps})
+    assert errors["window"] == pytest.approx(0.4, rel=2e-3)
+    for name in ("fem", "continuum"):
+        want = relative_l2(solve(case, "dda").displacement, solve(case, name).displacement)
+        assert errors[name]["displacement"] == pytest.approx(want, rel=1e-12)
+    soft = expected_errors(BASE.with_values({"block.poisson": 0.3, "fem.elements": 4}), solution)
+    assert "Poisson" in soft["continuum"]["not applicable"] and soft["fem"]["pressure"] > 0
+
+
+@pytest.mark.parametrize(("wanted", "solve_for"), [(-0.1, "dt"), (math.nan, "dt"), (0.1, "p")])
+def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
+    with pytest.raises(SceneError, match=r"damping: must be|solve_for: must be one of"):
+        advise(BASE, damping=wanted, solve_for=solve_for)
+    with pytest.raises(SceneError, match="one value must be picked"):
+        damping(load_scene("figures-3-4"))
+
+
+def test_damping_tells_parts_and_the_mode_that_flips() -> None:
+    first, contact = damping(LIGHT).modes
+    assert (first.name, contact.name) == ("first axial", "contact")
+    assert first.damping == pytest.approx(0.0296, abs=5e-5)
+    assert first.algorithmic == pytest.approx(0, abs=1e-15) and first.kinetic == pytest.approx(first.damping)
+    both = damping(BASE.with_values({"time.gg": 0.98})).modes[0]
+    assert both.damping == pytest.approx(both.algorithmic + both.kinetic, rel=1e-12)
+    stiff = damping(BASE.with_values({"contact.stiffness": 1e11}))
+    assert stiff.modes[1].flips and "flips sign every step" in stiff.sentence
+    lateral = damping(BASE.with_values({"block.poisson": 0.3, "contact.stiffness": 1e11}))
+    assert sorted(m.name for m in lateral.modes) == ["contact", "first axial", "mode 3"]
+    assert max(lateral.modes, key=lambda m: m.frequency).name == "contact"
+
+
+def test_the_commands_answer_in_plain_text_and_json() -> None:
+    case = ("figures-3-4", "--set", "time.step=0.002")
+    told = cli("damping", *case, "--json")
+    found = json.loads(told.stdout)
+    assert {"name", "frequency", "damping", "spectral_radius", "omega_dt"} <= set(found["modes"][0])
+    assert found["modes"][0]["name"] == "first axial" and found["sentence"]
+    assert found["references"]["bar"]["damping"] == pytest.approx(0.15334, abs=1e-5)
+    advised = cli("advise", *case, "--damping", "0.05", "--solve-for", "dt", "--json")
+    answer = json.loads(advised.stdout)
+    assert answer["solve_for"] == "dt" and answer["reachable"] is True
+    assert {"value", "damping", "settling_steps", "settling_seconds"} <= set(answer["solutions"][0])
+    plain = cli("advise", *case, "--damping", "0.35")
+    assert plain.returncode == 0 and plain.stdout.startswith("Set dt = ")
+    assert "differs from continuum by" in plain.stdout
+    assert cli("damping", *case).stdout.startswith("At dt = 0.002 s the first axial mode")
+    refused = cli("advise", "figures-3-4", "--damping", "0.05")
+    assert refused.returncode == 2 and "time.step" in refused.stderr and refused.stderr.count("\n") == 1
