@@ -159,12 +159,21 @@ def _columns(group: Group) -> list[str]:
 
 def _history_block(group: Group, column: str, directory: Path) -> FigureBlock:
     shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
-    panels = [_panel(case, column) for case in shown]
+    window = shared_window(shown)
+    panels = [_panel(case, column, window) for case in shown]
     file = f"{group.slug}-{column.replace('_', '-')}.svg"
     figures.save(figures.history_figure(panels, column), directory / file)
     name = COLUMNS.get(column, (column,))[0]
     less = "" if len(shown) == len(group.cases) else f" ({len(shown)} of {len(group.cases)} cases)"
-    return FigureBlock(file, f"{name}{less}. {_history_caption(panels) if column == DISPLACEMENT else ''}".strip())
+    cut = any(h.time[-1] > window * 1.001 for case in shown for h in case.histories.values())
+    span = f"The first {plain(window, 3)} s, the time that all cases run." if cut else ""
+    caption = _history_caption(panels) if column == DISPLACEMENT else ""
+    return FigureBlock(file, " ".join(f"{name}{less}. {span} {caption}".split()))
+
+
+def shared_window(cases: Sequence[Case]) -> float:
+    """Return the time that all cases of a sweep run [s]: cases of one figure are compared over the same time."""
+    return min((float(h.time[-1]) for case in cases for h in case.histories.values() if len(h.time)), default=0.0)
 
 
 def _history_caption(panels: Sequence[Panel]) -> str:
@@ -175,8 +184,8 @@ def _history_caption(panels: Sequence[Panel]) -> str:
     return " ".join(said)
 
 
-def _panel(case: Case, column: str) -> Panel:
-    histories = {s: h for s, h in case.histories.items() if column in h.columns}
+def _panel(case: Case, column: str, window: float) -> Panel:
+    histories = {s: h.until(window) for s, h in case.histories.items() if column in h.columns}
     reference = case.reference if case.reference in histories else None
     metric = f"{_PREFIX.get(column, column)}.static"
     known = [case.number(solver, metric) for solver in (reference or "", "dda", *histories)]
