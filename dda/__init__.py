@@ -9,6 +9,7 @@ from dda import spectral
 from dda.block import Block
 from dda.contact import Contact, contact_stiffness, spring_vectors
 from dda.gap_form import COLUMNS, UNKNOWNS, GapForm
+from dda.load import BaseMotion, Load
 from dda.material import Material
 from dda.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.natural_modes import ModalForm, modal_form
@@ -21,10 +22,12 @@ from dda.two_block import TwoBlockModel
 __all__ = [
     "COLUMNS",
     "UNKNOWNS",
+    "BaseMotion",
     "Block",
     "Contact",
     "Diagnostics",
     "GapForm",
+    "Load",
     "Material",
     "ModalForm",
     "Mode",

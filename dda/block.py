@@ -91,7 +91,10 @@ class Block:
 
     def edge_load(self, edge: int, traction: tuple[float, float]) -> Array:
         """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] on an edge, eq. (29)."""
-        start, end = self.edge(edge)
+        return self.segment_load(*self.edge(edge), traction)
+
+    def segment_load(self, start: Array, end: Array, traction: tuple[float, float]) -> Array:
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m]."""
         x, y = start + (end - start) / 2
         force = float(np.hypot(*(end - start))) * np.array(traction)
         load: Array = self.T(float(x), float(y)).T @ force

@@ -13,6 +13,8 @@ stretches over the base length a, and e2 = ey + c ex, c the free lateral contrac
 
 a sum of squares with one product each: no digit of a stiff spring, nor of a nearly
 incompressible material, is lost by subtraction, and the contact pressure is -2 pn w / a.
+All displacements are measured from the base: a moving base adds its own, and loads the block
+through the inertia alone.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 
 from dda.block import Block
 from dda.contact import Contact, base_directions
+from dda.load import Load, pressed_part
 from dda.material import Material
 from dda.polygon import AreaIntegrals, area_integrals
 
@@ -54,13 +57,14 @@ _ROUNDING = 64 * np.finfo(float).eps
 
 @dataclass(frozen=True, eq=False)
 class GapForm:
-    """M x'' + K x = F for unit pressure, K diagonal, with the way back to D and to the columns."""
+    """M (x + R y)'' + K x = F for a load of unit size and a base displacement y, K diagonal."""
 
     unknowns: tuple[str, ...]  # names of x; the stretches in m, the others without unit
     M: Array  # (n, n) inertia
     K: Array  # (n,) diagonal of the stiffness
-    F: Array  # (n,) load of 1 Pa
-    Q: Array  # (6, n): D = Q x
+    F: Array  # (n,) load, the largest of its stresses 1 Pa
+    R: Array  # (n, 2) rigid translation by the base's displacement in x and y
+    Q: Array  # (6, n): D = Q (x + R y)
     observers: dict[str, Array]  # column -> (n,) row
 
     def reduced(self) -> GapForm:
@@ -69,7 +73,7 @@ class GapForm:
         They are found by connectivity: an unknown stays if it is loaded, or coupled by a
         structural non-zero of M to one that stays (K is diagonal and couples nothing).
         """
-        reached = self.F != 0
+        reached = (self.F != 0) | np.any(self.M @ self.R != 0, axis=1)
         coupled = self.M != 0
         for _ in self.unknowns:
             reached = reached | (coupled @ reached)
@@ -82,24 +86,26 @@ class GapForm:
             self.M[np.ix_(kept, kept)],
             self.K[kept],
             self.F[kept],
+            self.R[kept],
             self.Q[:, kept],
             {name: row[kept] for name, row in self.observers.items()},
         )
 
 
-def gap_form(block: Block, contact: Contact, base: int, top: int) -> GapForm:
-    """Assemble the two-block model in contact-gap coordinates for a pressure of 1 Pa."""
+def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) -> GapForm:
+    """Assemble the two-block model in contact-gap coordinates."""
     tangent, _, a = base_directions(block, base)
     start = block.edge(base)[0]
     local = _base_frame(block, tangent, start, a)
     integrals = _without_rounding(area_integrals(local))
-    c = block.material.contraction
+    c, weight = block.material.contraction, block.material.density * load.gravity
     Q = _to_block_unknowns(integrals, c, tangent)
     return GapForm(
         UNKNOWNS,
         block.material.density * _inertia(integrals, c),
         _stiffness(block.material, contact, integrals.area, a),
-        _load(local, top, tangent, c),
+        _load(local, top, tangent, c, load) + _gravity(integrals, weight, tangent, c),
+        _translation(tangent, load),
         Q,
         _observers(Q, contact, a),
     )
@@ -159,15 +165,40 @@ def _stiffness(material: Material, contact: Contact, area: float, a: float) -> A
     )
 
 
-def _load(local: Array, top: int, tangent: Array, c: float) -> Array:
-    """Return the load of 1 Pa, acting in global -y, on the top edge."""
-    start, end = local[top], local[(top + 1) % len(local)]
-    x, y = (start + end) / 2
+def _load(local: Array, top: int, tangent: Array, c: float, load: Load) -> Array:
+    """Return the load on the top edge: pressure in global -y, traction in global +x."""
+    ends = local[top], local[(top + 1) % len(local)]
+    turned = np.array([[tangent[0], -tangent[1]], [tangent[1], tangent[0]]])  # global from local
+    start, end = (turned @ point for point in ends)
+    pressed = pressed_part(start, end, load.eccentricity)
+    part = ends if load.eccentricity == 0 else tuple(turned.T @ point for point in pressed)
     extent = np.max(np.abs(local), axis=0)
+    down, right = -turned[1], turned[0]
+    return _edge(part, extent, load.pressure * down, c) + _edge(ends, extent, load.traction * right, c)
+
+
+def _edge(ends: tuple[Array, ...], extent: Array, traction: Array, c: float) -> Array:
+    """Return the load of a uniform traction (local directions) on a straight part of the outline."""
+    x, y = (ends[0] + ends[1]) / 2
     x, y = _zero_below(x, extent[0]), _zero_below(y, extent[1])
-    length = float(np.hypot(*(end - start)))
-    fx, fy = -length * tangent[1], -length * tangent[0]
-    return np.array([fx, fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx])
+    fx, fy = float(np.hypot(*(ends[1] - ends[0]))) * traction
+    return np.array([fx, fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
+
+
+def _gravity(i: AreaIntegrals, weight: float, tangent: Array, c: float) -> Array:
+    """Return the load of a weight per area [N/m^3] in global -y."""
+    fx, fy = -weight * tangent[1], -weight * tangent[0]
+    x, y = i.x, i.y
+    return np.array([i.area * fx, i.area * fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
+
+
+def _translation(tangent: Array, load: Load) -> Array:
+    """Return x of the rigid translation by 1 m in x and in y, zero where the base does not move so."""
+    R = np.zeros((6, 2))
+    if load.motion is not None:
+        tx, ty = tangent
+        R[:2] = np.array([[tx, ty], [-ty, tx]]) * np.any(np.asarray(load.motion.displacement) != 0, axis=0)
+    return R
 
 
 def _to_block_unknowns(i: AreaIntegrals, c: float, tangent: Array) -> Array:

@@ -40,8 +40,10 @@ def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
     """Return the modes that the load can reach, the largest static share first."""
     form = model.gap_form.reduced()
     modal = modal_form(form)
-    shares = (modal.load / modal.frequencies) ** 2 / float(form.F @ (form.F / form.K))
-    carried = (form.observers["contact_pressure"] @ modal.shapes) * modal.load / modal.frequencies**2
+    pushed = modal.load if np.any(form.F) else np.sum(modal.translation, axis=1)
+    shares = (pushed / modal.frequencies) ** 2
+    shares /= np.sum(shares)
+    carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2
     return tuple(
         Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w), float(carried[i]))
         for i in np.argsort(-shares)

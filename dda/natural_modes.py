@@ -16,11 +16,12 @@ _SWEEPS = 40  # Jacobi's method converges quadratically: six unknowns take about
 
 @dataclass(frozen=True, eq=False)
 class ModalForm:
-    """The model in its own modes, x = shapes y: y'' + w^2 y = load, for unit pressure."""
+    """The model in its own modes, x = shapes z: (z + translation y)'' + w^2 z = load, of unit size."""
 
     frequencies: Array  # (n,) w [rad/s]
     shapes: Array  # (n, n) mass-normalised, one column a mode
     load: Array  # (n,) shapes' F
+    translation: Array  # (n, 2) shapes' M R
 
 
 def modal_form(form: GapForm) -> ModalForm:
@@ -34,7 +35,7 @@ def modal_form(form: GapForm) -> ModalForm:
     root = np.sqrt(form.K)
     values, vectors = _jacobi(form.M / root / root[:, None])
     shapes = vectors / root[:, None] / np.sqrt(values)
-    return ModalForm(1 / np.sqrt(values), shapes, shapes.T @ form.F)
+    return ModalForm(1 / np.sqrt(values), shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
 
 
 def _jacobi(matrix: Array) -> tuple[Array, Array]:

@@ -128,6 +128,37 @@ def modal_histories(scheme: Scheme, frequencies: Array, load: Array, steps: int)
     return histories.T
 
 
+def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, moved: Array) -> Array:
+    """Return D of every step and mode, (steps, n), measured from a moving base, without other loads.
+
+    With x = D + R y the spring forces are those of D alone, and the scheme for x becomes
+
+        S (D1 - D) = gg P + (1/2 - alpha) f - alpha k D - R (y1 - y),
+
+    with the momentum P and the inertia force f of x; no spring force is a difference of
+    large numbers.
+
+    Parameters
+    ----------
+    translation : (n, 2) array
+        Modal R of unit displacements of the base.
+    moved : (steps + 1, 2) array
+        Displacement y of the base at t = 0, dt, ... [m]; the block starts undisplaced.
+    """
+    k = (scheme.step * frequencies) ** 2
+    S = effective_matrix(scheme, np.ones_like(k), k)
+    pushes = np.diff(moved, axis=0) @ translation.T
+    D, P = -(translation @ moved[0]), np.zeros_like(k)
+    f = initial_acceleration(scheme, -k * D)
+    histories = np.empty((len(pushes), len(k)))
+    for row, push in zip(histories, pushes, strict=True):
+        D = D + (momentum_balance(scheme, 0.0 * k, k, D, P, f) - push) / S
+        f1 = acceleration_corrector(0.0 * k, k, D)
+        P, f = velocity_corrector(scheme, P, f, f1), f1
+        row[:] = D
+    return histories
+
+
 def assembled_step(scheme: Scheme, M: Array, k: Array, D: Array, P: Array, f: Array) -> tuple[Array, Array, Array]:
     """Return (D, P, f) of all unknowns one step later without load.
 

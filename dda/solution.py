@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.gap_form import COLUMNS, GapForm
-from dda.natural_modes import modal_form
-from dda.newmark import Scheme, modal_histories
-from dda.two_block import TwoBlockModel
+from dda.natural_modes import ModalForm, modal_form
+from dda.newmark import Scheme, carried_histories, modal_histories
+from dda.two_block import TwoBlockModel, carried
 
 Array = NDArray[np.float64]
 
@@ -41,8 +41,8 @@ def solve(
 ) -> Result:
     """Step the two-block model from rest and return the asked columns.
 
-    The model is linear: it is solved, mode by mode, for a pressure of 1 Pa and the columns are
-    multiplied by the pressure, so that no load, however large, overflows within. An unstable
+    The model is linear: it is solved, mode by mode, for a load of 1 Pa and the columns are
+    multiplied by the load, so that no load, however large, overflows within. An unstable
     scheme is run as asked; a column is infinite from its first overflow on.
 
     The error is a few roundings of the modes' contributions. A triangle's contact pressure is a
@@ -71,9 +71,12 @@ def solve(
         rows = np.array([form.observers[name] @ modal.shapes for name in columns])
         ready = perf_counter()
         histories = modal_histories(scheme, modal.frequencies, modal.load, steps)
-        observed = rows @ histories.T * model.pressure + 0.0
+        observed = rows @ histories.T * model.load_size + 0.0
+        notes = _savings(form) + bound_overflow(observed, model.load_size)
+        if model.motion is not None:
+            observed += _carried(model, scheme, modal, rows, columns, steps)
+            notes = _savings(form) + bound_overflow(observed, 1.0)
     ended = perf_counter()
-    notes = _savings(form) + bound_overflow(observed, model.pressure)
     return Result(
         time=step_times(scheme, steps),
         columns=dict(zip(columns, observed, strict=True)),
@@ -85,6 +88,20 @@ def solve(
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
     )
+
+
+def _carried(
+    model: TwoBlockModel, scheme: Scheme, modal: ModalForm, rows: Array, columns: Sequence[str], steps: int
+) -> Array:
+    """Return the part of the columns that the base's motion causes, (columns, steps)."""
+    motion = model.motion
+    if motion is None:
+        return np.zeros((len(columns), steps))
+    instants = scheme.step * np.arange(steps + 1.0)
+    histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
+    own = carried(motion, instants[1:])
+    added: Array = rows @ histories.T + np.array([own.get(name, np.zeros(steps)) for name in columns])
+    return added
 
 
 def check_request(steps: int, columns: Sequence[str]) -> None:

@@ -27,6 +27,8 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
     """Return why the printed recursion does not apply, or None if it does."""
     if scheme.alpha == 0:
         return "eq. (6) divides by alpha, which is zero"
+    if model.traction or model.gravity or model.eccentricity or model.motion is not None:
+        return "eq. (31), (32) are written for a centred pressure alone"
     corners = np.roll(model.block.corners, -model.base, axis=0)
     x, y = corners.T
     upright = len(x) == 4 and y[0] == y[1] and x[1] == x[2] and y[2] == y[3] and x[3] == x[0]

@@ -8,6 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from fem_reference.motion import Motion
 from fem_reference.problem import Problem, Scheme
 from fem_reference.result import COLUMNS, Mode, Result
 
@@ -31,6 +32,7 @@ __all__ = [
     "COLUMNS",
     "Bar",
     "Mode",
+    "Motion",
     "Problem",
     "Result",
     "Scheme",

@@ -197,6 +197,8 @@ class Bar:
 
 def applicable(problem: Problem) -> str | None:
     """Why the bar is not exact for a problem, in words; None if it is."""
+    if not problem.vertical or problem.gravity != 0 or problem.motion is not None:
+        return "the bar is written for a centred pressure alone"
     if problem.rectangle is None:
         return "the block is not an upright rectangle loaded opposite its base"
     if problem.poisson != 0:

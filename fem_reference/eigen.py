@@ -35,10 +35,11 @@ def modes(problem: Problem, scheme: Scheme, count: int = 12, full: bool = False)
         The first one is the first axial mode.
     """
     model = build(problem, full)
-    D = Work().factor(model.K)(model.F)
+    F = model.F if np.any(model.F) else model.base_force.sum(axis=1)
+    D = Work().factor(model.K)(F)
     while True:
         squares, shapes = lowest(model, count)
-        shares = (shapes.T @ model.F) ** 2 / (squares * (model.F @ D))
+        shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
         # The shares of all modes sum to one: no mode left out can exceed what is still missing.
         if len(squares) < count or shares.max() > 1 - shares.sum():
             break

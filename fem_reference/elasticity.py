@@ -5,7 +5,7 @@ With the Lame parameter lam of the plane problem and the shear modulus G::
     mass       rho (u, v)
     stiffness  lam (div u, div v) + 2 G (eps(u), eps(v))
     springs    sum of weight_n (n.u)(n.v) + weight_t (t.u)(t.v) over the points of a rule on the base
-    load       -q (1, v_y) on the top
+    load       -q (1, v_y) + tau (1, v_x) on the top, -rho g (1, v_y) in the block
 
 The foundation, distributed, over patches or at the corners, is a quadrature rule on the base; its
 intervals end where a patch ends, so that it is integrated exactly on any mesh.
@@ -185,20 +185,45 @@ def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half:
     return edge_rule(mesh, base, np.zeros(2), problem.tangent, intervals, order)
 
 
-def unit_load(basis: Basis, problem: Problem, top: NDArray[np.int64]) -> Array:
-    """Load vector of a unit pressure downwards on the top edge [m2], shape (unknowns,)."""
-    corners = problem.outline
-    index = (problem.top - problem.base) % len(corners)
-    side = corners[(index + 1) % len(corners)] - corners[index]
-    tangent = side / np.hypot(*side)
-    rule = edge_rule(basis.mesh, top, corners[index], tangent, [(-np.inf, np.inf)], problem.degree + 1)
-    _, v = values(basis, rule.points, rule.cells)
-    load: Array = -(v.T @ rule.weights)
-    return load
+def edge_load(
+    basis: Basis, problem: Problem, top: NDArray[np.int64], interval: tuple[float, float]
+) -> tuple[Array, Array]:
+    """Load vectors of a unit traction in x and in y on a part of the top edge [m2], each (unknowns,)."""
+    start, end = problem.top_ends
+    tangent = (end - start) / problem.top_length
+    rule = edge_rule(basis.mesh, top, start, tangent, [interval], problem.degree + 1)
+    u, v = values(basis, rule.points, rule.cells)
+    return u.T @ rule.weights, v.T @ rule.weights
 
 
-def point_values(basis: Basis, point: Array) -> tuple[Array, Array]:
-    """Rows that give u and v at a point of the mesh, each of shape (unknowns,).
+def load(basis: Basis, problem: Problem, top: NDArray[np.int64], M: csr_array) -> Array:
+    """Load vector of pressure, traction and gravity [N], shape (unknowns,)."""
+    F: Array = -problem.pressure * edge_load(basis, problem, top, problem.pressed)[1]
+    if problem.traction != 0:
+        F = F + problem.traction * edge_load(basis, problem, top, (-np.inf, np.inf))[0]
+    if problem.gravity != 0:
+        F = F - problem.gravity * (M @ translation(basis)[:, 1])
+    return F
+
+
+def translation(basis: Basis) -> Array:
+    """Unknowns of the unit translations in x and y, shape (unknowns, 2)."""
+    component = components(basis)
+    return np.stack([1 - component, component], axis=1)
+
+
+def components(basis: Basis) -> Array:
+    """Component (0: u, 1: v) of each unknown of a displacement basis, shape (unknowns,)."""
+    component = np.zeros(basis.N)
+    for dofs in (basis.nodal_dofs, basis.facet_dofs, basis.interior_dofs):
+        component[dofs[1::2]] = 1.0
+    return component
+
+
+def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
+    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,).
+
+    The rotation is discontinuous between cells: it is the mean over those that meet at the point.
 
     Raises
     ------
@@ -218,7 +243,16 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array]:
     if len(hits) == 0:
         raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
     u, v = values(basis, local[:, hits[:1]], cells[hits[:1]])
-    return u.toarray()[0], v.toarray()[0]
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, local[:, hits], cells[hits])
+
+
+def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
+    """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
+    row = np.zeros(basis.N)
+    for k in range(basis.Nbfun):
+        gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
+        np.add.at(row, basis.element_dofs[k, cells], (gradient[1, 0] - gradient[0, 1]) / 2 / len(cells))
+    return row
 
 
 def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:

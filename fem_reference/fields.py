@@ -13,7 +13,7 @@ from skfem.helpers import sym_grad
 
 from fem_reference import elasticity
 from fem_reference.mesh import block_mesh
-from fem_reference.model import Model, components
+from fem_reference.model import Model
 from fem_reference.problem import Array, Problem
 
 FRAMES = 200
@@ -27,7 +27,7 @@ def prolongation(problem: Problem, model: Model, basis: Basis) -> csr_array:
     Each unknown of the whole block is the model's unknown at the mirrored or shifted place, with the
     sign of the mirror; an unknown that the model dropped is at rest.
     """
-    component = components(basis)
+    component = elasticity.components(basis)
     x, y = basis.doflocs
     width = problem.base_length
     sign = np.ones(basis.N)
@@ -73,7 +73,7 @@ class FieldWriter:
     def record(self, number: int, D: Array) -> None:
         """Keep step `number` if it is one of the frames; the last step always is."""
         if number % self._stride == 0 or number == self._steps:
-            self._frames.append((number * self._step, self._problem.pressure * (self._prolong @ D)))
+            self._frames.append((number * self._step, self._problem.load_size * (self._prolong @ D)))
 
     def close(self) -> None:
         """Write the file."""

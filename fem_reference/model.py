@@ -35,14 +35,18 @@ CORNER_WARNING = (
 
 @dataclass(frozen=True)
 class Model:
-    """M D'' + K D = F for a unit pressure, and what is observed of D."""
+    """M D'' + K D = F + base_force y for a load of unit size, and what is observed of D."""
 
     M: csr_array
     """Consistent mass matrix [kg], shape (unknowns, unknowns)."""
     K: csr_array
     """Stiffness matrix with the springs [N/m]."""
     F: Array
-    """Load of a unit pressure [m2], shape (unknowns,)."""
+    """Constant load over the problem's `load_size` [m2], shape (unknowns,)."""
+    base_force: Array
+    """Load of a unit displacement of the base in x and in y [N/m], shape (unknowns, 2)."""
+    base_pressure: Array
+    """Contact pressure of a unit displacement of the base, the block held [Pa/m], shape (2,)."""
     observers: dict[str, Array]
     """Row of each column of a history, shape (unknowns,)."""
     places: Array
@@ -64,7 +68,7 @@ class Assembled:
     springs: csr_array
     """Stiffness of the foundation [N/m]."""
     F: Array
-    """Load of the problem's pressure [N]."""
+    """Constant load of the problem [N]."""
     basis: Basis
     """The displacement basis; coordinates relative to the start of the base."""
     observers: dict[str, Array]
@@ -106,26 +110,32 @@ def _assemble_on(problem: Problem, tagged: TaggedMesh, half: bool = False) -> As
     basis = elasticity.vector_basis(tagged.mesh, problem.degree)
     rule = elasticity.foundation_rule(problem, tagged.mesh, tagged.base, half)
     springs, pressure = elasticity.springs(basis, problem, rule)
-    u, v = elasticity.point_values(basis, problem.centroid)
+    u, v, rotation = elasticity.point_values(basis, problem.centroid)
+    M = elasticity.mass(basis, problem.density)
     return Assembled(
-        M=elasticity.mass(basis, problem.density),
+        M=M,
         K=elasticity.stiffness(basis, problem),
         springs=springs,
-        F=problem.pressure * elasticity.unit_load(basis, replace(problem, pressure=1.0), tagged.top),
+        F=elasticity.load(basis, problem, tagged.top, M),
         basis=basis,
-        observers={"displacement": v, "contact_pressure": pressure, "horizontal_displacement": u},
+        observers={
+            "displacement": v,
+            "contact_pressure": pressure,
+            "horizontal_displacement": u,
+            "rotation": rotation,
+        },
     )
 
 
 def whole_block(problem: Problem) -> Model:
     """Model of the whole block on its mesh."""
-    return _model(assemble(replace(problem, pressure=1.0)), "whole", ())
+    return _model(problem, assemble(problem.unit), "whole", ())
 
 
 def column_applies(problem: Problem) -> bool:
-    """Whether nothing depends on x: rectangle, structured mesh, mu = 0, distributed foundation."""
+    """Whether nothing depends on x: rectangle, structured mesh, mu = 0, distributed foundation, vertical load."""
     uniform = problem.poisson == 0 and problem.foundation == "distributed" and problem.mesh is None
-    return uniform and problem.rectangle is not None
+    return uniform and problem.rectangle is not None and problem.vertical
 
 
 def column(problem: Problem) -> Model:
@@ -158,9 +168,17 @@ def column(problem: Problem) -> Model:
         "displacement": np.concatenate([none, middle]),
         "contact_pressure": np.concatenate([none, -2 * problem.stiffness / width * base]),
         "horizontal_displacement": np.concatenate([middle, none]),
+        "rotation": np.zeros(2 * basis.N),
     }
     M, K = (csr_array(block_diag(pair)) for pair in ((B, B), (K_u, K_v)))
-    return Model(M, K, np.concatenate([none, -width * top]), observers, places, "column", ("one column of elements",))
+    unit = problem.unit
+    F_v = -unit.pressure * width * top - unit.gravity * (B @ np.ones(basis.N))
+    force, pressure = np.zeros((2 * basis.N, 2)), np.zeros(2)
+    if problem.motion is not None:
+        force[basis.N :, 1] = 2 * problem.stiffness * base
+        pressure[1] = 2 * problem.stiffness / width
+    F = np.concatenate([none, F_v])
+    return Model(M, K, F, force, pressure, observers, places, "column", ("one column of elements",))
 
 
 @BilinearForm
@@ -175,37 +193,34 @@ def _line_stiffness(u, v, w):  # type: ignore[no-untyped-def]
 
 def half_applies(problem: Problem) -> bool:
     """Whether the block and its mesh are symmetric: rectangle, structured, even number of elements."""
-    return problem.rectangle is not None and problem.mesh is None and problem.elements % 2 == 0
+    symmetric = problem.rectangle is not None and problem.vertical
+    return symmetric and problem.mesh is None and problem.elements % 2 == 0
 
 
 def half_block(problem: Problem) -> Model:
     """Model of the half next to the start of the base, with u = 0 on the mirror line."""
-    unit = replace(problem, pressure=1.0)
-    assembled = _assemble_on(unit, structured(unit, half=True), half=True)
-    # The other half's springs press as much: the mean over the base counts each half once.
-    observers = assembled.observers | {"contact_pressure": 2 * assembled.observers["contact_pressure"]}
-    model = _model(replace(assembled, observers=observers), "half", ("half the block",))
+    assembled = _assemble_on(problem.unit, structured(problem, half=True), half=True)
+    # The other half's springs press as much: the mean over the base counts each half once. Nothing turns the middle.
+    doubled = {"contact_pressure": 2 * assembled.observers["contact_pressure"]}
+    observers = assembled.observers | doubled | {"rotation": np.zeros(assembled.basis.N)}
+    model = _model(problem, replace(assembled, observers=observers), "half", ("half the block",))
     x, component = model.places[0], model.places[2]
     mirror = (component == 0) & (x > problem.base_length / 2 * (1 - 1e-9))
     return restrict(model, ~mirror)
 
 
-def _model(assembled: Assembled, kind: str, notes: tuple[str, ...]) -> Model:
+def _model(problem: Problem, assembled: Assembled, kind: str, notes: tuple[str, ...]) -> Model:
+    R = elasticity.translation(assembled.basis) * float(problem.motion is not None)
+    if problem.motion is not None and not problem.motion.sideways:
+        R[:, 0] = 0.0
+    pressure = -(assembled.observers["contact_pressure"] @ R)
     K = _plus(assembled.K, assembled.springs)
-    places = np.vstack([assembled.basis.doflocs, components(assembled.basis)])
-    return Model(assembled.M, K, assembled.F, assembled.observers, places, kind, notes)
+    places = np.vstack([assembled.basis.doflocs, elasticity.components(assembled.basis)])
+    return Model(assembled.M, K, assembled.F, assembled.springs @ R, pressure, assembled.observers, places, kind, notes)
 
 
 def _plus(left: csr_array, right: csr_array) -> csr_array:
     return csr_array(left + right)
-
-
-def components(basis: Basis) -> Array:
-    """Component (0: u, 1: v) of each unknown of a displacement basis, shape (unknowns,)."""
-    component = np.zeros(basis.N)
-    for dofs in (basis.nodal_dofs, basis.facet_dofs, basis.interior_dofs):
-        component[dofs[1::2]] = 1.0
-    return component
 
 
 def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:
@@ -216,6 +231,7 @@ def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:
         M=model.M[kept][:, kept],
         K=model.K[kept][:, kept],
         F=model.F[kept],
+        base_force=model.base_force[kept],
         observers={name: row[kept] for name, row in model.observers.items()},
         places=model.places[:, kept],
     )
@@ -226,7 +242,7 @@ def reachable(model: Model) -> Model:
     pattern = abs(model.K) + abs(model.M)
     count, label = connected_components(pattern, directed=False)
     touched = np.zeros(count, dtype=bool)
-    touched[label[model.F != 0]] = True
+    touched[label[(model.F != 0) | np.any(model.base_force != 0, axis=1)]] = True
     keep = touched[label]
     dropped, total = int(np.count_nonzero(~keep)), len(keep)
     if dropped == 0:

@@ -105,19 +105,23 @@ class Stepper:
     def __post_init__(self) -> None:
         self._solve = self.work.factor(effective_matrix(self.M, self.K, self.scheme))
 
-    def start(self) -> State:
-        """State at t = 0: at rest, unstrained, with the initial acceleration that the scheme asks for."""
+    def start(self, F: Array | None = None) -> State:
+        """State at t = 0: at rest, unstrained, with the initial acceleration that the scheme asks for.
+
+        The load is the constant one where `F` is not given.
+        """
         mass = None
         if self.scheme.start == "consistent":
             mass = self.work.factor(self.M) if self.scheme.alpha > 0 else self._solve
         zero = np.zeros_like(self.F)
-        return State(zero, zero, initial_acceleration(self.F, mass))
+        return State(zero, zero, initial_acceleration(self.F if F is None else F, mass))
 
-    def advance(self, state: State) -> State:
-        """One step."""
+    def advance(self, state: State, F: Array | None = None) -> State:
+        """One step, under the load `F` at its end where that is not the constant one."""
         s = self.scheme
+        F = self.F if F is None else F
         predicted = predictor(state, s)
-        residual = self.F - self.K @ state.D
+        residual = F - self.K @ state.D
         D = state.D + self._solve(corrector(state.D, predicted, self.M, residual, s))
-        A = acceleration(D, predicted, s) if s.alpha > 0 else self._solve(self.F - self.K @ D)
+        A = acceleration(D, predicted, s) if s.alpha > 0 else self._solve(F - self.K @ D)
         return State(D, velocity(state, A, s), A)

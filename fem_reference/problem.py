@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fem_reference.motion import Motion
 
 Array = NDArray[np.float64]
 
@@ -37,10 +39,11 @@ class Rectangle(NamedTuple):
 
 @dataclass(frozen=True)
 class Problem:
-    """One elastic block on a locked elastic foundation under a step of vertical pressure.
+    """One elastic block on a locked elastic foundation under loads that are switched on at t = 0.
 
     The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
-    edge; a pressure, switched on at t = 0, acts vertically downwards per unit length of the top edge.
+    edge; a pressure acts vertically downwards and a traction sideways per unit length of the top edge,
+    gravity on the whole block, and the fixed side of the springs may move.
 
     Raises
     ------
@@ -78,11 +81,20 @@ class Problem:
     """``"distributed"``, ``"patch"`` or ``"corner"``."""
     patch_width: float | None = None
     """Width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``."""
+    eccentricity: float = 0.0
+    """Shift towards +x of the middle of the pressed part of the top edge, whose length is L - 2 |e| [m]."""
+    traction: float = 0.0
+    """Traction towards +x on the whole top edge [Pa]."""
+    gravity: float = 0.0
+    """Acceleration of gravity, downwards [m/s2]."""
+    motion: Motion | None = None
+    """Motion of the fixed side of the foundation."""
 
     def __post_init__(self) -> None:
         self._check_polygon()
         self._check_material()
         self._check_foundation()
+        self._check_loads()
         _require(self.elements >= 1, "elements", "must be at least 1", self.elements)
         _require(self.degree in (1, 2), "degree", "must be 1 or 2", self.degree)
 
@@ -107,7 +119,13 @@ class Problem:
         below = self.poisson < 0.5 or (self.poisson == 0.5 and not strain)
         rule = f"must be above -1 and {'below' if strain else 'at most'} 0.5 in {self.hypothesis}"
         _require(self.poisson > -1 and below, "poisson", rule, self.poisson)
-        _finite("pressure", self.pressure)
+
+    def _check_loads(self) -> None:
+        for field in ("pressure", "eccentricity", "traction", "gravity"):
+            _finite(field, getattr(self, field))
+        inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
+        rule = f"must be below half the top edge, {self.top_length / 2:g}"
+        _require(inside, "eccentricity", rule, self.eccentricity)
 
     def _check_foundation(self) -> None:
         _finite("stiffness", self.stiffness)
@@ -134,6 +152,50 @@ class Problem:
     def base_length(self) -> float:
         """Length a of the base [m]."""
         return float(np.hypot(*self.outline[1]))
+
+    @property
+    def top_ends(self) -> tuple[Array, Array]:
+        """Ends of the top edge relative to the start of the base, each of shape (2,) [m]."""
+        index = (self.top - self.base) % len(self.outline)
+        return self.outline[index], self.outline[(index + 1) % len(self.outline)]
+
+    @property
+    def top_length(self) -> float:
+        """Length L of the top edge [m]."""
+        start, end = self.top_ends
+        return float(np.hypot(*(end - start)))
+
+    @property
+    def pressed(self) -> tuple[float, float]:
+        """Interval of the arc length of the top edge that carries the pressure [m]."""
+        if self.eccentricity == 0:
+            return -np.inf, np.inf
+        side = self.top_ends[1] - self.top_ends[0]
+        along_x = side[0] > 0 or (side[0] == 0 and side[1] > 0)
+        shift = self.eccentricity if along_x else -self.eccentricity
+        return max(0.0, 2 * shift), min(self.top_length, self.top_length + 2 * shift)
+
+    @property
+    def load_size(self) -> float:
+        """Size of the constant loads as a stress, one with a moving base, which sets its own scale [Pa]."""
+        if self.motion is not None:
+            return 1.0
+        weight = self.density * self.gravity * float(np.sqrt(self.area))
+        return max(abs(self.pressure), abs(self.traction), abs(weight))
+
+    @property
+    def unit(self) -> Problem:
+        """The problem under its loads over `load_size`; under a pressure of 1 Pa where there is no load."""
+        size = self.load_size
+        if size == 0:
+            return replace(self, pressure=1.0)
+        return replace(self, pressure=self.pressure / size, traction=self.traction / size, gravity=self.gravity / size)
+
+    @property
+    def vertical(self) -> bool:
+        """Whether all loads are uniform in x and act along y, so that the response may be symmetric."""
+        level = self.eccentricity == 0 and self.traction == 0
+        return level and not (self.motion is not None and self.motion.sideways)
 
     @cached_property
     def tangent(self) -> Array:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from fem_reference.problem import Array
 
-COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-"""Columns of a history: v at the centroid [m], mean base pressure [Pa], u at the centroid [m]."""
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+"""Columns of a history: v at the centroid [m], mean base pressure [Pa], u and rotation at the centroid [m, 1]."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ def solve(
     full: bool = False,
     fields: str | Path | None = None,
 ) -> Result:
-    """Integrate the block from rest under the step of pressure; row 0 of the result is step 1.
+    """Integrate the block from rest under its loads.
 
     Parameters
     ----------
@@ -48,7 +48,8 @@ def solve(
     stepper = Stepper(model.M, model.K, model.F, scheme)
     writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
     ready = time.perf_counter()
-    history = problem.pressure * run(stepper, model, steps, tuple(columns), writer)
+    moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
+    history = problem.load_size * run(stepper, model, steps, tuple(columns), writer, moved)
     ended = time.perf_counter()
     return Result(
         time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
@@ -63,25 +64,41 @@ def solve(
     )
 
 
-def run(stepper: Stepper, model: Model, steps: int, columns: tuple[str, ...], writer: FieldWriter | None) -> Array:
-    """Observe every step for a unit pressure; shape (columns, steps)."""
+def run(
+    stepper: Stepper,
+    model: Model,
+    steps: int,
+    columns: tuple[str, ...],
+    writer: FieldWriter | None,
+    moved: Array | None = None,
+) -> Array:
+    """Observe every step for a load of unit size; shape (columns, steps).
+
+    `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed.
+    """
     rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
     history = np.empty((len(columns), steps))
+    forces = None if moved is None else model.F + moved @ model.base_force.T
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
-        state = stepper.start()
+        state = stepper.start(None if forces is None else forces[0])
         for n in range(steps):
-            state = stepper.advance(state)
+            state = stepper.advance(state, None if forces is None else forces[n + 1])
             history[:, n] = rows @ state.D
             if writer is not None:
                 writer.record(n + 1, state.D)
     if writer is not None:
         writer.close()
+    if moved is not None and "contact_pressure" in columns:
+        history[columns.index("contact_pressure")] += moved[1:] @ model.base_pressure
     return history
 
 
 def static(problem: Problem, full: bool = False) -> dict[str, float]:
-    """Static value of every column: the observed K^-1 F."""
+    """Value of every column at rest under the constant loads, on the base's last position: K^-1 F observed."""
     model = build(problem, full)
-    D = Work().factor(model.K)(model.F)
-    return {name: float(problem.pressure * (model.observers[name] @ D)) for name in COLUMNS}
+    moved = np.zeros(2) if problem.motion is None else problem.motion(np.array([np.inf]))[0]
+    D = Work().factor(model.K)(model.F + model.base_force @ moved)
+    values = {name: float(problem.load_size * (model.observers[name] @ D)) for name in COLUMNS}
+    values["contact_pressure"] += float(model.base_pressure @ moved)
+    return values

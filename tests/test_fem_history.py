@@ -184,6 +184,6 @@ def test_bad_requests_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"^steps: "):
         solve(problem, CONSTANT, 0)
     with pytest.raises(ValueError, match=r"^columns: "):
-        solve(problem, CONSTANT, 1, columns=("rotation",))
+        solve(problem, CONSTANT, 1, columns=("strain_x",))
     with pytest.raises(ValueError, match=r"^fields: "):
         solve(problem, CONSTANT, 1, fields=tmp_path / "block.txt")

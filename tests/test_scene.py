@@ -46,6 +46,10 @@ REFUSED = [
     ({"contact__stiffness": 0.0}, "contact.stiffness: must be greater than 0, got 0.0"),
     ({"contact__shear_stiffness": -1.0}, "contact.shear_stiffness: must be greater than 0, got -1.0"),
     ({"load__pressure": math.inf}, "load.pressure: must be a finite number, got inf"),
+    ({"load__eccentricity": 1.0}, "load: eccentricity must be below half the top edge 1, got 1"),
+    ({"load__pressure": 0.0, "load__eccentricity": 0.5}, "load: eccentricity goes with a pressure only, got 0.5"),
+    ({"load__gravity": math.nan}, "load.gravity: must be a finite number, got nan"),
+    ({"load__base_motion": 3}, "load.base_motion: must be a valid string, got 3"),
     ({"time__step": 0.0}, "time.step: must be greater than 0, got 0.0"),
     ({"time__steps": 0}, "time.steps: must be greater than or equal to 1, got 0"),
     ({"time__steps": 1.5}, "time.steps: must be a whole number, got 1.5"),
@@ -110,7 +114,9 @@ def test_edges_of_a_polygon_are_checked() -> None:
 def test_a_missing_key_is_named() -> None:
     data = changed()
     del data["load"]["pressure"]
-    with pytest.raises(SceneError, match=r"x.toml: load.pressure: is required, got nothing"):
+    with pytest.raises(
+        SceneError, match=r"x.toml: load: one of pressure, traction, gravity or base_motion is required"
+    ):
         parse_scene(data, "x.toml")
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from validation.history import PRESSURE, History, Mode, Outcome, Run
+from validation.record import base_record
 from validation.scene import Scene, SceneError
 from validation.solvers import Solver
 
@@ -103,6 +104,14 @@ def conditional(scene: Scene) -> bool:
     return bool(np.isfinite(critical_omega(scene.time.alpha, scene.time.delta, scene.time.discount)))
 
 
+def base_motion(scene: Scene) -> dda.BaseMotion | None:
+    """Return the motion of a scene's base, or None where it is fixed."""
+    import dda
+
+    record = base_record(scene)
+    return None if record is None else dda.BaseMotion(record.time, np.column_stack([record.x, record.y]))
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
@@ -116,7 +125,10 @@ class DDA(Solver):
         b = scene.block
         block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
         contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
-        return dda.TwoBlockModel(block, contact, scene.load.pressure, b.base, b.top)
+        q = scene.load
+        return dda.TwoBlockModel(
+            block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene)
+        )
 
     def scheme(self, scene: Scene) -> dda.Scheme:
         """Return the scheme of a scene."""
@@ -192,7 +204,9 @@ class FiniteElements(Solver):
         """Return the finite-element problem of a scene."""
         import fem_reference
 
-        b, f, c = scene.block, scene.fem, scene.contact
+        b, f, c, q = scene.block, scene.fem, scene.contact, scene.load
+        record = base_record(scene)
+        motion = None if record is None else fem_reference.Motion(*map(tuple, (record.time, record.x, record.y)))
         try:
             return fem_reference.Problem(
                 vertices=b.outline,
@@ -204,12 +218,16 @@ class FiniteElements(Solver):
                 hypothesis=b.hypothesis,
                 stiffness=c.stiffness,
                 shear_stiffness=c.shear,
-                pressure=scene.load.pressure,
+                pressure=q.pressure,
                 elements=f.per_side,
                 degree=f.degree,
                 mesh=f.mesh,
                 foundation=f.foundation,
                 patch_width=f.patch_width,
+                eccentricity=q.eccentricity,
+                traction=q.traction,
+                gravity=q.gravity,
+                motion=motion,
             )
         except ValueError as error:
             raise SceneError(f"{scene.name}: {error}") from None

@@ -46,7 +46,9 @@ class Case:
         read = {section: data[section] for section in solver.sections}
         read["run"] = sorted(self.scene.run.columns)
         if self.scene.fem.mesh and "fem" in solver.sections:
-            read["mesh"] = _file_digest(Path(self.scene.fem.mesh))
+            read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
+        if self.scene.load.base_motion:
+            read["base_motion"] = _file_digest(Path(self.scene.load.base_motion), "record of the base's motion")
         state = [
             solver.name,
             self.full,
@@ -56,11 +58,11 @@ class Case:
         return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
 
 
-def _file_digest(path: Path) -> str:
+def _file_digest(path: Path, what: str) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise SceneError(f"{path}: mesh file cannot be read: {error.strerror}") from None
+        raise SceneError(f"{path}: {what} cannot be read: {error.strerror}") from None
 
 
 @functools.cache

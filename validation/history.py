@@ -209,14 +209,27 @@ def read_csv(path: Path) -> History:
     SceneError
         The file cannot be read or is not such a table.
     """
+    names, table = read_table(path)
+    return History(table[:, 0], dict(zip(names[1:], table.T[1:], strict=True)))
+
+
+def read_table(path: Path) -> tuple[list[str], Array]:
+    """Read a CSV table of numbers under a header that begins with time: names and values, a row a time.
+
+    Raises
+    ------
+    SceneError
+        The file cannot be read or is not such a table.
+    """
     try:
         with path.open(encoding="utf-8", newline="") as stream:
-            names = next(csv.reader(stream), [])
-            table = np.atleast_2d(np.loadtxt(stream, delimiter=","))
+            names = [name.strip() for name in next(csv.reader(stream), [])]
+            lines = [line for line in stream if line.strip()]
+            table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: must be a table of numbers under a header: {error}") from None
     if not names or names[0] != "time" or table.shape[1] != len(names):
         raise SceneError(f"{path}: header must begin with time and name every column, got {','.join(names)!r}")
-    return History(table[:, 0], dict(zip(names[1:], table.T[1:], strict=True)))
+    return names, table

@@ -134,9 +134,26 @@ class ContactSection(Section):
 
 
 class LoadSection(Section):
-    """The load that is switched on at t = 0."""
+    """What acts from t = 0 on: loads that are switched on, and the motion of the base; each alone or together."""
 
-    pressure: Real  # q, Pa, downwards on the top edge
+    pressure: Real = 0.0  # q, Pa, downwards on the top edge
+    eccentricity: Real = 0.0  # m, shift towards +x of the middle of the pressed part, whose length is L - 2 |e|
+    traction: Real = 0.0  # Pa, towards +x on the whole top edge
+    gravity: Real = 0.0  # m/s2, downwards
+    base_motion: str | None = None  # CSV file with the header time,x or time,y or time,x,y (s, m)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not self.model_fields_set & {"pressure", "traction", "gravity", "base_motion"}:
+            raise ValueError("one of pressure, traction, gravity or base_motion is required, got none")
+        if self.eccentricity != 0 and self.pressure == 0:
+            raise ValueError(f"eccentricity goes with a pressure only, got {self.eccentricity:g} without one")
+        return self
+
+    @property
+    def centred(self) -> bool:
+        """Whether a centred pressure is all there is."""
+        return self.eccentricity == self.traction == self.gravity == 0 and self.base_motion is None
 
 
 class TimeSection(Section):
@@ -246,6 +263,16 @@ class Scene(Section):
             raise ValueError(
                 f"fem: patch_width must be at most half the base length "
                 f"{self.block.base_length / 2:g}, got {self.fem.patch_width:g}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _check_pressed_part(self) -> Self:
+        (x1, y1), (x2, y2) = self.block.edge(self.block.top)
+        half = math.hypot(x2 - x1, y2 - y1) / 2
+        if self.load.eccentricity and abs(self.load.eccentricity) >= half:
+            raise ValueError(
+                f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
             )
         return self
 
@@ -438,6 +465,8 @@ def load_scene(source: str | Path) -> Scene:
         raise SceneError(f"{path.name}: name: unknown key, got {_clip(data['name'])}")
     if isinstance(mesh := data.get("fem", {}) and isinstance(data["fem"], dict) and data["fem"].get("mesh"), str):
         data["fem"]["mesh"] = str(path.parent / mesh)
+    if isinstance(data.get("load"), dict) and isinstance(record := data["load"].get("base_motion"), str):
+        data["load"]["base_motion"] = str(path.parent / record)
     return parse_scene({"name": path.stem} | data, path.name)
 
 

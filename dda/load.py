@@ -1,0 +1,90 @@
+"""What acts on a block: loads switched on at t = 0, and the motion of the base."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BaseMotion:
+    """Displacement of the base, linear between the instants of a record and constant beyond them.
+
+    Raises
+    ------
+    ValueError
+        If the instants do not increase, or a number is not finite, or the lengths differ.
+    """
+
+    time: ArrayLike  # (n,) instants [s]
+    displacement: ArrayLike  # (n, 2) displacement of the base in x and y [m]
+
+    def __post_init__(self) -> None:
+        """Check the record."""
+        time, moved = np.asarray(self.time, float), np.asarray(self.displacement, float)
+        if time.ndim != 1 or len(time) < 1 or moved.shape != (len(time), 2):
+            raise ValueError(f"displacement: must be one (x, y) for each instant, got shape {moved.shape}")
+        if not (np.all(np.isfinite(time)) and np.all(np.isfinite(moved))):
+            raise ValueError("displacement: must hold finite numbers, got others")
+        if not np.all(np.diff(time) > 0):
+            raise ValueError("time: must increase from instant to instant, got a step that does not")
+
+    def at(self, instants: ArrayLike) -> Array:
+        """Return the displacement at given instants, (len(instants), 2) [m]."""
+        times, record, asked = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
+        return np.column_stack([np.interp(asked, times, column) for column in record.T])
+
+
+@dataclass(frozen=True)
+class Load:
+    """Loads of one block or of a system of blocks, all switched on at t = 0; each alone or together.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite.
+    """
+
+    pressure: float = 0.0  # q, downwards on the top edge [Pa]
+    eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
+    traction: float = 0.0  # towards +x, on the whole top edge [Pa]
+    gravity: float = 0.0  # g, downwards [m/s^2]
+    motion: BaseMotion | None = None  # of the springs' base ends
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for field in ("pressure", "eccentricity", "traction", "gravity"):
+            value = getattr(self, field)
+            if not math.isfinite(value):
+                raise ValueError(f"{field}: must be finite, got {value!r}")
+
+    def size(self, weight: float) -> float:
+        """Return the largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
+        return max(abs(self.pressure), abs(self.traction), abs(weight * self.gravity))
+
+
+def pressed_part(start: Array, end: Array, eccentricity: float) -> tuple[Array, Array]:
+    """Return the ends of the pressed part of the top edge.
+
+    It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards
+    +x (towards +y on a vertical edge): the length is L - 2 |eccentricity|, the pressure is the same.
+
+    Raises
+    ------
+    ValueError
+        If nothing of the edge is left.
+    """
+    side = end - start
+    length = float(np.hypot(*side))
+    if eccentricity == 0:
+        return start, end
+    if not 2 * abs(eccentricity) < length:
+        raise ValueError(f"eccentricity: must be below half the top edge {length / 2:g}, got {eccentricity!r}")
+    forward = side[0] > 0 or (side[0] == 0 and side[1] > 0)
+    shift = 2 * (eccentricity if forward else -eccentricity) / length
+    return (start + shift * side, end) if shift > 0 else (start, end + shift * side)

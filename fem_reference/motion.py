@@ -1,0 +1,43 @@
+"""Motion of the base of the block."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Displacement of the foundation's fixed side, piecewise linear, held beyond both ends of its record.
+
+    Raises
+    ------
+    ValueError
+        For a record that is not one of increasing instants and finite numbers.
+    """
+
+    time: tuple[float, ...]
+    """Instants [s], increasing."""
+    x: tuple[float, ...]
+    """Horizontal displacement at the instants [m]."""
+    y: tuple[float, ...]
+    """Vertical displacement at the instants [m]."""
+
+    def __post_init__(self) -> None:
+        if not len(self.time) == len(self.x) == len(self.y) > 0:
+            raise ValueError(f"motion: must give x and y for every instant, got {len(self.time)} instants")
+        if not np.all(np.isfinite([self.time, self.x, self.y])) or np.any(np.diff(self.time) <= 0):
+            raise ValueError("motion: must hold finite numbers at increasing instants, got others")
+
+    def __call__(self, instants: Array) -> Array:
+        """Displacement (x, y) at some instants, shape (count, 2) [m]."""
+        return np.stack([np.interp(instants, self.time, part) for part in (self.x, self.y)], axis=1)
+
+    @property
+    def sideways(self) -> bool:
+        """Whether the base ever moves in x."""
+        return any(self.x)

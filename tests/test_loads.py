@@ -1,0 +1,216 @@
+"""Eccentric, sideways and volume loads and a moving base: DDA, finite elements and closed forms."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+import dda
+import fem_reference
+from fem_reference.elasticity import translation
+from fem_reference.model import assemble, build
+from validation import load_scene, solve
+from validation.scene import SceneError
+
+PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
+TRAPEZIUM = ((0.3, 0.1), (2.3, 0.4), (1.9, 1.6), (0.5, 1.4))
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-1e-3, 2e-3], [0.0, 5e-4]])
+
+
+def textbook_newmark(model, scheme, steps):
+    """Return the columns by plain Newmark on absolute accelerations in D, the springs' base ends moving."""
+    M, K, F = model.mass, model.stiffness, model.load
+    tangent, normal, a = dda.contact.base_directions(model.block, model.base)
+    n_rows, t_rows = dda.spring_vectors(model.block, model.base)
+    p, ps = model.contact.normal, model.contact.shear
+    alpha, delta, gg, dt = scheme.alpha, scheme.delta, scheme.gg, scheme.step
+    instants = dt * np.arange(steps + 1)
+    moved = model.motion.at(instants) if model.motion else np.zeros((steps + 1, 2))
+    forces = F + np.outer(moved @ normal, p * n_rows.sum(0)) + np.outer(moved @ tangent, ps * t_rows.sum(0))
+    D, V = np.zeros(6), np.zeros(6)
+    A = np.linalg.solve(M, forces[0]) if scheme.start == "consistent" else np.zeros(6)
+    found = []
+    for y, force in zip(moved[1:], forces[1:], strict=True):
+        ahead = D + gg * dt * V + dt * dt * (0.5 - alpha) * A
+        A1 = np.linalg.solve(M + alpha * dt * dt * K, force - K @ ahead)
+        D = ahead + alpha * dt * dt * A1
+        V, A = gg * V + dt * ((1 - delta) * A + delta * A1), A1
+        pressure = -p * np.sum(n_rows @ D - normal @ y) / a
+        found.append([D[1], pressure, D[0], D[2]])
+    return np.array(found).T
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(
+    "loads",
+    [
+        {"pressure": 3e6, "eccentricity": 0.2},
+        {"pressure": 0.0, "traction": 2e6},
+        {"pressure": 0.0, "gravity": 9.81},
+        {"pressure": 0.0, "motion": RECORD},
+        {"pressure": -1e6, "eccentricity": -0.3, "traction": -2e6, "gravity": 9.81, "motion": RECORD},
+    ],
+    ids=lambda loads: "+".join(loads),
+)
+def test_histories_are_those_of_the_six_unknowns(loads, start):
+    block = dda.Block(PENTAGON, dda.Material(2400.0, 2e9, 0.2))
+    model = dda.TwoBlockModel(block, dda.Contact(3e9, 1e9), base=1, top=3, **loads)
+    scheme = dda.Scheme(0.4, 0.7, 0.99, 1.3e-3, start)
+    result = dda.solve(model, scheme, 60, COLUMNS)
+    expected = textbook_newmark(model, scheme, 60)
+    for name, values in zip(COLUMNS, expected, strict=True):
+        # the textbook side loses the digits: soft springs, 60 steps, a conditioning of 1e3
+        np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-11 * np.abs(values).max())
+
+
+def test_a_base_that_moves_as_a_whole_carries_the_block_however_stiff_the_springs():
+    block = dda.Block.rectangle(2.0, 2.0, dda.Material(2700.0, 1e9, 0.0))
+    ramp = dda.BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 1e-3]])
+    # From the first step on the ramp moves the base at 1e-3 m/s: the springs hold what accelerates the mass.
+    scheme = dda.Scheme(0.5, 1.0, 1.0, 1e-3)
+    pressures = []
+    for p in (1e17, 1e20):
+        model = dda.TwoBlockModel(block, dda.Contact(p), 0.0, motion=ramp)
+        pressures.append(dda.solve(model, scheme, 500, ("contact_pressure",)).columns["contact_pressure"])
+    # The contact mode's root is -1 + 8 / Omega^2, Omega^2 = 2e7 at the softer: 2e-4 over 500 steps. Digits lost in
+    # p times a difference of displacements would be 5e6 Pa.
+    assert np.max(np.abs(pressures[0] - pressures[1])) < 5e-4 * np.max(np.abs(pressures[1]))
+
+
+@pytest.mark.parametrize(("a", "p", "tau"), [(2.0, 1e9, 1e5), (0.7, 4e9, -3e4)])
+def test_statics_of_a_sideways_traction(a, p, tau):
+    material = dda.Material(2700.0, 2e9, 0.25)
+    static = dda.TwoBlockModel(dda.Block.rectangle(a, a, material), dda.Contact(p), 0.0, traction=tau).static()
+    G = 2e9 / 2.5
+    tilt, shear = -2 * tau / p, tau / G  # moment tau a^2 on p a^2 / 2; force tau a at the lever a over A G
+    assert static["rotation"] == pytest.approx(tilt - shear / 2, rel=1e-13)
+    assert static["horizontal_displacement"] == pytest.approx(tau * a / (2 * p) + a / 2 * (shear - tilt), rel=1e-13)
+    assert abs(static["contact_pressure"]) < 1e-12 * abs(tau)
+
+
+@pytest.mark.parametrize(("e", "q", "g"), [(0.3, 5e6, 0.0), (-0.8, -1e6, 9.81)])
+def test_statics_of_eccentric_pressure_and_weight(e, q, g):
+    a, p, rho = 2.0, 3e9, 2500.0
+    block = dda.Block.rectangle(a, a, dda.Material(rho, 1e9, 0.0))
+    static = dda.TwoBlockModel(block, dda.Contact(p), q, eccentricity=e, gravity=g).static()
+    force = q * (a - 2 * abs(e))
+    assert static["contact_pressure"] == pytest.approx(force / a + rho * g * a, rel=1e-13)
+    G = 1e9 / 2
+    shear = 0.0 * G  # a vertical force has no lever in y
+    assert static["rotation"] == pytest.approx(-force * e / (p * a * a / 2) - shear, rel=1e-13)
+
+
+def problem(**changes):
+    data = {"density": 2400.0, "young": 2e9, "poisson": 0.2, "hypothesis": "plane strain", "stiffness": 3e9}
+    data |= {"shear_stiffness": 1e9, "pressure": 0.0, "foundation": "corner", "elements": 3, "degree": 1}
+    return fem_reference.Problem(TRAPEZIUM, 0, 2, **(data | changes))
+
+
+@pytest.mark.parametrize(
+    "loads",
+    [
+        {"pressure": 3e6, "eccentricity": 0.2},
+        {"pressure": 3e6, "eccentricity": -0.5},
+        {"traction": 2e6},
+        {"gravity": 9.81},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("degree", [1, 2])
+def test_loads_of_the_mesh_on_affine_fields_are_those_of_the_block(loads, degree):
+    material = dda.Material(2400.0, 2e9, 0.2, "plane strain")
+    block = dda.Block(TRAPEZIUM, material)
+    model = dda.TwoBlockModel(block, dda.Contact(3e9, 1e9), **({"pressure": 0.0} | loads))
+    assembled = assemble(problem(degree=degree, **loads))
+    x, y = assembled.basis.doflocs + np.array(TRAPEZIUM[0])[:, None]
+    component = translation(assembled.basis)[:, 1].astype(int)
+    T = np.array([block.T(*point)[c] for point, c in zip(zip(x, y, strict=True), component, strict=True)])
+    np.testing.assert_allclose(T.T @ assembled.F, model.load, rtol=0, atol=1e-13 * np.abs(model.load).max())
+    rotation = assembled.observers["rotation"] @ T
+    np.testing.assert_allclose(rotation, [0, 0, 1, 0, 0, 0], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+def test_one_column_and_half_the_block_keep_weight_and_vertical_motion(start):
+    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+    motion = fem_reference.Motion((0.0, 0.01, 0.03), (0.0, 0.0, 0.0), (1e-4, 2e-3, -1e-3))
+    scheme = fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3, start)
+    for poisson, kind in ((0.0, "column"), (0.25, "half")):
+        changes = {"vertices": square, "poisson": poisson, "foundation": "distributed", "elements": 4}
+        case = replace(problem(pressure=1e5, gravity=9.81, motion=motion), **changes)
+        assert build(case).kind == kind
+        saved, full = (fem_reference.solve(case, scheme, 40, COLUMNS, full=full) for full in (False, True))
+        for name in COLUMNS:
+            scale = max(np.abs(full.columns[name]).max(), 1e-6 if name in COLUMNS[2:] else 0.0)
+            # rounding of the full model's solution; what is zero by symmetry stays so to 1e-11 of 1e-6
+            np.testing.assert_allclose(saved.columns[name], full.columns[name], rtol=0, atol=1e-10 * scale)
+
+
+def test_the_foundation_moved_at_once_moves_the_finite_element_block_in_the_end():
+    motion = fem_reference.Motion((0.0,), (1e-3,), (-2e-3,))
+    case = problem(motion=motion, foundation="distributed")
+    static = fem_reference.static(case)
+    assert static["displacement"] == pytest.approx(-2e-3, rel=1e-10)
+    assert static["horizontal_displacement"] == pytest.approx(1e-3, rel=1e-10)
+    assert abs(static["contact_pressure"]) < 1e-2  # of forces of 1e6 Pa that cancel
+    result = fem_reference.solve(case, fem_reference.Scheme(0.5, 1.0, 0.8, 1e-2), 400, COLUMNS)
+    for name in COLUMNS:
+        assert result.columns[name][-1] == pytest.approx(static[name], abs=1e-9 if name != COLUMNS[1] else 1.0)
+
+
+def scene_with(tmp_path: Path, load: str, record: str | None = None) -> Path:
+    text = SCENE.replace("pressure = 5.0e6", load) + '[run]\nsolvers = ["dda", "fem"]\n'
+    text += f"columns = {list(COLUMNS)!r}\n"
+    path = tmp_path / "loads.toml"
+    path.write_text(text)
+    if record is not None:
+        (tmp_path / "quake.csv").write_text(record)
+    return path
+
+
+LOADS = ("pressure = 1e6\neccentricity = 0.2", "traction = 2e5", "gravity = 9.81", 'base_motion = "quake.csv"')
+QUAKE = "time,x,y\n0,0,0\n0.01,1e-3,2e-4\n0.5,0,0\n"
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_a_scene_hands_every_load_to_the_solver_and_their_effects_add_up(tmp_path, solver):
+    alone, together = (
+        [solve(load_scene(scene_with(tmp_path, load, QUAKE)), solver).history for load in loads]
+        for loads in (LOADS, ("\n".join(LOADS),))
+    )
+    for name in COLUMNS:
+        values = np.array([history.columns[name] for history in alone])
+        scale = np.abs(values).max()
+        np.testing.assert_allclose(values.sum(0), together[0].columns[name], rtol=0, atol=1e-10 * scale)
+    moved = np.array([[np.abs(h.columns[name]).max() for name in COLUMNS] for h in alone])
+    # weight moves nothing sideways and nothing turns; a traction leaves the mean pressure alone
+    seen = moved > 1e-9 * moved.max(axis=0)
+    assert seen.tolist() == [[True] * 4, [False, False, True, True], [True, True, False, False], [True] * 4]
+
+
+@pytest.mark.parametrize(
+    ("record", "words"),
+    [
+        (None, "cannot be read"),
+        ("time,z\n0,0\n", "header must be time,x or time,y or time,x,y"),
+        ("time,x\n0,0\n0,1\n", "time must increase from row to row, got 0 after 0"),
+        ("time,x\n0,nan\n", "must hold finite numbers"),
+        ("time,x\n0,a\n", "must be a table of numbers"),
+        ("time,x\n", "header must begin with time and name every column"),
+    ],
+)
+def test_records_are_checked(tmp_path, record, words):
+    scene = load_scene(scene_with(tmp_path, 'base_motion = "quake.csv"', record))
+    with pytest.raises(SceneError, match=words):
+        solve(scene, "dda")
+
+
+def test_the_exact_bar_says_why_it_does_not_apply(tmp_path):
+    scene = load_scene(scene_with(tmp_path, "traction = 1e5"))
+    with pytest.raises(SceneError, match="centred pressure alone"):
+        solve(scene, "bar")
+    with pytest.raises(SceneError, match="centred pressure alone"):
+        solve(scene, "dda-textbook")
