@@ -75,15 +75,15 @@ class GapForm:
         """
         reached = (self.F != 0) | np.any(self.M @ self.R != 0, axis=1)
         coupled = self.M != 0
-        for _ in self.unknowns:
-            reached = reached | (coupled @ reached)
+        while np.any((grown := reached | coupled @ reached) != reached):
+            reached = grown
         return self.restricted(np.flatnonzero(reached))
 
     def restricted(self, kept: NDArray[np.intp]) -> GapForm:
         """Return the form in the unknowns with the given indices."""
         return GapForm(
             tuple(self.unknowns[i] for i in kept),
-            self.M[np.ix_(kept, kept)],
+            self.M[kept[:, None], kept],
             self.K[kept],
             self.F[kept],
             self.R[kept],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,28 +40,38 @@ def modal_form(form: GapForm) -> ModalForm:
 
 
 def _jacobi(matrix: Array) -> tuple[Array, Array]:
-    """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations."""
-    A, V = matrix.copy(), np.eye(len(matrix))
-    pairs = [(i, j) for i in range(len(A)) for j in range(i + 1, len(A))]
+    """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations.
+
+    A handful of numbers: Python's own are faster here than arrays.
+    """
+    A = matrix.tolist()
+    n = len(A)
+    V = np.eye(n).tolist()
+    pairs = [(i, j) for i in range(n) for j in range(i + 1, n)]
     for _ in range(_SWEEPS):
-        off = [(i, j) for i, j in pairs if abs(A[i, j]) > 1e-17 * np.sqrt(A[i, i] * A[j, j])]
+        off = [(i, j) for i, j in pairs if abs(A[i][j]) > 1e-17 * math.sqrt(A[i][i] * A[j][j])]
         for i, j in off:
             _rotate(A, V, i, j)
         if not off:
             break
-    return np.diag(A).copy(), V
+    return np.array([A[i][i] for i in range(n)]), np.array(V).T
 
 
-def _rotate(A: Array, V: Array, i: int, j: int) -> None:
-    """Annihilate A[i, j] by a plane rotation in place and gather it in V."""
-    if A[i, j] == 0:
+def _rotate(A: list[list[float]], V: list[list[float]], i: int, j: int) -> None:
+    """Annihilate A[i][j] by a plane rotation in place and gather it in the rows of V."""
+    if A[i][j] == 0:
         return
-    theta = (A[j, j] - A[i, i]) / (2 * A[i, j])
-    t = np.copysign(1.0, theta) / (abs(theta) + np.hypot(1.0, theta))
-    c = 1 / np.hypot(1.0, t)
+    theta = (A[j][j] - A[i][i]) / (2 * A[i][j])
+    t = math.copysign(1.0, theta) / (abs(theta) + math.hypot(1.0, theta))
+    c = 1 / math.hypot(1.0, t)
     s = t * c
-    a_ii, a_jj = A[i, i] - t * A[i, j], A[j, j] + t * A[i, j]
-    for B in (A, A.T, V):
-        B[:, i], B[:, j] = c * B[:, i] - s * B[:, j], s * B[:, i] + c * B[:, j]
-    A[i, i], A[j, j] = a_ii, a_jj
-    A[i, j] = A[j, i] = 0.0
+    a_ii, a_jj = A[i][i] - t * A[i][j], A[j][j] + t * A[i][j]
+    for row in A:
+        row[i], row[j] = c * row[i] - s * row[j], s * row[i] + c * row[j]
+    for B in (A, V):
+        B[i], B[j] = (
+            [c * x - s * y for x, y in zip(B[i], B[j], strict=True)],
+            [s * x + c * y for x, y in zip(B[i], B[j], strict=True)],
+        )
+    A[i][i], A[j][j] = a_ii, a_jj
+    A[i][j] = A[j][i] = 0.0

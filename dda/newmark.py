@@ -11,8 +11,9 @@ which is (6), (7) and M A1 + K D1 = F, rearranged. Nothing is divided by alpha o
 never inverted, and with a diagonal k every force is one product: an error of one rounding in
 a displacement is an error of one rounding in its force, however stiff the spring.
 
-Histories are stepped mode by mode (M = 1, k = (w dt)^2), because the rounding of a large slow
-motion must not reach a stiff contact mode, whose roots near -1 would let it grow.
+Histories are made mode by mode (M = 1, k = (w dt)^2), because the rounding of a large slow
+motion must not reach a stiff contact mode, whose roots near -1 would let it grow; `dda.blocked`
+does so without a loop over the steps, from the same lines.
 """
 
 from __future__ import annotations
@@ -26,9 +27,11 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.exact import Exact
+
 Array = NDArray[np.float64]
 Start = Literal["zero", "consistent"]
-Real = TypeVar("Real", float, Array)  # one mode, or all unknowns at once
+Real = TypeVar("Real", float, Array, Exact)  # one mode, all unknowns at once, one mode with all digits
 
 
 @dataclass(frozen=True)
@@ -91,12 +94,10 @@ def momentum_balance(scheme: Scheme, F: Real, k: Real, D: Real, P: Real, f: Real
     return predictor(scheme, P, f) + scheme.alpha * acceleration_corrector(F, k, D)
 
 
-def modal_step(
-    scheme: Scheme, S: float, k: float, F: float, state: tuple[float, float, float]
-) -> tuple[float, float, float]:
+def modal_step(scheme: Scheme, S: Real, k: Real, F: Real, state: tuple[Real, Real, Real]) -> tuple[Real, Real, Real]:
     """Return (D, P, f) of one mode one step later."""
     D, P, f = state
-    D += momentum_balance(scheme, F, k, D, P, f) / S
+    D = D + momentum_balance(scheme, F, k, D, P, f) / S
     f1 = acceleration_corrector(F, k, D)
     return D, velocity_corrector(scheme, P, f, f1), f1
 
@@ -119,13 +120,13 @@ def modal_displacements(scheme: Scheme, omega: float, F: float) -> Iterator[floa
         yield state[0]
 
 
-def modal_histories(scheme: Scheme, frequencies: Array, load: Array, steps: int) -> Array:
-    """Return D of every step and mode, (steps, n), from rest under a constant modal load."""
+def stepped_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int) -> Array:
+    """Return D of every mode and step, (n, steps), from rest under a constant modal load."""
     dt = scheme.step
     histories = np.empty((len(load), steps))
     for row, w, F in zip(histories, frequencies.tolist(), load.tolist(), strict=True):
         row[:] = np.fromiter(islice(modal_displacements(scheme, dt * w, dt * dt * F), steps), float, steps)
-    return histories.T
+    return histories
 
 
 def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, moved: Array) -> Array:

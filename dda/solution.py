@@ -1,4 +1,7 @@
-"""Histories of the two-block model by the robust Newmark step."""
+"""Histories of the two-block model by the robust Newmark step.
+
+They are blocked (`dda.blocked`) unless the scheme grows or every saving is off; the notes say which.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.blocked import blocked_modes, why_stepped
 from dda.gap_form import COLUMNS, GapForm
 from dda.natural_modes import ModalForm, modal_form
-from dda.newmark import Scheme, carried_histories, modal_histories
+from dda.newmark import Scheme, carried_histories, stepped_modes
 from dda.two_block import TwoBlockModel, carried
 
 Array = NDArray[np.float64]
@@ -26,7 +30,7 @@ class Result:
     unknowns: int
     nonzeros: int  # of the matrix that is diagonalised
     factorisations: int  # or diagonalisations
-    solves: int  # one a step
+    solves: int  # one a step where it is stepped, none where it is blocked
     notes: tuple[str, ...]
     setup_seconds: float
     stepping_seconds: float
@@ -56,7 +60,7 @@ def solve(
     columns : sequence of str
         Any of `dda.COLUMNS`.
     full : bool
-        Keep all six unknowns, also those that the load cannot reach.
+        Keep all six unknowns, also those that the load cannot reach, and step.
 
     Raises
     ------
@@ -69,13 +73,15 @@ def solve(
     with np.errstate(all="ignore"):
         modal = modal_form(form)
         rows = np.array([form.observers[name] @ modal.shapes for name in columns])
+        stepped = _why_stepped(model, scheme, modal, full)
         ready = perf_counter()
-        histories = modal_histories(scheme, modal.frequencies, modal.load, steps)
-        observed = rows @ histories.T * model.load_size + 0.0
-        notes = _savings(form) + bound_overflow(observed, model.load_size)
+        observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
+        observed *= model.load_size
+        observed += 0.0
+        overflow = bound_overflow(observed, model.load_size)
         if model.motion is not None:
             observed += _carried(model, scheme, modal, rows, columns, steps)
-            notes = _savings(form) + bound_overflow(observed, 1.0)
+            overflow = bound_overflow(observed, 1.0)
     ended = perf_counter()
     return Result(
         time=step_times(scheme, steps),
@@ -83,11 +89,18 @@ def solve(
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
-        solves=steps,
-        notes=notes,
+        solves=steps if stepped else 0,
+        notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked", *overflow),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
     )
+
+
+def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool) -> str | None:
+    """Return why the history is stepped, in words; None where it is blocked."""
+    if full:
+        return "all savings off"
+    return "the base moves" if model.motion is not None else why_stepped(scheme, modal.frequencies)
 
 
 def _carried(
@@ -104,6 +117,14 @@ def _carried(
     return added
 
 
+def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, blocked: bool) -> Array:
+    """Return the columns of every step from rest under 1 Pa, (columns, steps); `rows` observe the modes."""
+    if not blocked:
+        return rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps)
+    static = modal.load / modal.frequencies / modal.frequencies
+    return blocked_modes(scheme, modal.frequencies, rows * static, steps)
+
+
 def check_request(steps: int, columns: Sequence[str]) -> None:
     """Raise ValueError unless steps is a positive integer and every column is known."""
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
@@ -115,7 +136,9 @@ def check_request(steps: int, columns: Sequence[str]) -> None:
 
 def step_times(scheme: Scheme, steps: int) -> Array:
     """Return the times of step 1 to the last [s]."""
-    return scheme.step * np.arange(1.0, steps + 1)
+    times = np.arange(1.0, steps + 1)
+    times *= scheme.step
+    return times
 
 
 def bound_overflow(observed: Array, pressure: float) -> tuple[str, ...]:
@@ -127,6 +150,8 @@ def bound_overflow(observed: Array, pressure: float) -> tuple[str, ...]:
         observed[:] = 0.0
         return ()
     finite = np.isfinite(observed)
+    if np.all(finite):
+        return ()
     held = np.logical_and.accumulate(finite, axis=1)
     observed[~held] = np.inf
     broken = np.flatnonzero(~np.all(held, axis=0))

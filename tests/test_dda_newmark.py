@@ -118,15 +118,17 @@ def test_dropping_unknowns_changes_nothing(mu):
     assert part.unknowns == (3 if mu else 2)
     assert whole.unknowns == 6
     assert part.notes
-    assert not whole.notes
-    for name in COLUMNS:  # the modes are found in another order: a few roundings
+    assert whole.notes == ("stepped: all savings off",)
+    for name in COLUMNS:  # the modes are found in another order, and blocked: a few roundings
         peak = np.max(np.abs(whole.columns[name]))
         np.testing.assert_allclose(part.columns[name], whole.columns[name], rtol=0, atol=1e-13 * peak, err_msg=name)
 
 
-def test_work_is_one_factorisation_and_one_solve_a_step():
+def test_work_is_one_factorisation_and_one_solve_a_step_where_it_steps():
     result = solve(model(), Scheme(0.5, 1, 1, 1e-3), 70)
-    assert (result.factorisations, result.solves) == (1, 70)
+    assert (result.factorisations, result.solves) == (1, 0)
+    stepped = solve(model(), Scheme(0.5, 1, 1, 1e-3), 70, full=True)
+    assert (stepped.factorisations, stepped.solves) == (1, 70)
     assert tuple(result.columns) == ("displacement", "contact_pressure")
 
 
