@@ -39,7 +39,7 @@ def to_run(scene: Scene, result: dda.Result | fem_reference.Result, notes: tuple
         "steps": scene.time.steps,
     }
     seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
-    tension = _tension_note(history)
+    tension = pulls(history)
     return Run(
         Outcome.COMPLETED,
         history,
@@ -68,7 +68,7 @@ def named(solve: Solve) -> Callable[..., Run]:
     return wrapped
 
 
-def _tension_note(history: History) -> tuple[str, ...]:
+def pulls(history: History) -> tuple[str, ...]:
     """A locked contact hides tension: say where it pulls."""
     pressure = history.columns.get(PRESSURE)
     if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
@@ -245,6 +245,13 @@ class FiniteElements(Solver):
         t = scene.time
         return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
 
+    def check_stable(self, scene: Scene) -> None:
+        """Refuse a step beyond the stability limit at the mesh's highest frequency."""
+        if conditional(scene):
+            import fem_reference
+
+            check_step(scene, fem_reference.highest_frequency(self.problem(scene)))
+
     @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -252,8 +259,7 @@ class FiniteElements(Solver):
 
         check_columns(scene, fem_reference.COLUMNS)
         problem = self.problem(scene)
-        if conditional(scene):
-            check_step(scene, fem_reference.highest_frequency(problem))
+        self.check_stable(scene)
         return to_run(
             scene,
             fem_reference.solve(

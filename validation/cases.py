@@ -16,7 +16,7 @@ from validation import metrics
 from validation.history import History, Outcome, Run
 from validation.results import Row
 from validation.scene import Scene, SceneError
-from validation.solvers import NotReported, Solver, get_solver
+from validation.solvers import DISTRIBUTED, NotReported, Solver, get_solver
 
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 JUDGING_SOURCES = ("validation.adapters", "validation.cases", "validation.metrics", "validation.pencil")
@@ -29,6 +29,7 @@ class Case:
     scene: Scene
     solver: str
     without_savings: bool = False
+    ranks: int = 1  # of the solvers that can be distributed
 
     @property
     def full(self) -> bool:
@@ -37,7 +38,8 @@ class Case:
 
     def make_solver(self) -> Solver:
         """Return the solver, importing its adapter."""
-        return get_solver(self.solver.removesuffix(FULL))
+        name = self.solver.removesuffix(FULL)
+        return get_solver(f"{name}:{self.ranks}" if self.ranks > 1 and name in DISTRIBUTED else name)
 
     def key(self) -> str:
         """Hash of what decides the result: the tables that the solver reads, its options, its sources."""

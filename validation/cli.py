@@ -45,6 +45,9 @@ FullOption = Annotated[
         help="Switch the numerical savings off: no dropped unknowns, no single column, no half block.",
     ),
 ]
+RanksOption = Annotated[
+    int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
+]
 RESULTS = Path("reports/results")
 
 
@@ -79,6 +82,7 @@ def run(
     results: ResultsOption = RESULTS,
     assignments: SetOption = None,
     full: FullOption = False,
+    ranks: RanksOption = 1,
     jobs: Annotated[int | None, typer.Option(help="Worker processes; default: the machine's cores.", min=1)] = None,
     require: Annotated[
         list[str] | None, typer.Option(help="Fail if gates of this solver were NOT RUN.", metavar="NAME")
@@ -99,7 +103,8 @@ def run(
     kept, verdicts = Results(results), []
     for study in studies:
         with _progress(study.name) as progress:
-            verdicts += run_study(study, kept, full=full, jobs=jobs or os.cpu_count() or 1, progress=progress)
+            workers = jobs or os.cpu_count() or 1
+            verdicts += run_study(study, kept, full=full, ranks=ranks, jobs=workers, progress=progress)
     names = [study.name for study in studies]
     _print_verdicts(verdicts, kept, names)
     refused = _print_failures(kept, names)
@@ -120,6 +125,7 @@ def solve(
     ] = None,
     assignments: SetOption = None,
     full: FullOption = False,
+    ranks: RanksOption = 1,
 ) -> None:
     """Run one scene with one solver; a scene with a sweep needs --set to pick one value.
 
@@ -128,8 +134,11 @@ def solve(
     from validation.cases import attempt, check
     from validation.history import Outcome, atomic_path, write_csv
     from validation.scene import SceneError
-    from validation.solvers import get_solver
+    from validation.solvers import DISTRIBUTED, get_solver
 
+    if ranks > 1 and solver not in DISTRIBUTED:
+        raise SceneError(f"--ranks: goes with {', '.join(DISTRIBUTED)}, got {solver!r}")
+    solver = solver if ranks == 1 else f"{solver}:{ranks}"
     case, chosen = one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise SceneError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
@@ -139,6 +148,8 @@ def solve(
             raise SceneError("; ".join(done.notes))
     if csv is not None and done.outcome is Outcome.COMPLETED and done.history is not None:
         write_csv(done.history, csv)
+    if done.outcome is Outcome.NOT_RUN:
+        raise SceneError(f"NOT RUN: {'; '.join(done.notes)}")
     for note in done.notes:
         typer.echo(f"note: {note}", err=True)
     if done.outcome is not Outcome.COMPLETED:

@@ -27,6 +27,7 @@ ORDER = (
     "fem",
     "fem:full",
     "fenicsx",
+    "fenicsx:2",
     "bar",
     "continuum",
     "dda-60",
@@ -54,6 +55,7 @@ def run_study(
     results: Results,
     *,
     full: bool = False,
+    ranks: int = 1,
     jobs: int = 1,
     executor: Executor | None = None,
     progress: Progress | None = None,
@@ -68,6 +70,8 @@ def run_study(
         Where finished cases are found and kept.
     full
         Switch the numerical savings of every solver off.
+    ranks
+        Ranks of the solvers that can be distributed.
     jobs
         Worker processes; ignored where an executor is given.
     executor
@@ -75,7 +79,7 @@ def run_study(
     progress
         Called with (done, total, label) after each case.
     """
-    cases = study.cases(full)
+    cases = study.cases(full, ranks)
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
     comparisons = list(compare(finished))
     verdicts = [evaluate(gate, finished) for gate in study.gates()]
@@ -96,6 +100,8 @@ def finish(
     """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
     keyed = [(case, case.key()) for case in cases]
     known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
+    # What was not installed then may be installed now.
+    known = {key: row for key, row in known.items() if row.outcome is not Outcome.NOT_RUN}
     pending = {key: case for case, key in keyed if key not in known}
     done = len(keyed) - len(pending)
     for row, history in _executed(pending, study, jobs, executor):

@@ -30,6 +30,16 @@ class Solver:
     sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
     sources: tuple[str, ...] = ()
 
+    def option(self, text: str) -> Solver:
+        """Return this solver with the option that ``name:option`` gives, such as a number of ranks.
+
+        Raises
+        ------
+        SceneError
+            The solver takes no option, or not this one.
+        """
+        raise SceneError(f"solver: {self.name} takes no option, got {text!r}")
+
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why this solver cannot run the scene."""
         return None
@@ -55,12 +65,14 @@ BUILT_IN = {
     "dda": "validation.adapters:DDA",
     "dda-textbook": "validation.adapters:Textbook",
     "fem": "validation.adapters:FiniteElements",
+    "fenicsx": "validation.adapters_fenicsx:FEniCSx",
     "bar": "validation.adapters:ExactBar",
     "continuum": "validation.adapters:Continuum",
     "dda-60": "validation.precise:PreciseDDA",
     "fem-60": "validation.precise:PreciseFiniteElements",
     "bar-60": "validation.precise:PreciseBar",
 }
+DISTRIBUTED = ("fenicsx",)  # solvers whose option is a number of ranks
 REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
 
 
@@ -70,18 +82,19 @@ def solver_names() -> list[str]:
 
 
 def get_solver(name: str) -> Solver:
-    """Return a solver by name, importing its adapter now.
+    """Return a solver by name, importing its adapter now; ``name:option`` gives it an option.
 
     Raises
     ------
     SceneError
-        There is no such solver.
+        There is no such solver, or it does not take the option.
     """
-    if name not in BUILT_IN:
+    plain, colon, option = name.partition(":")
+    if plain not in BUILT_IN:
         raise SceneError(f"solver: must be one of {', '.join(solver_names())}, got {name!r}")
-    module, _, attribute = BUILT_IN[name].partition(":")
+    module, _, attribute = BUILT_IN[plain].partition(":")
     solver: Solver = getattr(importlib.import_module(module), attribute)()
-    return solver
+    return solver.option(option) if colon else solver
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:

@@ -50,13 +50,13 @@ class Study:
     gates: Callable[[], tuple[Gate, ...]] = _no_gates
     timed: bool = False
 
-    def cases(self, full: bool = False) -> list[Case]:
-        """Return all cases; with `full` those of every solver's full model."""
+    def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
+        """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
         scenes = [case for scene in self.scenes for case in self._varied(scene).expand()]
         named = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
-        return [Case(scene, solver, full) for scene, solver in pairs]
+        return [Case(scene, solver, full, ranks) for scene, solver in pairs]
 
     def _varied(self, scene: str | Scene) -> Scene:
         loaded = load_scene(scene) if isinstance(scene, str) else scene
@@ -68,6 +68,7 @@ class Study:
 
 STUDIES = {
     "core": "validation.core:CORE",
+    "two-codes": "validation.two_codes:TWO_CODES",
 }
 
 
@@ -89,7 +90,7 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     for solver in scene.run.solvers:
-        if solver.removesuffix(FULL) not in solver_names():
+        if solver.removesuffix(FULL).partition(":")[0] not in solver_names():
             raise SceneError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {solver!r}")
     own = tuple(gate for case in scene.expand() for gate in own_gates(case, source))
     return Study(

@@ -1,0 +1,435 @@
+"""The block by FEniCSx: a program of one file, run by whatever interpreter has dolfinx.
+
+It shares no line with the rest of this package: own nodes for the same mesh, own weak forms (UFL), own Newmark
+loop on PETSc matrices, factored once by PETSc's LU on one rank and by MUMPS on more. It reads one JSON object a
+line from standard input and answers each with one line of JSON; it ends where its input ends::
+
+    python3 fenicsx_worker.py < requests.jsonl
+    mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
+
+A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness,
+shear_stiffness, pressure, degree, foundation, patch_width, elements (or points and cells of a mesh file), alpha,
+delta, gg, step, start, steps, columns. An answer holds time, columns, static, unknowns, nonzeros, factorisations,
+solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad input),
+"inapplicable" or "raised" with a sentence.
+
+Runs with dolfinx 0.5 and with the interface of 0.7 to 0.10 (basix elements, another order of arguments).
+"""
+
+from __future__ import annotations
+
+import gc
+import inspect
+import json
+import os
+import resource
+import sys
+import time
+from typing import IO, Any
+
+import dolfinx
+import dolfinx.fem.petsc
+import dolfinx.geometry
+import dolfinx.mesh
+import numpy as np
+import ufl
+from mpi4py import MPI
+from petsc4py import PETSc
+
+COMM = MPI.COMM_WORLD
+BASE, TOP = 1, 2
+IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
+Request = dict[str, Any]
+
+
+class Inapplicable(Exception):
+    """What this program does not do, in words."""
+
+
+class Outline:
+    """The block's corners from the start of its base on, relative to that point [m]."""
+
+    def __init__(self, request: Request) -> None:
+        base, corners = request["base"], np.asarray(request["vertices"], float)
+        self.origin = corners[base].copy()
+        self.corners = np.roll(corners, -base, axis=0) - self.origin
+        self.top = (request["top"] - base) % len(corners)
+        x, y = self.corners.T
+        cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+        self.area = cross.sum() / 2
+        self.centroid = np.array([cross @ (z + np.roll(z, -1)) for z in (x, y)]) / (6 * self.area)
+        self.size = float(np.ptp(self.corners))
+
+    def side(self, index: int) -> tuple[np.ndarray, np.ndarray, float]:
+        """Start, unit direction and length of an edge."""
+        start = self.corners[index]
+        along = self.corners[(index + 1) % len(self.corners)] - start
+        length = float(np.hypot(*along))
+        return start, along / length, length
+
+
+def nodes_and_cells(request: Request, outline: Outline) -> tuple[np.ndarray, np.ndarray]:
+    """Points [m] and cells; quadrilaterals in tensor order, as dolfinx numbers them."""
+    if request.get("points") is not None:
+        cells = np.asarray(request["cells"], np.int64)
+        points = np.asarray(request["points"], float) - outline.origin
+        return points, cells if cells.shape[1] == 3 else cells[:, [0, 1, 3, 2]]
+    n = request["elements"]
+    right, up = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
+    right, up = right.reshape(-1, 1), up.reshape(-1, 1)
+    a, b, c, d = outline.corners
+    points = (1 - up) * ((1 - right) * a + right * b) + up * ((1 - right) * d + right * c)
+    first = (np.arange(n) + (n + 1) * np.arange(n)[:, None]).reshape(-1, 1)
+    return points, first + np.array([0, 1, n + 1, n + 2])
+
+
+def make_mesh(request: Request, outline: Outline) -> Any:
+    """Return the distributed mesh; the first rank reads all nodes, the partitioner spreads them."""
+    points, cells = nodes_and_cells(request, outline)
+    kind = "triangle" if cells.shape[1] == 3 else "quadrilateral"
+    if COMM.rank > 0:
+        points, cells = points[:0], cells[:0]
+    try:
+        import basix.ufl
+
+        element = basix.ufl.element("Lagrange", kind, 1, shape=(2,))
+    except ImportError:  # dolfinx up to 0.6
+        # The variant that dolfinx itself puts in later: given at once, compiled forms are found again.
+        element = ufl.VectorElement("Lagrange", kind, 1, variant="equispaced")
+    # The last two arguments changed places in 0.10, and one of them its name before.
+    name = "e" if "e" in inspect.signature(dolfinx.mesh.create_mesh).parameters else "domain"
+    return dolfinx.mesh.create_mesh(COMM, cells=cells, x=points, **{name: ufl.Mesh(element)})
+
+
+def vector_space(mesh: Any, degree: int) -> Any:
+    """Continuous displacements of a degree."""
+    if hasattr(dolfinx.fem, "functionspace"):
+        return dolfinx.fem.functionspace(mesh, ("Lagrange", degree, (2,)))
+    return dolfinx.fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
+
+
+def facets_on(mesh: Any, outline: Outline, index: int, low: float, high: float) -> np.ndarray:
+    """Boundary facets on an edge of the block between two arc lengths."""
+    start, along, _ = outline.side(index)
+    slack = 1e-9 * outline.size
+
+    def inside(x: np.ndarray) -> np.ndarray:
+        away = x[:2] - start[:, None]
+        s, off = along @ away, along[0] * away[1] - along[1] * away[0]
+        return np.asarray((np.abs(off) <= slack) & (s >= low - slack) & (s <= high + slack))
+
+    return np.asarray(dolfinx.mesh.locate_entities_boundary(mesh, 1, inside), np.int32)
+
+
+def spring_intervals(request: Request, length: float) -> list[tuple[float, float]]:
+    """Intervals of the base that stand on distributed springs."""
+    if request["foundation"] == "corner":
+        return []
+    w = request["patch_width"]
+    return [(0.0, length)] if w is None or 2 * w >= length else [(0.0, w), (length - w, length)]
+
+
+class Block:
+    """M D'' + K D = F for a unit pressure, and the rows that observe D."""
+
+    def __init__(self, request: Request) -> None:
+        self.request, self.outline = request, Outline(request)
+        self.mesh = make_mesh(request, self.outline)
+        self.mesh.topology.create_connectivity(1, 2)
+        self.space = vector_space(self.mesh, request["degree"])
+        self._measures()
+        self._check()
+        self._matrices()
+        self._rows()
+
+    def _measures(self) -> None:
+        """Set dx and ds; one order above 2 degree integrates the Jacobian of a bilinear cell exactly."""
+        _, _, length = self.outline.side(0)
+        pieces = [facets_on(self.mesh, self.outline, 0, *span) for span in spring_intervals(self.request, length)]
+        springs = np.unique(np.concatenate([*pieces, np.empty(0, np.int32)])).astype(np.int32)
+        top = facets_on(self.mesh, self.outline, self.outline.top, 0.0, self.outline.side(self.outline.top)[2])
+        facets = np.concatenate([springs, top])
+        values = np.repeat(np.array([BASE, TOP], np.int32), [len(springs), len(top)])
+        order = np.argsort(facets)
+        tags = dolfinx.mesh.meshtags(self.mesh, 1, facets[order], values[order])
+        rule = {"quadrature_degree": 2 * self.request["degree"] + 1}
+        self.dx = ufl.Measure("dx", domain=self.mesh, metadata=rule)
+        self.ds = ufl.Measure("ds", domain=self.mesh, subdomain_data=tags, metadata=rule)
+
+    def _integral(self, measure: Any) -> float:
+        form = dolfinx.fem.form(constant(self.mesh, 1.0) * measure)
+        return float(COMM.allreduce(dolfinx.fem.assemble_scalar(form), MPI.SUM))
+
+    def _check(self) -> None:
+        """Refuse a mesh that is not the block's: area, perimeter, loaded and carried length."""
+        o, request = self.outline, self.request
+        perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
+        found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (self.ds(TOP), o.side(o.top)[2])}
+        for name, (measure, expected) in found.items():
+            if abs(self._integral(measure) - expected) > 1e-9 * expected:
+                raise ValueError(f"mesh: outline must be the block's, but its {name} is another")
+        spans = spring_intervals(request, o.side(0)[2])
+        carried = sum(high - low for low, high in spans)
+        if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
+            if request["foundation"] == "patch":
+                raise Inapplicable("the patches end inside elements, and fenicsx integrates whole edges only")
+            raise ValueError("mesh: the base must be covered by edges of elements exactly")
+        self.carried = carried if spans else 1.0
+
+    def _matrices(self) -> None:
+        """Assemble M and K from rho (u, v), lam (div u, div v) + 2 G (eps(u), eps(v)) and the springs."""
+        r, mesh, dx, ds = self.request, self.mesh, self.dx, self.ds
+        u, v = ufl.TrialFunction(self.space), ufl.TestFunction(self.space)
+        t = self.outline.side(0)[1]
+        self.tangent, self.normal = t, np.array([-t[1], t[0]])
+        spread = 0.0 if r["foundation"] == "corner" else 2 / self.carried
+        kn, kt = (constant(mesh, spread * r[name]) for name in ("stiffness", "shear_stiffness"))
+        lam, shear = (constant(mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
+        n, t = constant(mesh, self.normal), constant(mesh, self.tangent)
+        elastic = (lam * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(strain(u), strain(v))) * dx
+        springs = (kn * ufl.dot(n, u) * ufl.dot(n, v) + kt * ufl.dot(t, u) * ufl.dot(t, v)) * ds(BASE)
+        self.M = assembled(ufl.dot(u, v) * dx)
+        self.M.scale(r["density"])
+        self.K = assembled(elastic + springs, self._corner_springs if r["foundation"] == "corner" else None)
+        self.F = self._vector(-v[1] * ds(TOP))
+        self.pressure = self._vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))
+
+    def _corners(self) -> list[np.ndarray]:
+        """Global numbers of the two unknowns of each end of the base that this rank owns."""
+        owned = []
+        for point in self.outline.corners[:2]:
+
+            def here(x: np.ndarray, point: np.ndarray = point) -> np.ndarray:
+                return np.asarray(np.hypot(x[0] - point[0], x[1] - point[1]) <= 1e-9 * self.outline.size)
+
+            local = dolfinx.fem.locate_dofs_geometrical(self.space, here)
+            local = local[local < self.space.dofmap.index_map.size_local]
+            owned += [2 * i + np.array([0, 1]) for i in self._global(local)]
+        return owned
+
+    def _corner_springs(self, K: Any) -> None:
+        """Add the two point springs to the stiffness."""
+        p, ps = self.request["stiffness"], self.request["shear_stiffness"]
+        spring = p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent)
+        for pair in self._corners():
+            K.setValues(pair.astype(np.int32), pair.astype(np.int32), spring, addv=PETSc.InsertMode.ADD_VALUES)
+
+    def _global(self, local: np.ndarray) -> np.ndarray:
+        return np.asarray(self.space.dofmap.index_map.local_to_global(np.asarray(local, np.int32)), np.int64)
+
+    def _vector(self, form: Any) -> Any:
+        """Assemble a linear form into a vector of the matrices' layout."""
+        ghosted = dolfinx.fem.petsc.assemble_vector(dolfinx.fem.form(form))
+        ghosted.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+        found = self.K.createVecRight()
+        found.array[:] = ghosted.array
+        return found
+
+    def _rows(self) -> None:
+        """Set the observers of the columns."""
+        if self.request["foundation"] == "corner":
+            share = -self.request["stiffness"] / self.outline.side(0)[2]
+            for pair in self._corners():
+                self.pressure.setValues(pair.astype(np.int32), share * self.normal, addv=PETSc.InsertMode.ADD_VALUES)
+            self.pressure.assemble()
+        across, down = self._point_rows()
+        self.observers = {
+            "displacement": down,
+            "contact_pressure": self.pressure,
+            "horizontal_displacement": across,
+        }
+
+    def _point_rows(self) -> tuple[Any, Any]:
+        """Rows that give u and v at the centroid: the basis functions of its cell, each evaluated there."""
+        point, cell = np.append(self.outline.centroid, 0.0), self._cell()
+        owner = COMM.allreduce(COMM.size if cell is None else COMM.rank, MPI.MIN)
+        if owner == COMM.size:
+            raise ValueError("vertices: the centroid must lie inside the block")
+        rows = self.K.createVecRight(), self.K.createVecRight()
+        probe = dolfinx.fem.Function(self.space)  # on every rank: it compiles
+        if owner == COMM.rank:
+            dofs = self.space.dofmap.cell_dofs(cell)
+            for local, number in zip(dofs, self._global(dofs), strict=True):
+                probe.x.array[:] = 0.0
+                probe.x.array[2 * local] = 1.0
+                weight = float(np.ravel(probe.eval(point, [cell]))[0])
+                for component, row in enumerate(rows):
+                    row.setValue(2 * int(number) + component, weight)
+        for row in rows:
+            row.assemble()
+        return rows
+
+    def _cell(self) -> int | None:
+        """A cell of this rank that holds the centroid; on an edge, nudged off it, any neighbour will do."""
+        g = dolfinx.geometry
+        tree = g.bb_tree(self.mesh, 2) if hasattr(g, "bb_tree") else g.BoundingBoxTree(self.mesh, 2)
+        collide = getattr(g, "compute_collisions_points", None) or g.compute_collisions
+        for nudge in 1e-10 * self.outline.size * np.array([[0, 0], [1, 2], [-2, 1], [-1, -2], [2, -1]]):
+            point = np.append(self.outline.centroid + nudge, 0.0).reshape(1, 3)
+            cells = g.compute_colliding_cells(self.mesh, collide(tree, point), point).links(0)
+            if len(cells):
+                return int(cells[0])
+        return None
+
+
+def constant(mesh: Any, value: Any) -> Any:
+    """A constant of a form, so that one compiled form serves all values."""
+    return dolfinx.fem.Constant(mesh, np.asarray(value, PETSc.ScalarType))
+
+
+def strain(u: Any) -> Any:
+    """Symmetric gradient."""
+    return ufl.sym(ufl.grad(u))
+
+
+def lame(young: float, poisson: float, hypothesis: str) -> tuple[float, float]:
+    """Lame parameter of the plane problem and shear modulus [Pa]."""
+    last = 1 - 2 * poisson if hypothesis == "plane strain" else 1 - poisson
+    return young * poisson / ((1 + poisson) * last), young / (2 * (1 + poisson))
+
+
+def assembled(form: Any, add: Any = None) -> Any:
+    """Assemble a matrix; `add` puts further entries into it."""
+    matrix = dolfinx.fem.petsc.assemble_matrix(dolfinx.fem.form(form))
+    matrix.assemble()
+    if add is not None:
+        add(matrix)
+        matrix.assemble()
+    return matrix
+
+
+class Factor:
+    """Counted solutions with a matrix that is factored once."""
+
+    factorisations = 0
+    solves = 0
+
+    def __init__(self, matrix: Any) -> None:
+        self.ksp = PETSc.KSP().create(COMM)
+        self.ksp.setOperators(matrix)
+        self.ksp.setType("preonly")
+        pc = self.ksp.getPC()
+        pc.setType("lu")
+        pc.setFactorSolverType("petsc" if COMM.size == 1 else "mumps")
+        self.ksp.setUp()
+        self.matrix = matrix
+        Factor.factorisations += 1
+
+    def __call__(self, right: Any) -> Any:
+        """Solve for one right-hand side."""
+        found = self.matrix.createVecRight()
+        self.ksp.solve(right, found)
+        Factor.solves += 1
+        return found
+
+
+class Newmark:
+    """The scheme solved for the displacement, S = M + alpha dt^2 K factored once.
+
+    D* = D + gg dt V + dt^2 (1/2 - alpha) A,  D1 = D + S^-1 [M (D* - D) + alpha dt^2 (F - K D)],
+    A1 = (D1 - D*) / (alpha dt^2), or M^-1 (F - K D1) for alpha = 0,  V1 = gg V + dt ((1 - delta) A + delta A1).
+    """
+
+    def __init__(self, block: Block, request: Request) -> None:
+        self.M, self.K, self.F = block.M, block.K, block.F
+        self.dt, self.gg = request["step"], request["gg"]
+        self.alpha, self.delta = request["alpha"], request["delta"]
+        S = self.M.copy()
+        S.axpy(self.alpha * self.dt**2, self.K, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        self.solve = Factor(S)
+        self.nonzeros = int(S.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
+        self.D, self.V, self.A = (self.K.createVecRight() for _ in range(3))
+        if request["start"] == "consistent":
+            self.A = (Factor(self.M) if self.alpha > 0 else self.solve)(self.F)
+
+    def _residual(self) -> Any:
+        r = self.K.createVecRight()
+        self.K.multAdd(-self.D, self.F, r)
+        return r
+
+    def advance(self) -> Any:
+        """Take one step and return the displacement."""
+        dt, alpha, A = self.dt, self.alpha, self.A
+        ahead = self.gg * dt * self.V + dt**2 * (0.5 - alpha) * A  # D* - D
+        increment = self.solve(self.M * ahead + alpha * dt**2 * self._residual())
+        self.D = self.D + increment
+        self.A = (increment - ahead) / (alpha * dt**2) if alpha > 0 else self.solve(self._residual())
+        self.V = self.gg * self.V + dt * ((1 - self.delta) * A + self.delta * self.A)
+        return self.D
+
+
+def run(request: Request) -> dict[str, Any]:
+    """Answer one request; every rank runs this, and all return the same."""
+    Factor.factorisations = Factor.solves = 0
+    began = time.perf_counter()
+    block = Block(request)
+    scheme = Newmark(block, request)
+    ready = time.perf_counter()
+    rows = [block.observers[name] for name in request["columns"]]
+    history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
+    ended = time.perf_counter()
+    done = Factor.factorisations, Factor.solves
+    q, rest = request["pressure"], Factor(block.K)(block.F)
+    memory = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
+    return {
+        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
+        "columns": {name: (q * history[:, i]).tolist() for i, name in enumerate(request["columns"])},
+        "static": {name: float(q * row.dot(rest)) for name, row in block.observers.items()},
+        "unknowns": block.K.getSize()[0],
+        "nonzeros": scheme.nonzeros,
+        "factorisations": done[0],
+        "solves": done[1],
+        "setup_seconds": ready - began,
+        "stepping_seconds": ended - ready,
+        "memory": memory,
+        "version": dolfinx.__version__,
+    }
+
+
+def answer(line: str) -> dict[str, Any]:
+    """Run one request; what fails alike on every rank is an answer, anything else ends all ranks."""
+    try:
+        return run(json.loads(line))
+    except Inapplicable as error:
+        return {"inapplicable": str(error)}
+    except ValueError as error:
+        return {"refused": str(error)}
+    except Exception as error:
+        if COMM.size > 1:
+            sys.stderr.write(f"{type(error).__name__}: {error}\n")
+            COMM.Abort(1)
+        return {"raised": f"{type(error).__name__}: {error}"}
+
+
+def next_line() -> str:
+    """Line that the first rank reads; the others wait for it without keeping a processor busy."""
+    if COMM.rank == 0:
+        line = sys.stdin.readline()
+        for rank in range(1, COMM.size):
+            COMM.send(line, dest=rank)
+        return line
+    while not COMM.iprobe(source=0):
+        time.sleep(IDLE)
+    return str(COMM.recv(source=0))
+
+
+def answers_only() -> IO[str]:
+    """Keep standard output for answers: whatever a library writes there goes to standard error."""
+    kept = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    return kept
+
+
+def main() -> None:
+    """Answer request after request."""
+    out = answers_only()
+    while line := next_line():
+        found = answer(line)
+        if COMM.rank == 0:
+            out.write(json.dumps(found) + "\n")
+            out.flush()
+        gc.collect()  # on every rank at the same place: matrices are freed together
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,209 @@
+"""FEniCSx as a second finite-element code: absence by name, equality on every mesh and foundation, faults seen."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE, cli
+from test_fem_matrices import INCLINED
+from test_kill_matrix import FEM, Fault, Overlay, late, no_discount, times, with_scheme
+
+import fem_reference.elasticity
+import fem_reference.solver
+from validation import adapters_fenicsx, solve, worker
+from validation.adapters_fenicsx import VARIABLE, interpreter, launcher
+from validation.cases import Case, execute
+from validation.engine import Finished, evaluate, finish
+from validation.gates import Status
+from validation.history import Outcome
+from validation.results import Results
+from validation.scene import Scene, SceneError, load_scene
+from validation.solvers import get_solver
+from validation.two_codes import SAME, TWO_CODES
+
+PYTHON = interpreter()
+needs_fenicsx = pytest.mark.skipif(PYTHON is None, reason=adapters_fenicsx.NEEDED)
+pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def error(scene: Scene, solver: str = "fenicsx") -> float:
+    """Largest difference of the two codes over the maximum, of any column."""
+    sound, other = solve(scene, "fem", full=True).history, solve(scene, solver).history
+    assert sound is not None and other is not None and np.array_equal(sound.time, other.time)
+    return max(np.abs(other.columns[n] - x).max() / np.abs(x).max() for n, x in sound.columns.items())
+
+
+def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(VARIABLE, "/no/such/python")
+    alone = cli("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
+    assert alone.returncode == 2
+    assert alone.stderr.startswith(
+        "error: NOT RUN: needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda"
+    )
+    assert "/no/such/python, which DDA_VALIDATE_FENICSX_PYTHON names, has none" in alone.stderr
+    gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
+    scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
+    run = cli("run", scene_file, cwd=tmp_path)
+    assert run.returncode == 0 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
+    assert cli("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
+
+
+def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "/no/such/python")
+    row, _ = execute(Case(scene, "fenicsx"), "key", "study")
+    assert row.outcome is Outcome.NOT_RUN
+    results = Results(tmp_path)
+    for _ in range(2):
+        finish([Case(scene, "fenicsx")], TWO_CODES, results)
+    assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
+
+
+@pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])
+def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
+    with pytest.raises(SceneError, match=r"^solver: "):
+        get_solver(name)
+
+
+def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
+    done = cli("solve", scene_file, "--solver", "dda", "--ranks", 2)
+    assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
+
+
+def test_ranks_change_the_key_of_the_distributed_solver_only(scene: Scene) -> None:
+    assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
+    assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
+
+
+@needs_fenicsx
+def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
+    assert PYTHON is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
+    assert launcher(PYTHON) is not None
+
+
+@needs_fenicsx
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"fem.degree": 1, "contact.shear_stiffness": 3e8},
+        {"fem.foundation": "corner", "block.poisson": 0.3},
+        {"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.5}},
+        {"block.vertices": INCLINED, "block.base": 1, "block.top": 3, "block.poisson": 0.2},
+        {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 1e-5, "time.start": "consistent"},
+        {"contact.stiffness": 1e17, "block.hypothesis": "plane strain", "block.poisson": 0.45},
+    ],
+    ids=["linear", "corner", "patch", "inclined", "explicit", "stiff"],
+)
+def test_the_two_codes_agree(scene: Scene, values: dict[str, object]) -> None:
+    assert 0 < error(scene.with_values(values)) <= SAME
+
+
+@needs_fenicsx
+def test_what_the_worker_counts(scene: Scene) -> None:
+    run = get_solver("fenicsx:2").solve(scene.with_values({"time.start": "consistent"}))
+    assert dict(run.work) | {"nonzeros": 0} == {
+        "unknowns": 2 * 9**2,
+        "nonzeros": 0,
+        "factorisations": 2,
+        "solves": 51,
+        "steps": 50,
+        "ranks": 2,
+    }
+    assert run.notes[0].startswith("dolfinx ") and run.seconds.keys() == {"setup", "stepping"}
+
+
+@needs_fenicsx
+def test_what_it_does_not_do_is_said(scene: Scene) -> None:
+    inside = scene.with_values({"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.31}})
+    run = solve(inside, "fenicsx")
+    assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
+    assert get_solver("fenicsx").applicable(scene.with_values({"load.gravity": 9.81})) is not None
+    with pytest.raises(SceneError, match=r"time.step: must not exceed"):
+        solve(scene.with_values({"time.alpha": 0.0, "time.delta": 0.5}), "fenicsx")
+    with pytest.raises(SceneError, match=r"run\.columns"):
+        solve(scene.with_values({"run.columns": ["rotation"]}), "fenicsx")
+
+
+def test_a_dead_worker_is_named_and_replaced() -> None:
+    command = [sys.executable, "-c", "import sys; sys.stderr.write('no licence\\n'); sys.exit(7)"]
+    for _ in range(2):
+        with pytest.raises(worker.WorkerDied, match="status 7: no licence"):
+            worker.ask(command, {}, {})
+    echo = [sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line, end='', flush=True)"]
+    assert [worker.ask(echo, {}, {"a": n}) for n in (1, 2)] == [{"a": 1}, {"a": 2}]
+
+
+WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it
+    "fenicsx: load 2e-10 high": ("(q * history", "((1 + 2e-10) * q * history"),  # twice the band's edge
+    "fenicsx: gg missing in the predictor": ("self.gg * dt * self.V", "dt * self.V"),
+    "fenicsx: gg missing in the velocity": ("self.V = self.gg * self.V", "self.V = self.V"),
+    "fenicsx: delta 1e-6 high": ("self.delta * self.A", "1.000001 * self.delta * self.A"),
+    "fenicsx: start forgotten": ('request["start"] == "consistent"', "False"),
+    "fenicsx: plane strain as plane stress": ('hypothesis == "plane strain"', "False"),
+    "fenicsx: quadrature one point short": ('2 * self.request["degree"] + 1', '2 * self.request["degree"] - 1'),
+    "fenicsx: springs p/2": ("else 2 / self.carried", "else 1 / self.carried"),
+    "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
+}
+FEM_FAULTS = [
+    Fault("fem: gg missing in the predictor", ("fem:full",), FEM, "predictor", no_discount(1)),
+    Fault("fem: gg missing in the velocity", ("fem:full",), FEM, "velocity", no_discount(2)),
+    Fault("fem: delta 1e-6 high", ("fem:full",), FEM, "velocity", with_scheme(2, delta=lambda d: d * (1 + 1e-6))),
+    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.elasticity, "_carried", times(1 + 1e-6)),
+    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.elasticity, "mass", times(1 + 1e-6)),
+    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.solver, "run", times(1 + 2e-10)),
+    Fault("fem: one step late", ("fem:full",), fem_reference.solver, "run", late),
+]
+GATES = TWO_CODES.gates()
+CASES = TWO_CODES.cases()
+EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
+FEW = "block.poisson=0.25,block.hypothesis=plane strain"
+
+
+def failed(finished: Finished) -> set[str]:
+    return {gate.id for gate in GATES if evaluate(gate, finished).status is Status.FAIL}
+
+
+def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
+    """Write the worker with one fault into a directory of its own."""
+    text = adapters_fenicsx.WORKER.read_text()
+    assert text.count(line) == 1, line
+    path = directory / f"worker{number}.py"
+    path.write_text(text.replace(line, slip))
+    return path
+
+
+@needs_fenicsx
+def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path) -> None:
+    sound = finish(CASES, TWO_CODES, Results(tmp_path / "sound"))
+    assert not failed(sound)
+    kills: dict[str, set[str]] = {}
+    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
+        path = faulty_worker(tmp_path, number, line, slip)
+        solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
+        kills[name] = killed(
+            sound, Fault(name, solvers, adapters_fenicsx, "WORKER", lambda _, path=path: path), tmp_path
+        )
+    for fault in FEM_FAULTS:
+        kills[fault.name] = killed(sound, fault, tmp_path)
+    for name, found in kills.items():
+        print(f"{len(found):>3} gates see {name}")
+    assert not [name for name, found in kills.items() if not found], "faults that no gate sees"
+    by_code = [set().union(*(f for name, f in kills.items() if name.startswith(code))) for code in ("fenicsx", "fem:")]
+    assert by_code == [{gate.id for gate in GATES}] * 2, "gates that no fault of this code bites"
+
+
+def killed(sound: Finished, fault: Fault, directory: Path) -> set[str]:
+    """Return the gates that fail with a fault; only the solvers that it reaches run again."""
+    reached = [
+        case for case in CASES if case.solver in fault.solvers and (EDGE in fault.name or FEW in case.scene.name)
+    ]
+    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+        patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+        faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
+    worker.close_all()
+    return failed(Finished(sound.rows | faulty.rows, faulty.results))
