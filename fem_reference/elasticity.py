@@ -150,6 +150,15 @@ def vertex_rule(mesh: Mesh, facets: NDArray[np.int64], points: Array) -> Rule:
     return Rule(np.array(reference, float).T, np.array(cells), np.ones(points.shape[1]))
 
 
+def node_rule(mesh: Mesh, facets: NDArray[np.int64]) -> Rule:
+    """Half a facet's length at each of its two ends."""
+    ends = mesh.facets[:, facets]
+    cells = np.tile(mesh.f2t[0, facets], 2)
+    local = np.argmax(mesh.t[:, cells] == ends.ravel(), axis=0)
+    length = np.hypot(*(mesh.p[:, ends[1]] - mesh.p[:, ends[0]]))
+    return Rule(mesh.elem.refdom.p[:, local].astype(float), cells, np.tile(length / 2, 2))
+
+
 def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
     """Spring stiffness [N/m] and the row that gives the contact pressure [Pa/m].
 
@@ -178,6 +187,8 @@ def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half:
     if problem.foundation == "corner":
         ends = problem.outline[:1] if half else problem.outline[:2]
         return vertex_rule(mesh, base, ends.T)
+    if problem.foundation == "nodes":
+        return node_rule(mesh, base)
     w = problem.patch_width
     intervals = [(-np.inf, np.inf)] if w is None else [(-np.inf, w), (a - w, np.inf)]
     if w is not None and 2 * w >= a:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import meshio
 import numpy as np
 from numpy.typing import NDArray
-from skfem import Mesh, MeshQuad
+from skfem import Mesh, MeshQuad, MeshTri
 from skfem.io.meshio import from_meshio
 
 from fem_reference.problem import Array, Problem
@@ -61,9 +61,20 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
     square = MeshQuad.init_tensor(xi, eta)
     edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
     axis, value = edges[(problem.top - problem.base) % 4]
+    if problem.cells == "triangles":
+        square = _cut(square)
     base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
     top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
-    return TaggedMesh(MeshQuad(_bilinear(problem.outline, square.p), square.t), base, top)
+    return TaggedMesh(type(square)(_bilinear(problem.outline, square.p), square.t), base, top)
+
+
+def _cut(square: MeshQuad) -> MeshTri:
+    """Cut each cell of a tensor mesh into two triangles from its lower left to its upper right corner."""
+    x, y = square.p[:, square.t]
+    # corners of each cell counter-clockwise from the lower left one
+    turn = np.argsort(np.arctan2(y - y.mean(axis=0), x - x.mean(axis=0)), axis=0)
+    a, b, c, d = np.take_along_axis(square.t, turn, axis=0)
+    return MeshTri(square.p, np.hstack([[a, b, c], [a, c, d]]))
 
 
 def _bilinear(corners: Array, p: Array) -> Array:

@@ -134,7 +134,7 @@ def whole_block(problem: Problem) -> Model:
 
 def column_applies(problem: Problem) -> bool:
     """Whether nothing depends on x: rectangle, structured mesh, mu = 0, distributed foundation, vertical load."""
-    uniform = problem.poisson == 0 and problem.foundation == "distributed" and problem.mesh is None
+    uniform = problem.poisson == 0 and problem.foundation == "distributed" and _tensor(problem)
     return uniform and problem.rectangle is not None and problem.vertical
 
 
@@ -194,7 +194,12 @@ def _line_stiffness(u, v, w):  # type: ignore[no-untyped-def]
 def half_applies(problem: Problem) -> bool:
     """Whether the block and its mesh are symmetric: rectangle, structured, even number of elements."""
     symmetric = problem.rectangle is not None and problem.vertical
-    return symmetric and problem.mesh is None and problem.elements % 2 == 0
+    return symmetric and _tensor(problem) and problem.elements % 2 == 0
+
+
+def _tensor(problem: Problem) -> bool:
+    """Whether the mesh is a tensor product."""
+    return problem.mesh is None and problem.cells == "quadrilaterals"
 
 
 def half_block(problem: Problem) -> Model:

@@ -15,7 +15,8 @@ from fem_reference.motion import Motion
 Array = NDArray[np.float64]
 
 HYPOTHESES = ("plane stress", "plane strain")
-FOUNDATIONS = ("distributed", "patch", "corner")
+FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
+CELLS = ("quadrilaterals", "triangles")
 STARTS = ("zero", "consistent")
 
 
@@ -78,9 +79,11 @@ class Problem:
     mesh: str | None = None
     """Path of a mesh file with the boundary tags ``base`` and ``top``; None meshes the block itself."""
     foundation: str = "distributed"
-    """``"distributed"``, ``"patch"`` or ``"corner"``."""
+    """``"distributed"``, ``"patch"``, ``"corner"`` or ``"nodes"``: p l/a at each end of a base facet of length l."""
     patch_width: float | None = None
     """Width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``."""
+    cells: str = "quadrilaterals"
+    """Cells of a structured mesh: ``"quadrilaterals"``, or ``"triangles"``, each cut from lower left to upper right."""
     eccentricity: float = 0.0
     """Shift towards +x of the middle of the pressed part of the top edge, whose length is L - 2 |e| [m]."""
     traction: float = 0.0
@@ -134,6 +137,7 @@ class Problem:
         _require(self.shear_stiffness >= 0, "shear_stiffness", "must not be negative", self.shear_stiffness)
         known = self.foundation in FOUNDATIONS
         _require(known, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
+        _require(self.cells in CELLS, "cells", f"must be one of {CELLS}", self.cells)
         w = self.patch_width
         if self.foundation == "patch":
             inside = w is not None and 0 < w <= self.base_length / 2

@@ -18,7 +18,7 @@ import numpy as np
 from validation.history import PRESSURE, History, Mode, Outcome, Run
 from validation.record import base_record
 from validation.scene import Scene, SceneError
-from validation.solvers import Solver
+from validation.solvers import NotReported, Solver
 
 if TYPE_CHECKING:
     import dda
@@ -130,6 +130,15 @@ class DDA(Solver):
             block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene)
         )
 
+    def system(self, scene: Scene) -> dda.BlockSystem | None:
+        """Return the system of sub-blocks of a scene, or None where the block is whole."""
+        import dda
+
+        b = scene.block
+        if b.subdivide is None:
+            return None
+        return dda.subdivided(self.model(scene), *b.subdivide, b.glue_ratio * b.young, b.pattern)
+
     def scheme(self, scene: Scene) -> dda.Scheme:
         """Return the scheme of a scene."""
         import dda
@@ -144,30 +153,40 @@ class DDA(Solver):
 
         _no_fields(self.name, scene, fields)
         self._check(scene, dda.COLUMNS)
-        return to_run(
-            scene, dda.solve(self.model(scene), self.scheme(scene), scene.time.steps, scene.run.columns, full)
-        )
+        asked = self.scheme(scene), scene.time.steps, scene.run.columns, full
+        system = self.system(scene)
+        return to_run(scene, dda.solve_system(system, *asked) if system else dda.solve(self.model(scene), *asked))
 
     def _check(self, scene: Scene, known: tuple[str, ...]) -> None:
+        import dda
+
         check_columns(scene, known)
         if conditional(scene):
-            check_step(scene, max(mode.frequency for mode in self.modes(scene)))
+            system = self.system(scene)
+            fastest = dda.highest_frequency(system) if system else max(mode.frequency for mode in self.modes(scene))
+            check_step(scene, fastest)
 
     def static(self, scene: Scene) -> Mapping[str, float]:
         """Return the static solution."""
-        return self.model(scene).static()
-
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the modes that the load reaches."""
         import dda
 
-        found = dda.modes(self.model(scene), self.scheme(scene))
+        system = self.system(scene)
+        return dda.static_system(system) if system else self.model(scene).static()
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the modes that the load reaches, of sub-blocks the lowest ones."""
+        import dda
+
+        system, scheme = self.system(scene), self.scheme(scene)
+        found = dda.system_modes(system, scheme) if system else dda.modes(self.model(scene), scheme)
         return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
 
     def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return spectral radius, condition numbers and residual."""
+        """Return spectral radius, condition numbers and residual of a whole block."""
         import dda
 
+        if scene.block.subdivide is not None:
+            raise NotReported("dda reports diagnostics of a whole block only")
         return vars(dda.diagnostics(self.model(scene), self.scheme(scene)))
 
 
@@ -180,7 +199,7 @@ class Textbook(DDA):
         """Return None, or why the printed recursion does not apply."""
         import dda
 
-        return dda.textbook_applicable(self.model(scene), self.scheme(scene))
+        return scene.beyond_two_blocks or dda.textbook_applicable(self.model(scene), self.scheme(scene))
 
     @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
@@ -223,6 +242,7 @@ class FiniteElements(Solver):
                 degree=f.degree,
                 mesh=f.mesh,
                 foundation=f.foundation,
+                cells=f.cells,
                 patch_width=f.patch_width,
                 eccentricity=q.eccentricity,
                 traction=q.traction,

@@ -44,6 +44,10 @@ class PreciseDDA(DDA):
     name = "dda-60"
     sources = ("validation.precise", "validation.precise_block")
 
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why the scene is not the two-block model under a pressure."""
+        return scene.beyond_two_blocks
+
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
         from validation import precise_block
@@ -71,7 +75,9 @@ class PreciseFiniteElements(FiniteElements):
     sources = ("fem_reference", "validation.precise", "validation.precise_matrices", "validation.precise_block")
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why sixty digits are out of reach for the mesh."""
+        """Return None, or why sixty digits are out of reach for the mesh or for the load."""
+        if not scene.load.centred:
+            return "the solver is written for a centred pressure alone"
         unknowns = len(self.equations(scene).F)
         if unknowns > MOST_UNKNOWNS:
             return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"

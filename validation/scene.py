@@ -75,10 +75,14 @@ class BlockSection(Section):
     young: Positive  # Pa
     poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
     hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
+    subdivide: tuple[Count, Count] | None = None  # sub-blocks along the base and upwards
+    pattern: Literal["squares", "triangles"] = "squares"  # triangles: each square cut from lower left to upper right
+    glue_ratio: Positive = 1.0e6  # stiffness of each end spring of a joint over young, m
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_one_outline()
+        self._check_subdivision()
         if self.hypothesis == "plane strain" and self.poisson >= 0.5:
             raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
         if self.vertices is not None:
@@ -100,6 +104,13 @@ class BlockSection(Section):
             raise ValueError("width and height must be given together, got one")
         if self.vertices is None and self.model_fields_set & {"base", "top"}:
             raise ValueError("base and top go with vertices only, got them with a rectangle")
+
+    def _check_subdivision(self) -> None:
+        alone = self.model_fields_set & {"pattern", "glue_ratio"}
+        if self.subdivide is None and alone:
+            raise ValueError(f"{min(alone)} goes with subdivide only, got it alone")
+        if self.subdivide is not None and not _convex_quadrilateral(self.outline):
+            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
 
     @property
     def outline(self) -> tuple[Point, ...]:
@@ -193,13 +204,16 @@ class FemSection(Section):
     elements: Count | None = None  # per side
     mesh: str | None = None  # file with tagged edges base, top
     degree: Annotated[int, BeforeValidator(_count), Field(ge=1, le=2)] = 2
-    foundation: Literal["distributed", "patch", "corner"] = "distributed"
+    foundation: Literal["distributed", "patch", "corner", "nodes"] = "distributed"
+    cells: Literal["quadrilaterals", "triangles"] = "quadrilaterals"  # of a structured mesh
     patch_width: Positive | None = None  # m
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         if self.elements is not None and self.mesh is not None:
             raise ValueError("elements and mesh exclude each other, got both")
+        if self.mesh is not None and self.cells != "quadrilaterals":
+            raise ValueError(f"cells goes with a structured mesh only, got {self.cells!r} and a mesh file")
         if (self.foundation == "patch") != (self.patch_width is not None):
             raise ValueError(
                 'patch_width goes with foundation = "patch" and only with it, '
@@ -279,6 +293,13 @@ class Scene(Section):
     def _swept(self) -> dict[str, list[Any]]:
         return {field: values for field, values in self.sweep.items() if field != "mode"}
 
+    @property
+    def beyond_two_blocks(self) -> str | None:
+        """Why solvers that are written for one block under a centred pressure do not apply; None if they do."""
+        if self.block.subdivide is not None:
+            return "the block is cut into sub-blocks"
+        return None if self.load.centred else "the solver is written for a centred pressure alone"
+
     def expand(self) -> tuple[Scene, ...]:
         """Return one scene per value of the sweep, named ``name[field=value,...]``.
 
@@ -340,6 +361,10 @@ _EXCLUSIVE = {
     "block.width": ("side", "vertices"),
     "block.height": ("side", "vertices"),
 }
+
+
+def _convex_quadrilateral(points: tuple[Point, ...]) -> bool:
+    return len(points) == 4 and all(_turn(*(points[(i + k) % 4] for k in range(3))) > 0 for i in range(4))
 
 
 def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:

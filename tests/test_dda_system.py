@@ -1,0 +1,306 @@
+"""Systems of glued blocks: the two-block model as the smallest, linear elements as the limit of stiff glue."""
+
+import numpy as np
+import pytest
+
+import dda
+import fem_reference
+from dda.system import BlockSystem
+from validation import load_scene, solve
+from validation.scene import SceneError
+
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
+TRAPEZIUM = ((0.3, 0.1), (2.3, 0.4), (1.9, 1.6), (0.5, 1.4))
+RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-1e-3, 2e-3], [0.0, 5e-4]])
+LOADS = {"traction": 2e5, "gravity": 9.81, "eccentricity": 0.2, "motion": RECORD}
+SCHEME = dda.Scheme(0.5, 1.0, 1.0, 1e-3)
+
+
+def two_block(vertices=((0, 0), (2, 0), (2, 2), (0, 2)), mu=0.0, p=1e9, q=5e6, **loads):
+    return dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, mu)), dda.Contact(p, 0.8 * p), q, **loads)
+
+
+def largest_error(a, b, columns=COLUMNS):
+    """Return the greatest error over the columns, each over its maximum."""
+    return max(np.abs(a.columns[c] - b.columns[c]).max() / np.abs(b.columns[c]).max() for c in columns)
+
+
+@pytest.mark.parametrize("scheme", [SCHEME, dda.Scheme(0.25, 0.5, 0.99, 2e-3, "consistent")])
+@pytest.mark.parametrize(
+    ("p", "moved", "bits"),
+    # Two orders of operations: a rounding a step. With stiff springs the moving base itself is rounded, and the
+    # ringing contact mode keeps what it is given.
+    [(1e9, True, 51), (1e15, False, 48), (1e15, True, 44)],
+)
+def test_one_sub_block_is_the_two_block_model_to_the_last_bits(scheme, p, moved, bits):
+    start = dda.BaseMotion([0.0, 0.02, 0.05], [[0.0, 0.0], [3e-3, 2e-3], [0.0, 5e-4]])
+    model = two_block(TRAPEZIUM, 0.3, p, **(LOADS | {"motion": start if moved else None}))
+    one = dda.solve_system(dda.subdivided(model, 1, 1, 1e9), scheme, 150, COLUMNS)
+    assert largest_error(one, dda.solve(model, scheme, 150, COLUMNS)) < 150 * 2.0**-bits
+    static, expected = dda.static_system(dda.subdivided(model, 1, 1, 1e9)), model.static()
+    for name in COLUMNS:
+        assert static[name] == pytest.approx(expected[name], rel=1e-12)
+    modes = dda.system_modes(dda.subdivided(model, 1, 1, 1e9), scheme)
+    # the dense eigenvalue solver keeps the digits of the largest flexibility
+    for mode, same in zip(modes[:2], dda.modes(model, scheme)[:2], strict=True):
+        assert mode.frequency == pytest.approx(same.frequency, rel=1e-9)
+        assert mode.share == pytest.approx(same.share, rel=1e-8)
+        assert mode.contact_share == pytest.approx(same.contact_share, rel=1e-7)
+
+
+def test_a_pentagon_on_a_fixed_block_is_the_two_block_model():
+    material = dda.Material(2400.0, 2e9, 0.2)
+    block, ground = dda.Block(PENTAGON, material), dda.Block([[0.0, -3.0], [4.0, -3.0], [3.1, 1.7], [1, 1]], material)
+    joints = dda.shared_edges([block, ground], 3e9, 1e9)
+    assert [(j.first, j.second) for j in joints] == [(0, 1)]
+    edge = block.edge(2)
+    load = dda.SurfaceLoad(0, tuple(edge[0]), tuple(edge[1]), (0.0, -5e6))
+    _, normal, a = dda.contact.base_directions(block, 0)
+    system = BlockSystem(
+        [block, ground],
+        joints,
+        block.section.centroid,
+        a,
+        [load],
+        9.81,
+        fixed=frozenset([1]),
+        base_normal=tuple(normal),
+    )
+    model = dda.TwoBlockModel(block, dda.Contact(3e9, 1e9), 5e6, gravity=9.81)
+    pair = [dda.solve_system(system, SCHEME, 80, COLUMNS), dda.solve(model, SCHEME, 80, COLUMNS)]
+    assert largest_error(*pair) < 80 * 2**-50
+
+
+def linear_elements(n, p, scheme, steps, q=5e6, a=2.0, E=1e9, rho=2700.0, g=0.0):
+    """Return centroid displacement and base pressure of n linear bar elements on the spring 2p, plain Newmark."""
+    h = a / n
+    M, K = np.zeros((2, n + 1, n + 1))
+    for i in range(n):
+        M[i : i + 2, i : i + 2] += rho * a * h / 6 * np.array([[2, 1], [1, 2]])
+        K[i : i + 2, i : i + 2] += E * a / h * np.array([[1, -1], [-1, 1]])
+    K[0, 0] += 2 * p
+    F = -g * M.sum(0)
+    F[-1] -= q * a
+    dt, alpha, delta = scheme.step, scheme.alpha, scheme.delta
+    D, V, A = np.zeros((3, n + 1))
+    inverse = np.linalg.inv(M + alpha * dt * dt * K)
+    found = []
+    for _ in range(steps):
+        ahead = D + scheme.gg * dt * V + dt * dt * (0.5 - alpha) * A
+        new = inverse @ (F - K @ ahead)
+        D = ahead + alpha * dt * dt * new
+        V, A = scheme.gg * V + dt * ((1 - delta) * A + delta * new), new
+        found.append([np.interp(a / 2, h * np.arange(n + 1), D), -2 * p * D[0] / a])
+    return dict(zip(COLUMNS[:2], np.array(found).T, strict=True))
+
+
+@pytest.mark.parametrize(("n", "p", "g"), [(3, 1e9, 0.0), (8, 3e10, 9.81)])
+@pytest.mark.parametrize("scheme", [SCHEME, dda.Scheme(0.25, 0.5, 0.99, 5e-4)])
+def test_a_stiffly_glued_column_is_linear_elements(n, p, g, scheme):
+    expected = linear_elements(n, p, scheme, 200, g=g)
+    system = dda.subdivided(two_block(p=p, gravity=g), 1, n, 1e21)
+    result = dda.solve_system(system, scheme, 200)
+    assert result.unknowns == 2 * n  # v and ey of every sub-block
+    for name, values in expected.items():
+        # 1e-8 is asked; what is left is rounding: glue 1e12 E leaves n / 2e12 of compliance, times the phase
+        np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-10 * np.abs(values).max())
+
+
+@pytest.mark.parametrize(("n", "mu", "loads"), [(3, 0.0, {}), (5, 0.25, LOADS)])
+def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, loads):
+    model = two_block(TRAPEZIUM, mu, 2e9, **loads)
+    result = dda.solve_system(dda.subdivided(model, n, n, 1e21, "triangles"), SCHEME, 100, COLUMNS)
+    motion = fem_reference.Motion(*map(tuple, (RECORD.time, *np.transpose(RECORD.displacement)))) if loads else None
+    data = (2700.0, 1e9, mu, "plane stress", 2e9, 1.6e9, 5e6, n, 1)
+    others = {name: value for name, value in loads.items() if name != "motion"}
+    problem = fem_reference.Problem(
+        TRAPEZIUM, 0, 2, *data, foundation="nodes", cells="triangles", motion=motion, **others
+    )
+    expected = fem_reference.solve(problem, fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), 100, COLUMNS)
+    assert largest_error(result, expected) < 1e-9  # 1e-8 is asked
+
+
+def assembled_newmark(blocks, shared, model, scheme, steps, glue):
+    """Return centroid v and contact pressure of glued blocks by plain Newmark in extended precision.
+
+    The joints are found again, as pairs of equal edges, and assembled in the unknowns of the blocks.
+    """
+    long = np.longdouble
+    size = 6 * len(blocks)
+    M, K = np.zeros((2, size, size), long)
+    F, pressure = np.zeros((2, size), long)
+    a = np.hypot(*np.subtract(*model.block.edge(0)))
+
+    def spring(ends, point, k):
+        row = np.zeros((2, size), long)
+        for body, sign in ends:
+            row[:, 6 * body : 6 * body + 6] = sign * blocks[body].T(*point)
+        return k * row.T @ row
+
+    for i, block in enumerate(blocks):
+        part = slice(6 * i, 6 * i + 6)
+        M[part, part], K[part, part] = block.mass(), K[part, part] + block.elastic()
+        F[6 * i + 1] -= model.gravity * block.material.density * block.section.area
+    for i, j, start, end in shared:
+        for point in (start, end):
+            if j is not None:
+                K += spring([(i, 1), (j, -1)], point, glue)
+            else:
+                share = np.hypot(*np.subtract(start, end)) / a * model.contact.normal
+                K += spring([(i, 1)], point, share)
+                pressure[6 * i : 6 * i + 6] -= share / a * blocks[i].T(*point)[1]
+    tops = [(i, b.edge(2)) for i, b in enumerate(blocks) if b.corners[2:, 1].min() > model.block.corners[2, 1] - 1e-9]
+    for i, (start, end) in tops:
+        x, y = (start + end) / 2
+        F[6 * i : 6 * i + 6] -= model.pressure * np.hypot(*(end - start)) * blocks[i].T(x, y)[1]
+    S = (M + scheme.alpha * scheme.step**2 * K).astype(float)
+    inverse = np.linalg.inv(S).astype(long)
+    inverse = inverse @ (2 * np.eye(size) - (M + scheme.alpha * scheme.step**2 * K) @ inverse)
+    D, V, A = np.zeros((3, size), long)
+    found = []
+    for _ in range(steps):
+        ahead = D + scheme.gg * scheme.step * V + scheme.step**2 * (0.5 - scheme.alpha) * A
+        new = inverse @ (F - K @ ahead)
+        D = ahead + scheme.alpha * scheme.step**2 * new
+        V, A = scheme.gg * V + scheme.step * ((1 - scheme.delta) * A + scheme.delta * new), new
+        found.append([D, pressure @ D])
+    return np.array([d for d, _ in found]), np.array([p for _, p in found])
+
+
+@pytest.mark.parametrize("glue", [3e8, 5e10])
+def test_finite_glue_is_the_assembled_system_in_other_coordinates(glue):
+    width, height = 1.8, 1.2
+    vertices = ((0, 0), (width, 0), (width, height), (0, height))
+    model = dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, 0.2)), dda.Contact(2e9), 5e6, gravity=9.81)
+    nx, ny = 3, 2
+    system = dda.subdivided(model, nx, ny, glue)
+    w, h = width / nx, height / ny
+    shared = []
+    for k in range(nx * ny):
+        i, j = k % nx, k // nx
+        if i + 1 < nx:
+            shared.append((k, k + 1, ((i + 1) * w, j * h), ((i + 1) * w, (j + 1) * h)))
+        if j + 1 < ny:
+            shared.append((k, k + nx, (i * w, (j + 1) * h), ((i + 1) * w, (j + 1) * h)))
+        if j == 0:
+            shared.append((k, None, (i * w, 0.0), ((i + 1) * w, 0.0)))
+    D, pressure = assembled_newmark(system.blocks, shared, model, SCHEME, 60, glue)
+    T = [system.blocks[k].T(width / 2, height / 2)[1] for k in (1, 4)]
+    expected = (D[:, 6:12] @ T[0] + D[:, 24:30] @ T[1]) / 2
+    result = dda.solve_system(system, SCHEME, 60)
+    np.testing.assert_allclose(result.columns["displacement"], expected.astype(float), rtol=0, atol=1e-14)
+    # the assembled system forms the pressure as a difference: 64-bit mantissa, glue / E of 50 and 60 steps
+    np.testing.assert_allclose(result.columns["contact_pressure"], pressure.astype(float), rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize(("n", "ratio"), [(4, 20.0), (7, 1e3)])
+def test_glue_of_a_column_is_its_joints_in_series(n, ratio):
+    a, q, p, E = 2.0, 5e6, 1e9, 1e9
+    static = dda.static_system(dda.subdivided(two_block(), 1, n, ratio * E))
+    # above the base: half of the n - 1 joints lie below the middle, each of compliance 1 / (2 ratio E)
+    expected = -a * q / (2 * p) - a / 2 * q / E - (n - 1) / 2 * a * q / (2 * ratio * E)
+    assert static["displacement"] == pytest.approx(expected, rel=1e-13)
+    assert static["contact_pressure"] == pytest.approx(q, rel=1e-13)
+
+
+def test_squares_and_triangles_under_mixed_loads_keep_equilibrium():
+    a, rho, tau, q, g, e = 2.0, 2700.0, 2e5, 5e6, 9.81, 0.35
+    for pattern in ("squares", "triangles"):
+        model = two_block(mu=0.25, gravity=g, traction=tau, eccentricity=e)
+        static = dda.static_system(dda.subdivided(model, 5, 3, 1e12, pattern))
+        # 0.35 cuts the middle of a sub-block's edge: the pressed part ends inside it
+        assert static["contact_pressure"] == pytest.approx(q * (a - 2 * e) / a + rho * g * a, rel=1e-11)
+
+
+def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():
+    column = dda.subdivided(two_block(), 1, 6, 1e13)
+    saved, full = (dda.solve_system(column, SCHEME, 60, full=full) for full in (False, True))
+    assert (saved.unknowns, full.unknowns) == (12, 36)
+    assert saved.notes == ("12 of 36 unknowns kept",)
+    assert largest_error(saved, full, COLUMNS[:2]) < 1e-12
+    # A second column that stands apart is at rest, whatever it consists of.
+    left = two_block(((0, 0), (1, 0), (1, 2), (0, 2)), mu=0.2)
+    parts = [dda.subdivided(left, 1, 3, 1e13)]
+    right = two_block(((5, 0), (6, 0), (6, 2), (5, 2)), mu=0.2)
+    parts.append(dda.subdivided(right, 1, 3, 1e13))
+    moved = [dda.Joint(j.first + 3, j.second + 3 if j.second >= 0 else -1, *j_rest(j)) for j in parts[1].joints]
+    both = BlockSystem(
+        [*parts[0].blocks, *parts[1].blocks], [*parts[0].joints, *moved], parts[0].observed, 1.0, parts[0].loads
+    )
+    alone, together = dda.solve_system(parts[0], SCHEME, 60), dda.solve_system(both, SCHEME, 60)
+    assert together.unknowns == alone.unknowns == 9
+    assert largest_error(together, alone, COLUMNS[:2]) < 1e-13
+
+
+def j_rest(joint):
+    return joint.start, joint.end, joint.normal, joint.shear
+
+
+def test_a_brick_wall_passes_the_patch_test():
+    material, q, p = dda.Material(2700.0, 1e9, 0.0), 5e6, 1e9
+    lengths = [[1.0, 1.0], [0.5, 1.0, 0.5], [1.3, 0.7]]
+    blocks = []
+    for row, parts in enumerate(lengths):
+        for k, length in enumerate(parts):
+            x, y = sum(parts[:k]), row * 0.5
+            blocks.append(dda.Block([[x, y], [x + length, y], [x + length, y + 0.5], [x, y + 0.5]], material))
+    joints = dda.shared_edges(blocks, 1e21, 1e21)
+    # rows: 1 + 2 + 1 upright joints; bed joints: the merged ends of both rows cut the wall into 4 and 4 pieces
+    assert len(joints) == 4 + 4 + 4
+    supports = [dda.Joint(i, dda.FIXED, (i, 0.0), (i + 1.0, 0.0), p / 2, p / 2) for i in (0, 1)]
+    loads = [dda.SurfaceLoad(i, tuple(blocks[i].corners[2]), tuple(blocks[i].corners[3]), (0.0, -q)) for i in (5, 6)]
+    wall = BlockSystem(blocks, joints + supports, (1.0, 0.75), 2.0, loads)
+    static = dda.static_system(wall)
+    assert static["displacement"] == pytest.approx(-2 * q / (2 * p) - 0.75 * q / 1e9, rel=1e-10)
+    assert static["contact_pressure"] == pytest.approx(q, rel=1e-10)
+
+
+def test_central_differences_and_their_limit():
+    system = dda.subdivided(two_block(mu=0.2), 2, 3, 4e9)
+    fastest = dda.highest_frequency(system)
+    steady = dda.Scheme(0.0, 0.5, 1.0, 1.99 / fastest)
+    wild = dda.Scheme(0.0, 0.5, 1.0, 2.01 / fastest)
+    bounds = [np.abs(dda.solve_system(system, s, 3000).columns["displacement"]).max() for s in (steady, wild)]
+    assert bounds[0] < 0.05 < 1e3 < bounds[1]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"columns": 0}, "columns: must be at least 1"),
+        ({"rows": -1}, "rows: must be at least 1"),
+        ({"glue": 0.0}, "glue: must be finite and positive"),
+        ({"pattern": "hexagons"}, "pattern: must be 'squares' or 'triangles'"),
+        ({"model": two_block(PENTAGON)}, "only convex quadrilaterals"),
+    ],
+)
+def test_what_cannot_be_cut_is_refused(changes, words):
+    data = {"model": two_block(), "columns": 2, "rows": 2, "glue": 1e9, "pattern": "squares"} | changes
+    with pytest.raises(ValueError, match=words):
+        dda.subdivided(**data)
+
+
+def test_joints_and_systems_are_checked():
+    block = two_block().block
+    with pytest.raises(ValueError, match="normal: must be finite and positive"):
+        dda.Joint(0, 1, (0, 0), (1, 0), 0.0, 1.0)
+    with pytest.raises(ValueError, match="end: must differ from start"):
+        dda.Joint(0, 1, (0, 0), (0, 0), 1.0, 1.0)
+    with pytest.raises(ValueError, match="must name blocks from 0 to 0"):
+        BlockSystem([block], [dda.Joint(0, 1, (0, 0), (1, 0), 1.0, 1.0)], (1.0, 1.0), 2.0)
+    with pytest.raises(ValueError, match="observed: must lie in a block"):
+        BlockSystem([block], [], (3.0, 1.0), 2.0)
+
+
+def test_a_scene_is_cut(scene_file):
+    text = scene_file.read_text().replace("young = 1.0e9", "young = 1.0e9\nsubdivide = [1, 4]\nglue_ratio = 1e12")
+    scene_file.write_text(
+        text.replace("elements = 4", "elements = 4\ndegree = 1") + '[run]\nsolvers = ["dda", "fem"]\n'
+    )
+    scene = load_scene(scene_file)
+    dda_run, fem_run = (solve(scene, name) for name in ("dda", "fem"))
+    scale = np.abs(fem_run.displacement).max()
+    np.testing.assert_allclose(dda_run.displacement, fem_run.displacement, rtol=0, atol=1e-9 * scale)
+    with pytest.raises(SceneError, match="cut into sub-blocks"):
+        solve(scene, "dda-textbook")
