@@ -3,6 +3,7 @@
 import copy
 import math
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -76,6 +77,17 @@ REFUSED = [
     ({"sweep": {"time.step": [0.1], "mode": "all"}}, "sweep: mode must be 'product' or 'zip', got 'all'"),
     ({"gate": [{"pair": ["dda"], "metric": "x", "band": [2.0, 1.0], "reason": "r"}]}, "band must be [low, high]"),
     ({"load": 5}, "load: "),
+    ({"time__allow_unstable": "yes"}, "time.allow_unstable: must be a valid boolean, got 'yes'"),
+    ({"run__solvers": []}, "run.solvers: must have at least 1 item, got []"),
+    ({"run__solvers": ["dda", "dda"]}, "run.solvers: must not repeat a word, got"),
+    ({"run__columns": ["displacement", "displacement"]}, "run.columns: must not repeat a word, got"),
+    (
+        {"gate": [{"pair": ["dda", "dda"], "metric": "x", "band": [0, 1], "reason": "r"}]},
+        "gate.0.pair: must not repeat",
+    ),
+    ({"sweep": {"name": ["a"]}}, "x.toml: sweep: unknown key, must be one of a table as in \"time.step\", got 'name'"),
+    ({"sweep": {"run.solvers": [["dda"]]}}, "sweep: unknown key"),
+    ({"sweep": {"time": [1]}}, "sweep: unknown key"),
 ]
 
 
@@ -136,6 +148,41 @@ def test_a_swept_value_is_checked_like_any_other() -> None:
         parse(sweep={"time.step": [0.1, -1]}).expand()
     with pytest.raises(SceneError, match="unknown key"):
         parse(sweep={"time.stop": [0.1]}).expand()
+
+
+def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_refused() -> None:
+    close = parse(sweep={"time.step": [0.1, 0.1 + 1e-9]}).expand()
+    assert [case.name for case in close] == ["scene[time.step=0.1]", "scene[time.step=0.100000001]"]
+    for repeated in ([0.1, 0.1], [1, 1.0]):
+        with pytest.raises(SceneError, match="sweep: must not repeat a case"):
+            parse(sweep={"time.step": repeated}).expand()
+
+
+def test_keys_that_exclude_each_other_are_not_set_or_swept_together() -> None:
+    for values in ({"time.gg": 0.9, "time.gg_rate": 3.0}, {"block.side": 1.0, "block.width": 2.0, "block.height": 1.0}):
+        with pytest.raises(SceneError, match="exclude each other, got both"):
+            parse().with_values(values)
+    with pytest.raises(SceneError, match="exclude each other, got both"):
+        parse(sweep={"time.gg": [0.9, 1.0], "time.gg_rate": [3.0]}).expand()
+    rate = parse(time__gg=0.9, sweep={"time.gg_rate": [3.0, 4.0]}).expand()
+    assert [(case.time.gg, case.time.gg_rate) for case in rate] == [(None, 3.0), (None, 4.0)]
+    (left,) = parse(sweep={"time.gg": [0.9, 1.0]}).with_values({"time.gg_rate": 3.0}).expand()
+    assert (left.time.gg, left.time.gg_rate) == (None, 3.0), "a set key ends the sweep of the key that it excludes"
+
+
+@pytest.mark.parametrize("field", ["name", "sweep", "gate", 'sweep."time.step"', "gate.0.band"])
+def test_what_is_no_value_of_a_scene_is_not_set(field: str) -> None:
+    with pytest.raises(SceneError, match="must be a key as in"):
+        parse().with_values({field: [0.1]})
+
+
+def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    text = SCENE.replace("elements = 4", 'mesh = "a.msh"')
+    swept = 'a.msh", "b.msh'
+    (tmp_path / "s.toml").write_text(f'\ufeff{text}\n[sweep]\n"fem.mesh" = ["{swept}"]\n', encoding="utf-8")
+    scene = load_scene(tmp_path / "s.toml")
+    assert scene.fem.mesh == str(tmp_path / "a.msh")
+    assert [case.fem.mesh for case in scene.expand()] == [str(tmp_path / "a.msh"), str(tmp_path / "b.msh")]
 
 
 def test_set_replaces_a_value_and_ends_its_sweep() -> None:

@@ -10,14 +10,16 @@ import itertools
 import json
 import math
 import tomllib
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from validation.outline import Point, check_polygon, convex_quadrilateral
 
 SCENE_DIRECTORY = Path(__file__).parent / "scenes"
 FINE_ELEMENTS = 16
-Point = tuple[float, float]
 
 
 class SceneError(ValueError):
@@ -46,10 +48,19 @@ def _count(value: object) -> int:
     return value
 
 
+def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Accept words that do not repeat."""
+    if len(set(words)) < len(words):
+        raise ValueError("must not repeat a word")
+    return words
+
+
 Real = Annotated[float, BeforeValidator(_real)]
 Positive = Annotated[Real, Field(gt=0)]
 NonNegative = Annotated[Real, Field(ge=0)]
 Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
+Flag = Annotated[bool, Field(strict=True)]
+Words = Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_distinct)]
 
 
 class Section(BaseModel):
@@ -109,7 +120,7 @@ class BlockSection(Section):
         alone = self.model_fields_set & {"pattern", "glue_ratio"}
         if self.subdivide is None and alone:
             raise ValueError(f"{min(alone)} goes with subdivide only, got it alone")
-        if self.subdivide is not None and not _convex_quadrilateral(self.outline):
+        if self.subdivide is not None and not convex_quadrilateral(self.outline):
             raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
 
     @property
@@ -177,7 +188,7 @@ class TimeSection(Section):
     gg: Annotated[Real, Field(ge=0, le=1)] | None = None  # kinetic discount per step
     gg_rate: NonNegative | None = None  # 1/s: gg = exp(-gg_rate * step)
     start: Literal["zero", "consistent"] = "zero"  # initial acceleration
-    allow_unstable: bool = False
+    allow_unstable: Flag = False
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -230,14 +241,14 @@ class FemSection(Section):
 class RunSection(Section):
     """What to run and what to keep."""
 
-    solvers: tuple[str, ...] = Field(default=("dda", "fem", "bar"), min_length=1)
-    columns: tuple[str, ...] = Field(default=("displacement", "contact_pressure"), min_length=1)
+    solvers: Words = ("dda", "fem", "bar")
+    columns: Words = ("displacement", "contact_pressure")
 
 
 class GateSection(Section):
     """A user's own gate on a pair of solvers (or one solver)."""
 
-    pair: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)]
+    pair: Annotated[Words, Field(max_length=2)]
     metric: str
     band: tuple[Real, Real]
     reason: Annotated[str, Field(min_length=1)]
@@ -265,9 +276,11 @@ class Scene(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for field, values in self.sweep.items():
-            if field != "mode" and not (isinstance(values, list) and values):
+        for field, values in self._swept().items():
+            if not (isinstance(values, list) and values):
                 raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
+            if field not in _sweepable():
+                raise ValueError(f'sweep: unknown key, must be one of a table as in "time.step", got {field!r}')
         mode, lists = self.sweep.get("mode", "product"), self._swept()
         if mode not in ("product", "zip"):
             raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
@@ -306,7 +319,7 @@ class Scene(Section):
         Raises
         ------
         SceneError
-            A swept field or value is not allowed.
+            A swept field or value is not allowed, or a case repeats.
         """
         lists = self._swept()
         if not lists:
@@ -314,14 +327,34 @@ class Scene(Section):
         rows = (
             zip(*lists.values(), strict=True) if self.sweep.get("mode") == "zip" else itertools.product(*lists.values())
         )
-        return tuple(self.with_values(dict(zip(lists, row, strict=True)), label=True) for row in rows)
+        return tuple(self._cases(lists, rows))
+
+    def _cases(self, lists: dict[str, list[Any]], rows: Iterable[tuple[Any, ...]]) -> Iterator[Scene]:
+        names = set()
+        for row in rows:
+            case = self.with_values(dict(zip(lists, row, strict=True)), label=True)
+            if case.name in names:
+                raise SceneError(f"{self.name}: sweep: must not repeat a case, got {case.name} twice")
+            names.add(case.name)
+            yield case
 
     def with_values(self, values: dict[str, Any], label: bool = False) -> Scene:
-        """Return a copy with dotted keys replaced; a key that is set leaves the sweep."""
+        """Return a copy with dotted keys replaced.
+
+        A key that is set leaves the sweep, and so does a key that it excludes.
+
+        Raises
+        ------
+        SceneError
+            A key is no key of a scene, a value is not allowed, or two of the keys exclude each other.
+        """
         data = self.definition()
         for field, value in values.items():
+            if both := [other for other in _EXCLUSIVE.get(field, ()) if other in values]:
+                raise SceneError(f"{self.name}: {field} and {both[0]} exclude each other, got both")
             _set_dotted(data, field, value, self.name)
-        sweep = {f: v for f, v in self.sweep.items() if f not in values}
+        gone = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
+        sweep = {f: v for f, v in self.sweep.items() if f not in gone}
         data["sweep"] = sweep if set(sweep) - {"mode"} else {}
         if label:
             inside = ",".join(f"{field}={_short(value)}" for field, value in values.items())
@@ -335,7 +368,10 @@ class Scene(Section):
 
 
 def _short(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """Return a value for a name; digits beyond six are kept, since names must tell cases apart."""
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:g}" if float(f"{value:g}") == value else repr(value)
 
 
 def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> None:
@@ -343,89 +379,34 @@ def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> 
     section, _, key = field.partition(".")
     if not key:
         section, key = "", section
+    if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
+        raise SceneError(f"{where}: {field}: must be a key as in time.step=0.001, got {field!r}")
     table = data.setdefault(section, {}) if section else data
     if not isinstance(table, dict):
         raise SceneError(f"{where}: {field}: must be section.key, got {field!r}")
     for partner in _EXCLUSIVE.get(field, ()):
-        table.pop(partner, None)
+        table.pop(partner.partition(".")[2], None)
     table[key] = value
 
 
+def _sweepable() -> set[str]:
+    """Return the dotted keys of the tables that a sweep may vary."""
+    tables = {name: field.annotation for name, field in Scene.model_fields.items() if name != "run"}
+    sections = {n: t for n, t in tables.items() if isinstance(t, type) and issubclass(t, Section)}
+    return {f"{name}.{key}" for name, table in sections.items() for key in table.model_fields}
+
+
+_FILES = ("fem.mesh", "load.base_motion")
 _EXCLUSIVE = {
-    "time.gg": ("gg_rate",),
-    "time.gg_rate": ("gg",),
-    "fem.elements": ("mesh",),
-    "fem.mesh": ("elements",),
-    "block.side": ("width", "height", "vertices", "base", "top"),
-    "block.vertices": ("side", "width", "height"),
-    "block.width": ("side", "vertices"),
-    "block.height": ("side", "vertices"),
+    "time.gg": ("time.gg_rate",),
+    "time.gg_rate": ("time.gg",),
+    "fem.elements": ("fem.mesh",),
+    "fem.mesh": ("fem.elements",),
+    "block.side": ("block.width", "block.height", "block.vertices", "block.base", "block.top"),
+    "block.vertices": ("block.side", "block.width", "block.height"),
+    "block.width": ("block.side", "block.vertices"),
+    "block.height": ("block.side", "block.vertices"),
 }
-
-
-def _convex_quadrilateral(points: tuple[Point, ...]) -> bool:
-    return len(points) == 4 and all(_turn(*(points[(i + k) % 4] for k in range(3))) > 0 for i in range(4))
-
-
-def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:
-    """Check that a polygon is simple, counter-clockwise and has the two edges.
-
-    Raises
-    ------
-    ValueError
-        Fewer than three vertices, an edge index out of range, a clockwise or self-crossing outline.
-    """
-    n = len(vertices)
-    if n < 3:
-        raise ValueError(f"vertices must be three or more, got {n}")
-    for name, index in (("base", base), ("top", top)):
-        if not 0 <= index < n:
-            raise ValueError(f"{name} must be an edge index from 0 to {n - 1}, got {index}")
-    if base == top:
-        raise ValueError(f"base and top must be different edges, got {base} twice")
-    edges = [(vertices[i], vertices[(i + 1) % n]) for i in range(n)]
-    if any(start == end for start, end in edges):
-        raise ValueError("vertices must not repeat, got an edge of length zero")
-    for i, j in itertools.combinations(range(n), 2):
-        adjacent = j == i + 1 or (i == 0 and j == n - 1)
-        if _folds_back(edges[i], edges[j]) if adjacent else _cross(edges[i], edges[j]):
-            raise ValueError(f"vertices must not cross themselves, got edges {i} and {j} that do")
-    if _signed_area(vertices) <= 0:
-        raise ValueError("vertices must run counter-clockwise, got a clockwise outline")
-
-
-def _turn(o: Point, a: Point, b: Point) -> float:
-    """Twice the signed area of a triangle [m2]."""
-    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
-
-
-def _signed_area(points: tuple[Point, ...]) -> float:
-    origin = points[0]
-    return sum(_turn(origin, a, b) for a, b in itertools.pairwise(points[1:])) / 2
-
-
-def _within(p: Point, a: Point, b: Point) -> bool:
-    """Whether p, on the line through a and b, lies between them."""
-    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
-
-
-def _cross(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    """Whether two closed segments have a point in common."""
-    (a, b), (c, d) = first, second
-    t1, t2, t3, t4 = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
-    if ((t1 > 0) - (t1 < 0)) * ((t2 > 0) - (t2 < 0)) < 0 and ((t3 > 0) - (t3 < 0)) * ((t4 > 0) - (t4 < 0)) < 0:
-        return True
-    touches = ((t1, c, a, b), (t2, d, a, b), (t3, a, c, d), (t4, b, c, d))
-    return any(t == 0 and _within(p, s, e) for t, p, s, e in touches)
-
-
-def _folds_back(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    """Whether two edges that share a vertex overlap."""
-    shared = first[1] if first[1] in second else first[0]
-    a = first[0] if first[1] == shared else first[1]
-    b = second[1] if second[0] == shared else second[0]
-    forward = (a[0] - shared[0]) * (b[0] - shared[0]) + (a[1] - shared[1]) * (b[1] - shared[1])
-    return _turn(shared, a, b) == 0 and forward > 0
 
 
 def parse_scene(data: dict[str, Any], source: str) -> Scene:
@@ -445,18 +426,21 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
 def _one_line(error: ValidationError, source: str) -> str:
     """Return the first defect of a pydantic report as ``source: field: rule, got value``."""
     first = error.errors(include_url=False)[0]
-    field = ".".join(str(part) for part in first["loc"]) or "scene"
+    field = ".".join(str(part) for part in first["loc"])
+    where = f"{source}: {field}" if field else source  # a rule on the whole scene begins with its field
     rule = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     if first["type"] == "extra_forbidden":
         rule = "unknown key"
     elif first["type"] == "missing":
-        return f"{source}: {field}: is required, got nothing"
+        return f"{where}: is required, got nothing"
     elif rule == first["msg"].removeprefix("Input should be ") and "Input should be" in first["msg"]:
         rule = f"must be {rule}"
+    elif first["type"].endswith(("too_short", "too_long")):
+        rule = f"must{rule.partition('should')[2].partition(' after')[0]}"
     if ", got " not in rule:
         rule = f"{rule}, got {_clip(first['input'])}"
     more = error.error_count() - 1
-    return f"{source}: {field}: {rule}" + (f" (and {more} more)" if more else "")
+    return f"{where}: {rule}" + (f" (and {more} more)" if more else "")
 
 
 def _clip(value: object, width: int = 60) -> str:
@@ -488,16 +472,28 @@ def load_scene(source: str | Path) -> Scene:
     data = _read_toml(path)
     if "name" in data:
         raise SceneError(f"{path.name}: name: unknown key, got {_clip(data['name'])}")
-    if isinstance(mesh := data.get("fem", {}) and isinstance(data["fem"], dict) and data["fem"].get("mesh"), str):
-        data["fem"]["mesh"] = str(path.parent / mesh)
-    if isinstance(data.get("load"), dict) and isinstance(record := data["load"].get("base_motion"), str):
-        data["load"]["base_motion"] = str(path.parent / record)
+    _beside(path.parent, data)
     return parse_scene({"name": path.stem} | data, path.name)
+
+
+def _beside(directory: Path, data: dict[str, Any]) -> None:
+    """Let the files that a scene names, in a table or in the sweep, stand beside the scene's own file."""
+
+    def beside(value: object) -> object:
+        return str(directory / value) if isinstance(value, str) else value
+
+    for field in _FILES:
+        section, _, key = field.partition(".")
+        table, sweep = data.get(section), data.get("sweep")
+        if isinstance(table, dict) and key in table:
+            table[key] = beside(table[key])
+        if isinstance(sweep, dict) and isinstance(sweep.get(field), list):
+            sweep[field] = [beside(value) for value in sweep[field]]
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_bytes().decode())
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         known = ", ".join(scene_names())
         raise SceneError(f"{path}: no such scene file; built-in scenes: {known}") from None
