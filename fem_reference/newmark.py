@@ -71,9 +71,9 @@ def predictor(state: State, scheme: Scheme) -> Array:
     return state.D + scheme.gg * dt * state.V + dt**2 * (0.5 - scheme.alpha) * state.A
 
 
-def corrector(D: Array, predicted: Array, M: csr_array, residual: Array, scheme: Scheme) -> Array:
+def corrector(D: Array, predicted: Array, M: Callable[[Array], Array], residual: Array, scheme: Scheme) -> Array:
     """Right-hand side M (D* - D) + alpha dt^2 (F - K D) of the step's displacement increment."""
-    right: Array = M @ (predicted - D) + (scheme.alpha * scheme.step**2) * residual
+    right: Array = M(predicted - D) + (scheme.alpha * scheme.step**2) * residual
     return right
 
 
@@ -92,6 +92,18 @@ def initial_acceleration(F: Array, solve_mass: Callable[[Array], Array] | None) 
     return np.zeros_like(F) if solve_mass is None else solve_mass(F)
 
 
+Operator = Callable[[Array], Array]
+"""Product with a matrix, or solution with one."""
+
+
+def advance(state: State, F: Array, scheme: Scheme, M: Operator, K: Operator, solve: Operator) -> State:
+    """One step under the load `F` at its end; `solve` is the solution with S (with M for alpha = 0)."""
+    predicted = predictor(state, scheme)
+    D = state.D + solve(corrector(state.D, predicted, M, F - K(state.D), scheme))
+    A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(F - K(D))
+    return State(D, velocity(state, A, scheme), A)
+
+
 @dataclass
 class Stepper:
     """The scheme applied to M D'' + K D = F, with its factorisations made once."""
@@ -103,7 +115,8 @@ class Stepper:
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
-        self._solve = self.work.factor(effective_matrix(self.M, self.K, self.scheme))
+        self.S = effective_matrix(self.M, self.K, self.scheme)
+        self.solve = self.work.factor(self.S)
 
     def start(self, F: Array | None = None) -> State:
         """State at t = 0: at rest, unstrained, with the initial acceleration that the scheme asks for.
@@ -112,16 +125,11 @@ class Stepper:
         """
         mass = None
         if self.scheme.start == "consistent":
-            mass = self.work.factor(self.M) if self.scheme.alpha > 0 else self._solve
+            mass = self.work.factor(self.M) if self.scheme.alpha > 0 else self.solve
         zero = np.zeros_like(self.F)
         return State(zero, zero, initial_acceleration(self.F if F is None else F, mass))
 
     def advance(self, state: State, F: Array | None = None) -> State:
         """One step, under the load `F` at its end where that is not the constant one."""
-        s = self.scheme
         F = self.F if F is None else F
-        predicted = predictor(state, s)
-        residual = F - self.K @ state.D
-        D = state.D + self._solve(corrector(state.D, predicted, self.M, residual, s))
-        A = acceleration(D, predicted, s) if s.alpha > 0 else self._solve(F - self.K @ D)
-        return State(D, velocity(state, A, s), A)
+        return advance(state, F, self.scheme, lambda x: self.M @ x, lambda x: self.K @ x, self.solve)

@@ -11,6 +11,7 @@ from fem_reference.fields import FieldWriter
 from fem_reference.model import Model, build
 from fem_reference.newmark import Stepper, Work
 from fem_reference.problem import Array, Problem, Scheme
+from fem_reference.reduced import Reduced, reduced
 from fem_reference.result import COLUMNS, Result, check_request
 
 
@@ -33,7 +34,7 @@ def solve(
     columns
         Columns of the history, among `fem_reference.result.COLUMNS`.
     full
-        Solve the whole block, without the exact savings.
+        Solve the whole block step by step, without any saving.
     fields
         Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
 
@@ -48,8 +49,15 @@ def solve(
     stepper = Stepper(model.M, model.K, model.F, scheme)
     writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
     ready = time.perf_counter()
-    moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
-    history = problem.load_size * run(stepper, model, steps, tuple(columns), writer, moved)
+    small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
+    if isinstance(small, str):
+        moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
+        history = run(stepper, model, steps, tuple(columns), writer, moved)
+        note, estimate = f"stepped: {small}", None
+    else:
+        history, estimate = small.history, small.estimate
+        note = f"blocked in {small.vectors} Krylov vectors"
+    history *= problem.load_size
     ended = time.perf_counter()
     return Result(
         time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
@@ -58,10 +66,27 @@ def solve(
         nonzeros=stepper.work.nonzeros,
         factorisations=stepper.work.factorisations,
         solves=stepper.work.solves,
-        notes=model.notes,
+        notes=(*model.notes, note),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
+        estimate=estimate,
     )
+
+
+def _in_small_space(
+    problem: Problem, model: Model, stepper: Stepper, steps: int, columns: tuple[str, ...], writer: FieldWriter | None
+) -> Reduced | str:
+    """The history in a Krylov space, or why it must be stepped."""
+    if problem.motion is not None:
+        return "the base moves"
+    if writer is not None:
+        return "fields are written"
+    return reduced(stepper, _rows(model, columns), steps)
+
+
+def _rows(model: Model, columns: tuple[str, ...]) -> Array:
+    """Rows that observe the columns, shape (columns, unknowns)."""
+    return np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
 
 
 def run(
@@ -76,7 +101,7 @@ def run(
 
     `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed.
     """
-    rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
+    rows = _rows(model, columns)
     history = np.empty((len(columns), steps))
     forces = None if moved is None else model.F + moved @ model.base_force.T
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.

@@ -42,7 +42,8 @@ FullOption = Annotated[
     bool,
     typer.Option(
         "--full",
-        help="Switch the numerical savings off: no dropped unknowns, no single column, no half block.",
+        help="Switch the numerical savings off: no dropped unknowns, no single column, no half block, no small space, "
+        "no blocked steps.",
     ),
 ]
 RanksOption = Annotated[
