@@ -137,12 +137,22 @@ def build(results: Results, out: Path) -> Path:
         There are no results, or the file cannot be written.
     """
     studies = ordered_studies(results)
+    return write_document(out, lambda root: _all_blocks(results, studies, root))
+
+
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
+    """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
+
+    Raises
+    ------
+    SceneError
+        The file cannot be written.
+    """
     if not out.parent.is_dir():
         raise SceneError(f"{out}: cannot be written: {out.parent} is no directory; choose another place")
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
-        blocks = _all_blocks(results, studies, root)
-        pdf = _typeset(root, blocks)
+        pdf = _typeset(root, blocks_of(root))
     write_atomically(out, lambda stream: stream.write(pdf))
     return out
 
