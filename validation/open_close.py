@@ -95,7 +95,7 @@ def rectangle_of(scene: Scene) -> Column | None:
     (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points if len(points) == 4 else ((0.0, 0.0),) * 4
     upright = y0 == y1 and x1 == x2 and y2 == y3 and x3 == x0 and x1 > x0 and y2 > y1
     vertical = load.eccentricity == load.traction == 0 and load.base_motion is None
-    if not (upright and vertical and b.base == 0 and b.top == 2):
+    if not (upright and vertical and b.base == 0 and b.top == 2 and b.subdivide is None):
         return None
     modulus, mu = b.young, b.poisson
     if b.hypothesis == "plane strain":
