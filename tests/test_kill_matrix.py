@@ -128,6 +128,20 @@ FAULTS = [
     Fault("dda: one step late", ("dda",), dda.solution, "modal_histories", late),
     Fault("dda: load reversed", ("dda",), dda.gap_form, "_load", times(-1.0)),
     Fault("dda: load 0.2 % high", ("dda",), dda.gap_form, "_load", times(1.002)),
+    Fault(
+        "dda: histories with another delta",
+        ("dda",),
+        dda.solution,
+        "modal_histories",
+        with_scheme(0, delta=lambda d: d + 1e-3),
+    ),
+    Fault(
+        "fem: histories with another delta",
+        ("fem",),
+        fem_reference.solver,
+        "Stepper",
+        with_scheme(3, delta=lambda d: d + 1e-3),
+    ),
     Fault("fem: gg missing in the predictor", ("fem",), FEM, "predictor", no_discount(1)),
     Fault("fem: gg missing in the velocity", ("fem",), FEM, "velocity", no_discount(2)),
     Fault("fem: delta 0.1 % high", ("fem",), FEM, "velocity", with_scheme(2, delta=thousandth)),
@@ -177,7 +191,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
             faulty = finish(reached, CORE, Overlay(tmp_path / str(number), sound.results))
-        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results))
+        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results, faulty.derived))
     print_matrix(kills)
     unseen = [name for name, killed in kills.items() if not killed]
     unbitten = sorted({gate.id for gate in GATES} - set().union(*kills.values()))

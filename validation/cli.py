@@ -49,7 +49,7 @@ FullOption = Annotated[
 RanksOption = Annotated[
     int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
-RESULTS = Path("reports/results")
+RESULTS: Path = Path("reports/results")
 
 
 @app.command("list")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -61,6 +62,34 @@ def advise(
         typer.echo(json.dumps(data, indent=1, allow_nan=False))
     else:
         _print_advice(found, errors)
+
+
+@cli.app.command()
+def claims(
+    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
+    results: cli.ResultsOption = cli.RESULTS,
+) -> None:
+    """List the paper's statements and slips with their verdicts, from the results of the study `paper`.
+
+    Example: [bold]dda-validate run paper && dda-validate claims[/bold]
+    """
+    from validation.claims import Finding, page
+    from validation.history import write_atomically
+    from validation.paper import CLAIMS
+    from validation.results import Results
+    from validation.scene import SceneError
+
+    rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
+    if not rows:
+        raise SceneError(f"{results}: no results of the study paper here; run `dda-validate run paper` first")
+    measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
+    for claim in CLAIMS:
+        verdict = measured.get(claim.id)
+        words = "not run" if verdict is None else Finding(int(verdict)).words
+        typer.echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
+    if out is not None:
+        text = page(CLAIMS, rows)
+        write_atomically(out, lambda stream: stream.write(text.encode()))
 
 
 def _print_damping(found: Damping) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation import expected
+from validation import core_damping, expected
 from validation.gates import Gate
 from validation.scene import Scene, load_scene
 from validation.studies import Study
@@ -70,7 +70,18 @@ def decimals(text: float) -> float:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the core study."""
-    return (*statics(), *settling(), *frequencies(), *damping(), *mesh(), *model_form(), *poisson(), *code(), *drift())
+    return (
+        *statics(),
+        *settling(),
+        *frequencies(),
+        *damping(),
+        *mesh(),
+        *model_form(),
+        *poisson(),
+        *code(),
+        *drift(),
+        *core_damping.gates(SCENES),
+    )
 
 
 def statics() -> Iterator[Gate]:
@@ -331,4 +342,5 @@ CORE = Study(
     scenes=SCENES,
     extra=((FULL_MODEL, "fem:full"),),
     gates=gates,
+    derived=lambda: core_damping.derived(SCENES),
 )

@@ -6,19 +6,20 @@ Caching, resuming, parallel running, interruption safety and progress are here a
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from validation import metrics
+from validation.alarms import Alarm, alarms
 from validation.cases import Case, execute
 from validation.gates import Gate, Status, Verdict, judge, rounded
 from validation.history import History, Outcome
 from validation.provenance import provenance
 from validation.results import Results, Row, Value
-from validation.studies import Study
+from validation.studies import Derived, Study
 
 Progress = Callable[[int, int, str], None]
 ORDER = (
@@ -39,10 +40,23 @@ ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 @dataclass(frozen=True)
 class Finished:
-    """The finished cases of a study: rows and histories by (scene, solver)."""
+    """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""
 
     rows: dict[tuple[str, str], Row]
     results: Results
+    derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
+
+    def row(self, scene: str, name: str) -> Row | None:
+        """Return the row of a case, or compute the derived row of that name."""
+        recipe = self.derived.get((scene, name))
+        if recipe is None or (scene, name) in self.rows:
+            return self.rows.get((scene, name))
+        for need in recipe.needs:
+            row = self.rows.get(need)
+            if row is None or row.outcome is not Outcome.COMPLETED:
+                outcome = Outcome.NOT_RUN if row is None else row.outcome
+                return Row("", "", scene, name, outcome, {}, notes=(f"needs {need[1]} on {need[0]}",))
+        return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
 
     def history(self, scene: str, solver: str) -> History | None:
         """Return the history of a case, or None."""
@@ -83,8 +97,9 @@ def run_study(
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
     comparisons = list(compare(finished))
     verdicts = [evaluate(gate, finished) for gate in study.gates()]
-    results.write_json(f"studies/{study.name}.json", _manifest(study, cases, finished, comparisons))
-    results.write_verdicts(study.name, [verdict.record(study.name) for verdict in verdicts])
+    raised = list(alarms({case.scene.name: case.scene for case in cases}.values(), finished))
+    results.write_json(f"studies/{study.name}.json", _manifest(study, cases, finished, comparisons, raised))
+    results.write_verdicts(study.name, [_record(verdict, study, raised) for verdict in verdicts])
     return verdicts
 
 
@@ -111,7 +126,7 @@ def finish(
         if progress:
             progress(done, len(keyed), f"{row.scene} {row.solver}")
     rows = {(case.scene.name, case.solver): _named(known[key], case, study) for case, key in keyed}
-    return Finished(rows, results)
+    return Finished(rows, results, study.recipes())
 
 
 def _named(row: Row, case: Case, study: Study) -> Row:
@@ -188,11 +203,9 @@ def _plain(value: Value) -> Value:
 
 def evaluate(gate: Gate, finished: Finished) -> Verdict:
     """Measure what a gate asks for and judge it."""
-    names = [(gate.scene, gate.pair[0])]
-    if len(gate.pair) == 2:
-        names.append((gate.against or gate.scene, gate.pair[1]))
+    names = gate.cases
     for name in names:
-        row = finished.rows.get(name)
+        row = finished.row(*name)
         if row is None or row.outcome in ABSENT:
             why = f"{name[1]} was not run" if row is None else f"{name[1]}: {'; '.join(row.notes)}"
             return Verdict(gate, None, Status.NOT_RUN, why)
@@ -210,12 +223,31 @@ def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Valu
             return None
         first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
         return metrics.pair(gate.metric, first, second)
-    values = [finished.rows[name].metrics.get(gate.metric) for name in names]
+    rows = [finished.row(*name) for name in names]
+    values = [None if row is None else row.metrics.get(gate.metric) for row in rows]
     return values[0] if len(values) == 1 else metrics.ratio(values[0], values[1])
 
 
+def _record(verdict: Verdict, study: Study, raised: Sequence[Alarm]) -> dict[str, Any]:
+    """Return a verdict as plain data, with the kinds of alarm on its case."""
+    kinds = {
+        alarm.kind for alarm in raised if alarm.scene in (verdict.gate.scene, verdict.gate.scene.partition("[")[0])
+    }
+    return verdict.record(study.name) | {"alarms": sorted(kinds)}
+
+
+def _derived_record(finished: Finished, scene: str, name: str) -> dict[str, Any]:
+    row = finished.row(scene, name)
+    metrics = {} if row is None else {key: _plain(value) for key, value in row.metrics.items()}
+    return {"scene": scene, "name": name, "metrics": metrics}
+
+
 def _manifest(
-    study: Study, cases: Sequence[Case], finished: Finished, comparisons: list[dict[str, Any]]
+    study: Study,
+    cases: Sequence[Case],
+    finished: Finished,
+    comparisons: list[dict[str, Any]],
+    raised: Sequence[Alarm],
 ) -> dict[str, Any]:
     listed = [
         {
@@ -233,5 +265,8 @@ def _manifest(
         "purpose": study.purpose,
         "cases": listed,
         "comparisons": comparisons,
+        "derived": [_derived_record(finished, *name) for name in finished.derived],
+        "data": dict(study.data()),
+        "alarms": [alarm.record() for alarm in raised],
         "provenance": provenance(),
     }

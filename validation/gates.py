@@ -68,6 +68,12 @@ class Gate:
             raise ValueError(f"{self.id}: reason must be given, got nothing")
 
     @property
+    def cases(self) -> list[tuple[str, str]]:
+        """Case and solver (or name of a derived row) of each side of the pair."""
+        names = [(self.scene, self.pair[0])]
+        return [*names, (self.against or self.scene, self.pair[1])] if len(self.pair) == 2 else names
+
+    @property
     def id(self) -> str:
         """Stable id: scene, pair, metric and window."""
         window = "" if self.until is None else f"@{self.until:g}s"

@@ -7,7 +7,7 @@ import enum
 import io
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -112,6 +112,13 @@ class Mode:
     def spectral_radius(self) -> float:
         """Largest modulus of the eigenvalues [1]."""
         return max(abs(value) for value in self.eigenvalues)
+
+
+def contact_index(modes: Sequence[Mode]) -> int | None:
+    """Index of the contact mode: of the modes after the first axial one, that with most of the contact pressure."""
+    if len(modes) < 2 or modes[0].contact_share is None:
+        return None
+    return 1 + int(np.argmax([abs(mode.contact_share or 0.0) for mode in modes[1:]]))
 
 
 @dataclass(frozen=True)

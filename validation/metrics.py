@@ -12,12 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.history import DISPLACEMENT, PRESSURE, Array, History, Mode
+from validation.history import DISPLACEMENT, PRESSURE, Array, History, Mode, contact_index
 from validation.pencil import Pole, poles
 from validation.results import Value
 
 UNDEFINED, NOT_REPORTED = "undefined", "not reported"
 SETTLED = 0.01  # of the static value
+NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
 QUANTITIES = {"displacement": DISPLACEMENT, "pressure": PRESSURE}
 
 
@@ -139,6 +140,30 @@ def _mode_metrics(m: Measurable) -> dict[str, Value]:
     return {f"mode1.{part}": value for part, value in found.items()}
 
 
+def _contact_metrics(m: Measurable) -> dict[str, Value]:
+    """Metrics of the contact mode from the operator; `least_root` is the real part of the root next to -1."""
+    index = contact_index(m.modes)
+    names = ("frequency", "damping", "spectral_radius", "least_root")
+    if index is None:
+        return {f"contact.{part}": NOT_REPORTED for part in names}
+    mode = m.modes[index]
+    least = min(root.real for root in mode.eigenvalues)
+    values = (mode.frequency, operator_damping(mode.eigenvalues), mode.spectral_radius, least)
+    return {f"contact.{part}": value for part, value in zip(names, values, strict=True)}
+
+
+def _tension_metrics(m: Measurable) -> dict[str, Value]:
+    """When a locked contact pulls most, and for how long it pulls in all [s]; both undefined where it never does."""
+    names = ("pressure.minimum_time", "pressure.tension_time")
+    x = m.history.columns.get(PRESSURE)
+    if x is None or len(x) == 0:
+        return dict.fromkeys(names, NOT_REPORTED)
+    pulls = x < -NOISE * largest(x)
+    if not pulls.any():
+        return dict.fromkeys(names, UNDEFINED)
+    return dict(zip(names, (float(m.history.time[np.argmin(x)]), float(m.step * pulls.sum())), strict=True))
+
+
 def _measured_pole(m: Measurable) -> Pole | str:
     """Strongest oscillating pole of the displacement about its static value."""
     x, static = m.history.columns.get(DISPLACEMENT), m.static.get(DISPLACEMENT)
@@ -156,7 +181,7 @@ def solo(m: Measurable) -> dict[str, Value]:
     with np.errstate(all="ignore"):
         for name in QUANTITIES:
             found |= _solo_quantity(name, m)
-        found |= _mode_metrics(m)
+        found |= _mode_metrics(m) | _contact_metrics(m) | _tension_metrics(m)
     return {key: _finite(value) for key, value in found.items()}
 
 

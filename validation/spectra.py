@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from dda import spectral
-from validation.history import Array, Mode
+from validation.history import Array, Mode, contact_index
 from validation.metrics import operator_damping
 from validation.scene import Scene, SceneError
 from validation.solvers import get_solver
@@ -73,18 +73,9 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
 
 
 def mode_names(modes: Sequence[Mode]) -> list[str]:
-    """Name modes: the first axial one, the contact mode (most contact pressure of the others), the rest numbered."""
-    names = [FIRST, *(f"mode {i + 1}" for i in range(1, len(modes)))]
-    if len(modes) > 1:
-        names[1 + int(np.argmax([abs(mode.contact_share or 0.0) for mode in modes[1:]]))] = CONTACT
-    return names
-
-
-def contact_mode(modes: Sequence[Mode]) -> Mode | None:
-    """Return the contact mode, or None where a single mode is reached or shares are not reported."""
-    if len(modes) < 2 or modes[0].contact_share is None:
-        return None
-    return modes[mode_names(modes).index(CONTACT)]
+    """Name modes: the first axial one, the contact mode (see `history.contact_index`), the rest numbered."""
+    contact = contact_index(modes)
+    return [FIRST if i == 0 else CONTACT if i == contact else f"mode {i + 1}" for i in range(len(modes))]
 
 
 def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:

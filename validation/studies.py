@@ -5,17 +5,49 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from validation.cases import FULL, Case
 from validation.gates import Gate
 from validation.metrics import METRICS, PAIR
+from validation.results import Value
 from validation.scene import Scene, SceneError, load_scene, scene_names
 from validation.solvers import solver_names
+
+if TYPE_CHECKING:
+    from validation.engine import Finished
 
 
 def _no_gates() -> tuple[Gate, ...]:
     return ()
+
+
+def _nothing_derived() -> tuple[Derived, ...]:
+    return ()
+
+
+def _no_data() -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A row that is computed from finished cases instead of by a solver; gates address it as any other.
+
+    Attributes
+    ----------
+    scene, name
+        Where gates find it: ``Gate(scene, (name,), metric, ...)``.
+    needs
+        The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
+    compute
+        Function of the finished cases that returns metrics.
+    """
+
+    scene: str
+    name: str
+    needs: tuple[tuple[str, str], ...]
+    compute: Callable[[Finished], Mapping[str, Value]]
 
 
 @dataclass(frozen=True)
@@ -38,6 +70,10 @@ class Study:
         Function that returns the gates, so that listing studies computes nothing.
     timed
         Whether the study is one of timings, which always run afresh.
+    derived
+        Function that returns the rows that are computed from finished cases.
+    data
+        Function that returns plain data which the chapter draws beside the rows, such as closed forms.
     """
 
     name: str
@@ -49,6 +85,8 @@ class Study:
     extra: tuple[tuple[str, str], ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = _no_gates
     timed: bool = False
+    derived: Callable[[], tuple[Derived, ...]] = _nothing_derived
+    data: Callable[[], Mapping[str, Any]] = _no_data
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
@@ -57,6 +95,15 @@ class Study:
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
         return [Case(scene, solver, full, ranks) for scene, solver in pairs]
+
+    def recipes(self) -> dict[tuple[str, str], Derived]:
+        """Return the derived rows by the names that gates address them with."""
+        return {(row.scene, row.name): row for row in self.derived()}
+
+    def needs(self, gate: Gate) -> list[tuple[str, str]]:
+        """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
+        recipes = self.recipes()
+        return [need for name in gate.cases for need in (recipes[name].needs if name in recipes else (name,))]
 
     def _varied(self, scene: str | Scene) -> Scene:
         loaded = load_scene(scene) if isinstance(scene, str) else scene
@@ -69,6 +116,7 @@ class Study:
 STUDIES = {
     "core": "validation.core:CORE",
     "two-codes": "validation.two_codes:TWO_CODES",
+    "paper": "validation.paper:PAPER",
 }
 
 
@@ -100,6 +148,7 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
         [scene],
         extra=built_in_extra(scene),
         gates=lambda: own + built_in_gates(scene),
+        derived=lambda: built_in_derived(scene),
     )
 
 
@@ -132,6 +181,12 @@ def built_in_gates(scene: Scene) -> tuple[Gate, ...]:
     """Return the suite's own gates for the cases of a scene, where it is the built-in one unchanged."""
     names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
     return tuple(gate for study in STUDIES for gate in get_study(study).gates() if gate.scene in names)
+
+
+def built_in_derived(scene: Scene) -> tuple[Derived, ...]:
+    """Return the derived rows of the cases of a scene, where it is the built-in one unchanged."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(row for study in STUDIES for row in get_study(study).derived() if row.scene in names)
 
 
 def built_in_extra(scene: Scene) -> tuple[tuple[str, str], ...]:

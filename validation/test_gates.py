@@ -40,11 +40,10 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Finished:
 def test_gate(name: str, finished: Finished) -> None:
     """Run what the gate asks for and judge it."""
     study, gate = _gates()[name]
-    needed = [(gate.scene, gate.pair[0])]
-    needed += [(gate.against or gate.scene, gate.pair[1])] if len(gate.pair) == 2 else []
-    missing = [_cases(study)[pair] for pair in needed if pair not in finished.rows]
-    finished.rows.update(finish(missing, get_study(study), finished.results).rows)
-    verdict = evaluate(gate, finished)
+    missing = [_cases(study)[pair] for pair in get_study(study).needs(gate) if pair not in finished.rows]
+    fresh = finish(missing, get_study(study), finished.results)
+    finished.rows.update(fresh.rows)
+    verdict = evaluate(gate, Finished(finished.rows, finished.results, fresh.derived))
     if verdict.status is Status.NOT_RUN:
         pytest.skip(f"NOT RUN: {verdict.why}")
     assert verdict.status is Status.PASS, (
