@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dda import spectral
 from dda.gap_form import GapForm
 from dda.natural_modes import modal_form
 from dda.newmark import Scheme, assembled_step, effective_matrix, modal_step
@@ -32,7 +33,8 @@ class Diagnostics:
     condition_number: float  # of S = M + alpha dt^2 K in D, unscaled [-]
     scaled_condition_number: float  # of the scaled S that is factored [-]
     scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
-    spectral_radius: float  # largest |lambda| over the reached modes [-]
+    spectral_radius: float  # largest |lambda| seen: the step applied to unit states of the reached modes [-]
+    predicted_radius: float  # the same from trace and determinant in closed form [-]
     largest_omega: float  # largest w dt over the reached modes [-]
 
 
@@ -97,10 +99,12 @@ def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
     residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
     unscaled = effective_matrix(scheme, model.mass, scheme.step**2 * model.stiffness)
     reached = modes(model, scheme)
+    omegas = np.array([mode.frequency * scheme.step for mode in reached])
     return Diagnostics(
         condition_number=float(np.linalg.cond(unscaled)),
         scaled_condition_number=float(np.linalg.cond(S)),
         scaled_residual=float(np.max(residual)),
         spectral_radius=max(abs(mode.eigenvalues[0]) for mode in reached),
-        largest_omega=max(mode.frequency for mode in reached) * scheme.step,
+        predicted_radius=float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg))),
+        largest_omega=float(np.max(omegas)),
     )

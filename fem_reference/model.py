@@ -23,7 +23,7 @@ from scipy.sparse import block_diag, csr_array
 from scipy.sparse.csgraph import connected_components
 from skfem import Basis, BilinearForm, ElementLineP1, ElementLineP2, MeshLine
 
-from fem_reference import elasticity
+from fem_reference import digits, elasticity
 from fem_reference.mesh import TaggedMesh, block_mesh, structured
 from fem_reference.problem import Array, Problem
 
@@ -92,7 +92,7 @@ def build(problem: Problem, full: bool = False) -> Model:
     else:
         model = reachable(whole_block(problem))
     warning = (CORNER_WARNING,) if problem.foundation == "corner" else ()
-    return replace(model, notes=model.notes + warning)
+    return replace(model, notes=model.notes + warning + digits.warnings(problem))
 
 
 def assemble(problem: Problem) -> Assembled:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fem_reference.digits import bounded
 from fem_reference.fields import FieldWriter
 from fem_reference.model import Model, build
 from fem_reference.newmark import Stepper, Work
@@ -57,7 +58,7 @@ def solve(
     else:
         history, estimate = small.history, small.estimate
         note = f"blocked in {small.vectors} Krylov vectors"
-    history *= problem.load_size
+    history = bounded(history, problem.load_size)
     ended = time.perf_counter()
     return Result(
         time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),

@@ -299,6 +299,12 @@ class FiniteElements(Solver):
 
         return _modes(fem_reference.modes(self.problem(scene), self.scheme(scene)))
 
+    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
+        """Return spectral radii, condition number and residual of the mesh's step."""
+        from fem_reference.diagnostics import diagnostics
+
+        return vars(diagnostics(self.problem(scene), self.scheme(scene)))
+
 
 class ExactBar(FiniteElements):
     """Exact in space, Newmark in time."""
@@ -331,6 +337,10 @@ class ExactBar(FiniteElements):
     def modes(self, scene: Scene) -> tuple[Mode, ...]:
         """Return the lowest modes."""
         return _modes(self.bar(scene).modes(self.scheme(scene)))
+
+    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
+        """Refuse: the bar has no matrix and modes without end."""
+        raise NotReported("bar: an exact bar has no matrix, and its frequencies have no largest one")
 
 
 class Continuum(ExactBar):

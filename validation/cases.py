@@ -12,14 +12,21 @@ from typing import Any
 
 import numpy as np
 
-from validation import metrics
+from validation import metrics, stability
 from validation.history import History, Outcome, Run
 from validation.results import Row
 from validation.scene import Scene, SceneError
 from validation.solvers import DISTRIBUTED, NotReported, Solver, get_solver
 
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
-JUDGING_SOURCES = ("validation.adapters", "validation.cases", "validation.metrics", "validation.pencil")
+JUDGING_SOURCES = (
+    "validation.adapters",
+    "validation.cases",
+    "validation.metrics",
+    "validation.pencil",
+    "validation.stability",
+)
+MEASURES = ("history", "modes")  # what is measured on a run unless a study asks for more or less
 
 
 @dataclass(frozen=True)
@@ -30,6 +37,7 @@ class Case:
     solver: str
     without_savings: bool = False
     ranks: int = 1  # of the solvers that can be distributed
+    measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "limit"
 
     @property
     def full(self) -> bool:
@@ -55,6 +63,7 @@ class Case:
             solver.name,
             self.full,
             read,
+            *([] if self.measures == MEASURES else self.measures),
             *(source_digest(name) for name in (*solver.sources, *JUDGING_SOURCES)),
         ]
         return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
@@ -87,7 +96,9 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     """
     solver = case.make_solver()
     run = check(attempt(solver, case.scene, case.full), case.scene)
-    measured = _measure(solver, case.scene, run)
+    if case.scene.time.allow_unstable:
+        run = stability.named(run, solver, case.scene)
+    measured = _measure(solver, case, run)
     row = Row(
         key=key,
         study=study,
@@ -137,13 +148,19 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
     return Run(outcome, run.history, run.work, run.seconds, (*run.notes, note), run.estimate)
 
 
-def _measure(solver: Solver, scene: Scene, run: Run) -> dict[str, Any]:
-    """Metrics of the run itself; none where there is no sound history."""
-    if run.history is None or run.outcome is not Outcome.COMPLETED:
-        return {}
-    static = _reported(solver.static, scene, {})
-    modes = _reported(solver.modes, scene, ())
-    return metrics.solo(metrics.Measurable(run.history, scene.time.step, static, modes))
+def _measure(solver: Solver, case: Case, run: Run) -> dict[str, Any]:
+    """Metrics of the run itself; of its history none where that is not sound."""
+    scene, measured = case.scene, dict[str, Any]()
+    if "history" in case.measures and run.history is not None and run.outcome is Outcome.COMPLETED:
+        static = _reported(solver.static, scene, {})
+        modes = _reported(solver.modes, scene, ()) if "modes" in case.measures else ()
+        seen = metrics.Measurable(run.history, scene.time.step, static, modes)
+        measured = metrics.solo(seen, "modes" in case.measures)
+    if "stability" in case.measures and run.outcome not in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+        measured |= stability.measure(solver, scene, run)
+    if "limit" in case.measures:
+        measured[stability.LIMIT] = stability.limit(solver, scene)
+    return measured
 
 
 def _reported(part: Any, scene: Scene, absent: Any) -> Any:

@@ -5,6 +5,7 @@ Caching, resuming, parallel running, interruption safety and progress are here a
 
 from __future__ import annotations
 
+import itertools
 import signal
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
@@ -95,7 +96,7 @@ def run_study(
     """
     cases = study.cases(full, ranks)
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
-    comparisons = list(compare(finished))
+    comparisons = list(compare(finished, study.pairs))
     verdicts = [evaluate(gate, finished) for gate in study.gates()]
     raised = list(alarms({case.scene.name: case.scene for case in cases}.values(), finished))
     results.write_json(f"studies/{study.name}.json", _manifest(study, cases, finished, comparisons, raised))
@@ -170,18 +171,18 @@ def _ignore_interrupt() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def compare(finished: Finished) -> Iterator[dict[str, Any]]:
-    """Yield the pair metrics of every solver against every later one in the order of references."""
-    for scene in dict.fromkeys(scene for scene, _ in finished.rows):
-        present = [
-            s
-            for s in _ordered(solver for sc, solver in finished.rows if sc == scene)
-            if finished.history(scene, s) is not None
-        ]
-        histories = {solver: finished.history(scene, solver) for solver in present}
-        for i, solver in enumerate(present):
-            for reference in present[i + 1 :]:
-                yield _comparison(scene, solver, reference, histories[solver], histories[reference])
+def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[dict[str, Any]]:
+    """Yield the pair metrics of every solver against every later one in the order of references, or of `pairs`."""
+    solvers: dict[str, list[str]] = {}
+    for scene, solver in finished.rows:
+        solvers.setdefault(scene, []).append(solver)
+    for scene, names in solvers.items():
+        asked = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
+        needed = dict.fromkeys(solver for pair in asked for solver in pair)
+        histories = {s: history for s in needed if (history := finished.history(scene, s)) is not None}
+        for solver, reference in asked:
+            if solver in histories and reference in histories:
+                yield _comparison(finished, scene, solver, reference, histories)
 
 
 def _ordered(solvers: Iterable[str]) -> list[str]:
@@ -190,11 +191,17 @@ def _ordered(solvers: Iterable[str]) -> list[str]:
 
 
 def _comparison(
-    scene: str, solver: str, reference: str, history: History | None, against: History | None
+    finished: Finished, scene: str, solver: str, reference: str, histories: Mapping[str, History]
 ) -> dict[str, Any]:
-    values = {m: _plain(metrics.pair(m, history, against)) for m in metrics.PAIR} if history and against else {}
-    window = float(history.time[-1]) if history else 0.0
-    return {"scene": scene, "solver": solver, "reference": reference, "window": window, "metrics": values}
+    history, against, static = histories[solver], histories[reference], finished.rows[scene, solver].metrics
+    values = {m: _plain(metrics.pair(m, history, against, static)) for m in metrics.PAIRS}
+    return {
+        "scene": scene,
+        "solver": solver,
+        "reference": reference,
+        "window": float(history.time[-1]),
+        "metrics": values,
+    }
 
 
 def _plain(value: Value) -> Value:
@@ -209,20 +216,25 @@ def evaluate(gate: Gate, finished: Finished) -> Verdict:
         if row is None or row.outcome in ABSENT:
             why = f"{name[1]} was not run" if row is None else f"{name[1]}: {'; '.join(row.notes)}"
             return Verdict(gate, None, Status.NOT_RUN, why)
-        if row.outcome is not Outcome.COMPLETED:
+        if row.outcome is not Outcome.COMPLETED and not _judged_anyway(gate, row):
             return Verdict(gate, None, Status.FAIL, f"{name[1]}: {row.outcome.sentence} {'; '.join(row.notes)}")
     if names[0] == names[-1] and len(names) == 2:
         return Verdict(gate, None, Status.FAIL, "a run was compared with itself")
     return judge(gate, _value(gate, names, finished))
 
 
+def _judged_anyway(gate: Gate, row: Row) -> bool:
+    """Whether the gate asks how a run left its bounds, which a run that did can answer."""
+    return gate.metric.startswith("stability.") and row.outcome in (Outcome.UNSTABLE, Outcome.OVERFLOW)
+
+
 def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Value:
-    if gate.metric in metrics.PAIR:
+    if gate.metric in metrics.PAIRS:
         histories = [finished.history(*name) for name in names]
         if len(histories) < 2 or histories[0] is None or histories[1] is None:
             return None
         first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
-        return metrics.pair(gate.metric, first, second)
+        return metrics.pair(gate.metric, first, second, finished.rows[names[0]].metrics)
     rows = [finished.row(*name) for name in names]
     values = [None if row is None else row.metrics.get(gate.metric) for row in rows]
     return values[0] if len(values) == 1 else metrics.ratio(values[0], values[1])

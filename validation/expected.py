@@ -92,16 +92,34 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
     return -logarithm.real / abs(logarithm)
 
 
-def remaining_motion(scene: Scene) -> float:
-    """Largest |lambda|^steps over the two modes: what damping has left of the DDA block's motion at the last step.
-
-    The contact mode's frequency follows from the product of the two: det(K) / det(M) = w1^2 w2^2.
-    """
+def contact_frequency(scene: Scene) -> float:
+    """Second (contact) frequency of the DDA block for mu = 0 [rad/s], from det(K) / det(M) = w1^2 w2^2."""
     E, _ = moduli(scene)
     w, h = size(scene)
-    m, first = scene.block.density * w * h, dda_frequency(scene)
-    contact = math.sqrt(2 * scene.contact.stiffness / m * 12 * E * w / (m * h)) / first
-    return float(max(abs(root) for f in (first, contact) for root in roots(scene, f)) ** scene.time.steps)
+    m = scene.block.density * w * h
+    return math.sqrt(2 * scene.contact.stiffness / m) * math.sqrt(12 * E * w / (m * h)) / dda_frequency(scene)
+
+
+def critical_omega(scene: Scene) -> float:
+    """Limit of w dt beyond which one root passes -1.
+
+    Omega^2 = 2 (1 + gg) / [1/2 + gg (2 delta - 1/2) - 2 alpha (1 + gg)], infinite where the denominator is
+    not positive; for delta >= 1/2 no complex pair leaves the unit circle.
+    """
+    t = scene.time
+    below = 0.5 + t.discount * (2 * t.delta - 0.5) - 2 * t.alpha * (1 + t.discount)
+    return math.sqrt(2 * (1 + t.discount) / below) if below > EPS else math.inf
+
+
+def spectral_radius(scene: Scene, frequency: float) -> float:
+    """Largest |lambda| of one step of a mode."""
+    return max(map(abs, roots(scene, frequency)))
+
+
+def remaining_motion(scene: Scene) -> float:
+    """Largest |lambda|^steps over the two modes: what damping has left of the DDA block's motion at the last step."""
+    both = (dda_frequency(scene), contact_frequency(scene))
+    return float(max(spectral_radius(scene, frequency) for frequency in both) ** scene.time.steps)
 
 
 def mesh_frequency_error(scene: Scene) -> float:

@@ -28,6 +28,7 @@ class Outcome(enum.StrEnum):
     COMPLETED = "completed"
     OVERFLOW = "overflow"
     UNSTABLE = "unstable as predicted"
+    MISPREDICTED = "unstable, not as predicted"
     NOT_A_NUMBER = "not a number"
     WRONG_SHAPE = "wrong shape"
     RAISED = "raised"
@@ -46,6 +47,7 @@ _SENTENCES = {
     Outcome.COMPLETED: "The run reached its last step with finite numbers.",
     Outcome.OVERFLOW: "The numbers left the range of double precision.",
     Outcome.UNSTABLE: "The step lies beyond the limit of the scheme and the numbers grew as predicted.",
+    Outcome.MISPREDICTED: "The step lies beyond the limit of the scheme and the numbers grew at another rate.",
     Outcome.NOT_A_NUMBER: "The history holds values that are not numbers.",
     Outcome.WRONG_SHAPE: "The history does not hold one value for each step of the scene.",
     Outcome.RAISED: "The solver raised an error.",

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation import stability
 from validation.history import DISPLACEMENT, PRESSURE, Array, History, Mode, contact_index
 from validation.pencil import Pole, poles
 from validation.results import Value
@@ -175,13 +176,14 @@ def _measured_pole(m: Measurable) -> Pole | str:
     return found[0] if found else UNDEFINED
 
 
-def solo(m: Measurable) -> dict[str, Value]:
-    """Return all metrics of one run."""
+def solo(m: Measurable, modes: bool = True) -> dict[str, Value]:
+    """Return the metrics of one run, those of its first axial mode if asked."""
     found: dict[str, Value] = {}
     with np.errstate(all="ignore"):
         for name in QUANTITIES:
             found |= _solo_quantity(name, m)
-        found |= _mode_metrics(m) | _contact_metrics(m) | _tension_metrics(m)
+        found |= _tension_metrics(m)
+        found |= _mode_metrics(m) | _contact_metrics(m) if modes else {}
     return {key: _finite(value) for key, value in found.items()}
 
 
@@ -197,14 +199,49 @@ PAIR: dict[str, tuple[str, Callable[[Array, Array], Value]]] = {
 }
 
 
-def pair(metric: str, history: History, reference: History) -> Value:
-    """Return a metric between a run and its reference, on their common steps."""
+SCALED = {f"{name}.scaled": name for name in QUANTITIES}
+WORST = "worst.max"
+PAIRS = (*PAIR, *SCALED, WORST)
+
+
+def pair(metric: str, history: History, reference: History, static: Mapping[str, Value] | None = None) -> Value:
+    """Return a metric between a run and its reference, on their common steps.
+
+    Parameters
+    ----------
+    metric
+        Of `PAIR`; or `<quantity>.scaled`, the maximum error over the larger of the reference's maximum and the static
+        value (a wave that has not arrived leaves nothing to divide by); or `worst.max`, the larger of the two `.max`.
+    history, reference
+        The run and what it is compared with.
+    static
+        Metrics of the run, for the static values of `.scaled`.
+    """
+    if metric == WORST:
+        both = [pair(f"{name}.max", history, reference) for name in QUANTITIES]
+        return next((value for value in both if not isinstance(value, float)), max(both, key=_as_number))
+    if metric in SCALED:
+        name = SCALED[metric]
+        still = (static or {}).get(f"{name}.static")
+        return _scaled(QUANTITIES[name], history, reference, still) if isinstance(still, float) else NOT_REPORTED
     column, function = PAIR[metric]
     if column not in history.columns or column not in reference.columns:
         return NOT_REPORTED
     n = min(len(history.time), len(reference.time))
     with np.errstate(all="ignore"):
         return _finite(function(history.columns[column][:n], reference.columns[column][:n]))
+
+
+def _as_number(value: Value) -> float:
+    return float(value) if isinstance(value, float) else math.inf
+
+
+def _scaled(column: str, history: History, reference: History, static: float) -> Value:
+    if column not in history.columns or column not in reference.columns:
+        return NOT_REPORTED
+    value, exact = history.columns[column], reference.columns[column]
+    with np.errstate(all="ignore"):
+        return _finite(_ratio(largest(value - exact), max(largest(exact), abs(static))))
 
 
 def ratio(value: Value, reference: Value) -> Value:
@@ -216,4 +253,4 @@ def ratio(value: Value, reference: Value) -> Value:
 
 
 SOLO = tuple(solo(Measurable(History(np.zeros(0), {}), 1.0, {}, ())))
-METRICS = (*SOLO, *PAIR)
+METRICS = (*SOLO, *stability.METRICS, stability.GROWTH, stability.LIMIT, *PAIRS)

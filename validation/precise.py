@@ -15,10 +15,10 @@ import numpy as np
 from validation.adapters import BAR_COLUMNS, DDA, ExactBar, FiniteElements, check_columns
 from validation.history import Array, History, Outcome, Run
 from validation.precise_block import Number
-from validation.scene import Scene
+from validation.scene import Scene, SceneError
 
 LARGEST = float(np.finfo(float).max)
-MOST_UNKNOWNS = 200  # beyond it sixty digits would take minutes
+MOST_UNKNOWNS = 60  # beyond it sixty digits would take minutes
 
 
 def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
@@ -78,18 +78,23 @@ class PreciseFiniteElements(FiniteElements):
         """Return None, or why sixty digits are out of reach for the mesh or for the load."""
         if not scene.load.centred:
             return "the solver is written for a centred pressure alone"
-        unknowns = len(self.equations(scene).F)
-        if unknowns > MOST_UNKNOWNS:
-            return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"
-        return None
+        return _too_large(len(self.equations(scene).F))
 
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
         from validation import precise_matrices
 
         model = self.equations(scene, full)
+        if reason := _too_large(len(model.F)):
+            raise SceneError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
         rows = {name: model.observers[name] for name in scene.run.columns}
         return _run(
             scene,
-            lambda: precise_matrices.history(scene, model.M, model.K, model.F, rows, scene.load.pressure),
+            lambda: precise_matrices.history(scene, model.M, model.K, model.F, rows, self.problem(scene).load_size),
         )
+
+
+def _too_large(unknowns: int) -> str | None:
+    if unknowns <= MOST_UNKNOWNS:
+        return None
+    return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"

@@ -192,11 +192,16 @@ def modal_history(square: Number, load: Number, scheme: NewmarkNumbers, steps: i
     return values[:steps]
 
 
+def responses(system: Equations, scene: Scene, names: tuple[str, ...]) -> dict[str, list[Number]]:
+    """Return the named columns of every step, mode by mode."""
+    scheme = NewmarkNumbers.of(scene)
+    squares, loads, rows = modes(system)
+    parts = [modal_history(w2, f, scheme, scene.time.steps) for w2, f in zip(squares, loads, strict=True)]
+    instants = list(zip(*parts, strict=True))
+    return {name: [mp.fdot(rows[name], y) for y in instants] for name in names}
+
+
 def history(scene: Scene, names: tuple[str, ...]) -> dict[str, list[Number]]:
     """Return displacement [m] and contact pressure [Pa] of every step, good to sixty digits of the largest value."""
     with mp.workdps(WORKING):
-        scheme = NewmarkNumbers.of(scene)
-        squares, loads, rows = modes(equations(scene))
-        parts = [modal_history(w2, f, scheme, scene.time.steps) for w2, f in zip(squares, loads, strict=True)]
-        instants = list(zip(*parts, strict=True))
-        return {name: [mp.fdot(rows[name], y) for y in instants] for name in names}
+        return responses(equations(scene), scene, names)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from validation.cases import FULL, Case
+from validation.cases import FULL, MEASURES, Case
 from validation.gates import Gate
-from validation.metrics import METRICS, PAIR
+from validation.metrics import METRICS, PAIRS
 from validation.results import Value
 from validation.scene import Scene, SceneError, load_scene, scene_names
 from validation.solvers import solver_names
@@ -74,6 +75,12 @@ class Study:
         Function that returns the rows that are computed from finished cases.
     data
         Function that returns plain data which the chapter draws beside the rows, such as closed forms.
+    measures
+        What is measured on each run, see `validation.cases`.
+    pairs
+        The comparisons that are kept; every solver with every later one where None.
+    long
+        Whether the gates are left to `dda-validate run`; the tests judge the others.
     """
 
     name: str
@@ -87,6 +94,9 @@ class Study:
     timed: bool = False
     derived: Callable[[], tuple[Derived, ...]] = _nothing_derived
     data: Callable[[], Mapping[str, Any]] = _no_data
+    measures: tuple[str, ...] = MEASURES
+    pairs: tuple[tuple[str, str], ...] | None = None
+    long: bool = False
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
@@ -94,7 +104,7 @@ class Study:
         named = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
-        return [Case(scene, solver, full, ranks) for scene, solver in pairs]
+        return [Case(scene, solver, full, ranks, self.measures) for scene, solver in pairs]
 
     def recipes(self) -> dict[tuple[str, str], Derived]:
         """Return the derived rows by the names that gates address them with."""
@@ -117,14 +127,22 @@ STUDIES = {
     "core": "validation.core:CORE",
     "two-codes": "validation.two_codes:TWO_CODES",
     "paper": "validation.paper:PAPER",
+    "stability-small": "validation.stability_study:small",
+    "stability": "validation.stability_study:full",
 }
 
 
+@functools.cache
 def get_study(name: str) -> Study:
-    """Return a study of the suite by name."""
+    """Return a study of the suite by name; one of many scenes is declared by a function."""
     module, _, attribute = STUDIES[name].partition(":")
-    study: Study = getattr(importlib.import_module(module), attribute)
-    return study
+    declared: Study | Callable[[], Study] = getattr(importlib.import_module(module), attribute)
+    return declared if isinstance(declared, Study) else declared()
+
+
+def judged_studies() -> list[str]:
+    """Return the names of the studies whose gates the tests judge, which are not the long ones."""
+    return [name for name in STUDIES if not get_study(name).long]
 
 
 def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
@@ -164,7 +182,7 @@ def own_gates(case: Scene, source: str) -> tuple[Gate, ...]:
             raise SceneError(
                 f"{source}: gate.{number}.pair: must be solvers that run.solvers lists, got {missing[0]!r}"
             )
-        if section.metric in PAIR and len(section.pair) < 2:
+        if section.metric in PAIRS and len(section.pair) < 2:
             raise SceneError(
                 f"{source}: gate.{number}.pair: must name a solver and a reference for {section.metric}, "
                 f"got {list(section.pair)}"
@@ -180,19 +198,19 @@ def is_built_in(scene: Scene) -> bool:
 def built_in_gates(scene: Scene) -> tuple[Gate, ...]:
     """Return the suite's own gates for the cases of a scene, where it is the built-in one unchanged."""
     names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(gate for study in STUDIES for gate in get_study(study).gates() if gate.scene in names)
+    return tuple(gate for study in judged_studies() for gate in get_study(study).gates() if gate.scene in names)
 
 
 def built_in_derived(scene: Scene) -> tuple[Derived, ...]:
     """Return the derived rows of the cases of a scene, where it is the built-in one unchanged."""
     names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(row for study in STUDIES for row in get_study(study).derived() if row.scene in names)
+    return tuple(row for study in judged_studies() for row in get_study(study).derived() if row.scene in names)
 
 
 def built_in_extra(scene: Scene) -> tuple[tuple[str, str], ...]:
     """Return the further runs that the suite's gates on a built-in scene compare with."""
     names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(pair for study in STUDIES for pair in get_study(study).extra if pair[0] in names)
+    return tuple(pair for study in judged_studies() for pair in get_study(study).extra if pair[0] in names)
 
 
 def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:

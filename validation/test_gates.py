@@ -10,12 +10,12 @@ from validation.cases import Case
 from validation.engine import Finished, evaluate, finish
 from validation.gates import Gate, Status
 from validation.results import Results
-from validation.studies import STUDIES, get_study
+from validation.studies import get_study, judged_studies
 
 
 @cache
 def _gates() -> dict[str, tuple[str, Gate]]:
-    return {gate.id: (study, gate) for study in STUDIES for gate in get_study(study).gates()}
+    return {gate.id: (study, gate) for study in judged_studies() for gate in get_study(study).gates()}
 
 
 @cache

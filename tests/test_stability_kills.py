@@ -1,0 +1,107 @@
+"""The gates on digits and growth are bitten: the corners of `stability` x seeded faults."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.linalg
+from test_kill_matrix import Fault, Overlay, thousandth, times, with_scheme
+
+import dda
+import dda.gap_form
+import dda.newmark
+import dda.solution
+import fem_reference.bar
+import fem_reference.newmark
+import fem_reference.solver
+from dda.natural_modes import ModalForm
+from validation.engine import Finished, evaluate, finish
+from validation.gates import Status
+from validation.results import Results
+from validation.studies import get_study
+
+STUDY = get_study("stability-small")
+
+
+def printed_recursion(sound):
+    """Swap the robust form for the textbook one."""
+    return lambda model, scheme, steps, columns, full=False: dda.solve_textbook(model, scheme, steps, columns)
+
+
+def robust_form(sound):
+    """Swap the textbook form for the robust one."""
+    return lambda model, scheme, steps, columns: dda.solve(model, scheme, steps, columns)
+
+
+def unscaled_modes(sound):
+    """Find the modes by a general solver, which scales nothing."""
+
+    def faulty(form):
+        squares, shapes = scipy.linalg.eigh(np.diag(form.K), form.M)
+        return ModalForm(np.sqrt(np.abs(squares)), shapes, shapes.T @ form.F)
+
+    return faulty
+
+
+def offset(sound):
+    def faulty(observed, pressure):
+        observed += 1e-6
+        return ()
+
+    return faulty
+
+
+class AccelerationFirst(fem_reference.newmark.Stepper):
+    """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
+
+    def advance(self, state):
+        s = self.scheme
+        ahead = fem_reference.newmark.predictor(state, s)
+        A = self._solve(self.F - self.K @ ahead)
+        D = ahead + s.alpha * s.step**2 * A
+        return fem_reference.newmark.State(D, fem_reference.newmark.velocity(state, A, s), A)
+
+
+def begun(sound):
+    """Let the bar be displaced and pressed by 2e-9 of the static values from the beginning."""
+
+    def faulty(*arguments):
+        history, estimate = sound(*arguments)
+        return history + 2e-9, estimate
+
+    return faulty
+
+
+FAULTS = [
+    Fault("dda: the printed recursion", ("dda",), dda, "solve", printed_recursion),
+    Fault("dda: modes by a general solver", ("dda",), dda.solution, "modal_form", unscaled_modes),
+    Fault("dda: load 2e-9 high", ("dda",), dda.gap_form, "_load", times(1 + 2e-9)),
+    Fault("dda: delta 0.1 % high", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)),
+    Fault("dda: an offset", ("dda",), dda.solution, "bound_overflow", offset),
+    Fault("dda-textbook: the robust form", ("dda-textbook",), dda, "solve_textbook", robust_form),
+    Fault("fem: accelerations first", ("fem",), fem_reference.solver, "Stepper", lambda sound: AccelerationFirst),
+    Fault("fem: history 2e-9 high", ("fem",), fem_reference.solver, "bounded", times(1 + 2e-9)),
+    Fault("bar: shares 2e-9 high", ("bar",), fem_reference.bar, "shares", times(1 + 2e-9)),
+    Fault("bar: begun before the wave", ("bar",), fem_reference.bar.Bar, "_sum", begun),
+]
+
+
+def failed(finished: Finished) -> set[str]:
+    return {gate.id for gate in STUDY.gates() if evaluate(gate, finished).status is Status.FAIL}
+
+
+def test_every_gate_on_digits_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
+    cases = STUDY.cases()
+    sound = finish(cases, STUDY, Results(tmp_path / "sound"))
+    assert not failed(sound)
+    kills: dict[str, set[str]] = {}
+    for number, fault in enumerate(FAULTS):
+        reached = [case for case in cases if case.solver in fault.solvers]
+        with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+            patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+            faulty = finish(reached, STUDY, Overlay(tmp_path / str(number), sound.results))
+        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results))
+        print(f"{len(kills[fault.name]):>4}  {fault.name}")
+    assert all(kills.values()), f"faults that no gate sees: {[name for name, killed in kills.items() if not killed]}"
+    unbitten = sorted({gate.id for gate in STUDY.gates()} - set().union(*kills.values()))
+    assert not unbitten, f"gates that no fault bites: {unbitten}"
