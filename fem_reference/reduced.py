@@ -31,6 +31,10 @@ HALFWAY = 1e-2
 """Change that half of the greatest space must have reached; the convergence is faster than linear from there."""
 FLOOR = 2e-13
 """Rounding of a history, over its maximum: no estimate is below."""
+LIGHTEST = 1e-6
+"""Least inertia of a mode, as a share of S, that a consistent start may divide the load by: it holds rounding / tau."""
+CANCELLED = 1e-11
+"""Rounding of a column, over its maximum, beyond which it must be stepped."""
 FEWEST, LARGEST = 8, 400
 """Least and greatest number of vectors."""
 PAID = 4
@@ -69,6 +73,7 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
     if capacity < min(FEWEST, len(stepper.F)):
         return "few steps"
     space = KrylovSpace(stepper.M, stepper.S, stepper.F, stepper.solve, capacity)
+    duals = np.sqrt([row @ stepper.solve(row) for row in rows])
     found: list[Array] = []
     changes: list[float] = []
     size = 0
@@ -76,12 +81,15 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
         size = min(capacity, size + max(FEWEST, size // 4))
         space.grow(size)
         modes = modes_of(space, stepper, rows, steps)
+        if stepper.scheme.start == "consistent" and np.min(modes.inertia) < LIGHTEST:
+            return "a consistent start needs digits of the inertia that long steps leave to no small space"
         found = [*found[-1:], history(modes, stepper.scheme, steps)]
         changes += [_change(*found)] if len(found) == 2 else []
-        if space.closed:
-            return Reduced(found[-1], len(space), modes.rounding)
-        if len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding:
-            return Reduced(found[-1], len(space), changes[-1] + modes.rounding)
+        held = len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding
+        if (space.closed or held) and _cancelled(modes, found[-1], duals, stepper.scheme) > CANCELLED:
+            return "the modes of a small space cancel in a column that has hardly begun, or under a stiff spring"
+        if space.closed or held:
+            return Reduced(found[-1], len(space), modes.rounding + (0.0 if space.closed else changes[-1]))
         if capacity < len(stepper.F) and 2 * size >= capacity and min(changes, default=1.0) > HALFWAY:
             break
     return f"{len(space)} Krylov vectors do not hold the history"
@@ -92,6 +100,18 @@ def _change(before: Array, after: Array) -> float:
     largest = np.max(np.abs(after), axis=1)
     moving = largest > 0
     return float(np.max(np.max(np.abs(after - before), axis=1)[moving] / largest[moving], initial=0.0))
+
+
+def _cancelled(modes: Modes, history: Array, duals: Array, scheme: Scheme) -> float:
+    """Rounding of the modes' shapes in a column over its maximum.
+
+    A shape is right to one rounding of its own size in the norm of S; a row sees that times its dual norm
+    (row' S^-1 row)^1/2, and the motion is about as large as the static one.
+    """
+    size = np.linalg.norm(modes.load * scheme.alpha / modes.stiffness)
+    largest = np.max(np.abs(history), axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nanmax(np.finfo(float).eps * duals * size / largest, initial=0.0))
 
 
 @dataclass(frozen=True)

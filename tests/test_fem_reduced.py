@@ -88,7 +88,7 @@ def test_nine_digits_whatever_the_springs(ratio, alpha, delta, start):
     if scene.sweep:
         scene = scene.expand()[0]
     found, exact = run_scene(scene, "fem"), run_scene(scene, "fem-60")
-    assert any("Krylov" in note for note in found.notes)
+    assert any("Krylov" in note or "small space" in note for note in found.notes)
     for name in COLUMNS:
         a, b = found.history.columns[name], exact.history.columns[name]
         assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max(), name
