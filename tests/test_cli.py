@@ -88,6 +88,27 @@ def test_bad_input_is_one_line_and_status_two(arguments: list[str], words: str, 
     assert not list(tmp_path.iterdir())
 
 
+WORDS = [
+    ('[run]\nsolvers = ["dda", "sofa"]', "run.solvers: must be among dda, "),
+    ('[run]\ncolumns = ["displacement", "heat"]', "run.columns: must be among displacement, "),
+    ('[[gate]]\npair = ["dda"]\nmetric = "heat"\nband = [0, 1]\nreason = "r"', "gate.0.metric: must be among "),
+    ('[[gate]]\npair = ["sofa"]\nmetric = "displacement.final"\nband = [0, 1]\nreason = "r"', "gate.0.pair: must be"),
+    ('[[gate]]\npair = ["dda"]\nmetric = "displacement.l2"\nband = [0, 1]\nreason = "r"', "gate.0.pair: must name"),
+]
+
+
+@pytest.mark.parametrize(("table", "words"), WORDS, ids=[words for _, words in WORDS])
+@pytest.mark.parametrize("command", ["run", "solve"])
+def test_words_that_nothing_answers_to_are_refused_before_anything_is_written(
+    command: str, table: str, words: str, scene_file: Path
+) -> None:
+    scene_file.write_text(f"{SCENE}\n{table}\n")
+    done = cli(command, scene_file, cwd=scene_file.parent)
+    assert done.returncode == 2
+    assert words in done.stderr and len(done.stderr.strip().splitlines()) == 1
+    assert list(scene_file.parent.iterdir()) == [scene_file]
+
+
 def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene_file: Path) -> None:
     explicit = ["solve", scene_file, "--set", "time.alpha=0", "--set", "time.delta=0.5"]
     done = cli(*explicit)

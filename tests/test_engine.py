@@ -40,6 +40,16 @@ def test_a_study_runs_once_and_resumes(scene: Scene, tmp_path: Path) -> None:
     assert len(results.rows()) == 2
 
 
+def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene: Scene, tmp_path: Path) -> None:
+    columns = ["displacement", "contact_pressure", "rotation"]
+    results = Results(tmp_path)
+    run_study(study(scene.with_values({"run.columns": columns})), results)
+    rows = {row.solver: row for row in results.rows().values()}
+    kept = {solver: set(results.history(row.key).columns) for solver, row in rows.items()}
+    assert kept == {"dda": set(columns), "bar": {"displacement", "contact_pressure"}}
+    assert rows["bar"].outcome is Outcome.COMPLETED and "not reported: rotation" in rows["bar"].notes
+
+
 def test_a_study_of_timings_runs_afresh(scene: Scene, tmp_path: Path) -> None:
     results, seen = Results(tmp_path), []
     for _ in range(2):

@@ -118,6 +118,12 @@ class DDA(Solver):
     name = "dda"
     sources: tuple[str, ...] = ("dda",)
 
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        import dda
+
+        return dda.COLUMNS
+
     def model(self, scene: Scene) -> dda.TwoBlockModel:
         """Return the two-block model of a scene."""
         import dda
@@ -219,6 +225,12 @@ class FiniteElements(Solver):
     sections = ("block", "contact", "load", "time", "run", "fem")
     sources: tuple[str, ...] = ("fem_reference",)
 
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        import fem_reference
+
+        return fem_reference.COLUMNS
+
     def problem(self, scene: Scene) -> fem_reference.Problem:
         """Return the finite-element problem of a scene."""
         import fem_reference
@@ -310,6 +322,10 @@ class ExactBar(FiniteElements):
     """Exact in space, Newmark in time."""
 
     name = "bar"
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return BAR_COLUMNS
 
     def bar(self, scene: Scene) -> fem_reference.Bar:
         """Return the bar of a scene."""

@@ -6,7 +6,7 @@ import functools
 import hashlib
 import importlib.util
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -118,12 +118,25 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
     """Call a solver and turn its errors into outcomes."""
     if reason := solver.applicable(scene):
         return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
+    asked, absent = _columns(solver, scene)
+    notes = (f"not reported: {', '.join(absent)}",) if absent else ()
     try:
-        return solver.solve(scene, full=full, fields=fields)
+        with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of
+            run = solver.solve(asked, full=full, fields=fields)
+        return replace(run, notes=(*run.notes, *notes))
     except SceneError as error:
         return Run(Outcome.REFUSED, notes=(str(error),))
     except Exception as error:  # a solver may be anybody's code: its failure is a row, not the end of the study
         return Run(Outcome.RAISED, notes=(f"{type(error).__name__}: {error}",))
+
+
+def _columns(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
+    """Return the scene with the columns that a solver has, and the others; the scene itself where it has none."""
+    known = solver.columns()
+    absent = [name for name in scene.run.columns if known is not None and name not in known]
+    if not absent or len(absent) == len(scene.run.columns):
+        return scene, []
+    return scene.with_values({"run.columns": [name for name in scene.run.columns if name not in absent]}), absent
 
 
 def check(run: Run, scene: Scene) -> Run:

@@ -194,8 +194,10 @@ def figures(
 def one_case(source: str, assignments: list[str] | None) -> Scene:
     """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
     from validation.scene import SceneError, load_scene, parse_assignment
+    from validation.studies import check_words
 
     scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
+    check_words(scene, source)
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise SceneError(f"{source}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")

@@ -11,3 +11,5 @@ if TYPE_CHECKING:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marker, so that the gates run under strict markers in any project."""
     config.addinivalue_line("markers", "validation: the accuracy gates of dda-validation, one test a gate")
+    # pytest-xdist registers it as well; without xdist the gates still carry it.
+    config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")

@@ -44,6 +44,10 @@ class PreciseDDA(DDA):
     name = "dda-60"
     sources = ("validation.precise", "validation.precise_block")
 
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return BAR_COLUMNS
+
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the scene is not the two-block model under a pressure."""
         return scene.beyond_two_blocks
@@ -73,6 +77,10 @@ class PreciseFiniteElements(FiniteElements):
 
     name = "fem-60"
     sources = ("fem_reference", "validation.precise", "validation.precise_matrices", "validation.precise_block")
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why sixty digits are out of reach for the mesh or for the load."""

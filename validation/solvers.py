@@ -23,7 +23,8 @@ class Solver:
     4. `applicable(scene)`: None, or the reason in words why it cannot run this scene.
     5. `solve(scene, full)`: a `Run` whose history holds one value per step, from the first step on, for every
        column in `scene.run.columns`; numerical failure is an outcome, bad input a `SceneError`.
-    6. Optional: `static(scene)`, `modes(scene)` and `diagnostics(scene)`; `NotReported` where absent.
+    6. `columns()`: the columns that it has; a scene's further columns are not asked of it.
+    7. Optional: `static(scene)`, `modes(scene)` and `diagnostics(scene)`; `NotReported` where absent.
     """
 
     name: str = ""
@@ -47,6 +48,10 @@ class Solver:
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; `full` switches the numerical savings off, `fields` names a file for the fields."""
         raise NotImplementedError
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
+        return None
 
     def static(self, scene: Scene) -> Mapping[str, float]:
         """Return the static solution, column name to value."""

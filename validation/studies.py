@@ -13,7 +13,7 @@ from validation.gates import Gate
 from validation.metrics import METRICS, PAIRS
 from validation.results import Value
 from validation.scene import Scene, SceneError, load_scene, scene_names
-from validation.solvers import solver_names
+from validation.solvers import get_solver, solver_names
 
 if TYPE_CHECKING:
     from validation.engine import Finished
@@ -155,10 +155,8 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     """
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
-    for solver in scene.run.solvers:
-        if solver.removesuffix(FULL).partition(":")[0] not in solver_names():
-            raise SceneError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {solver!r}")
-    own = tuple(gate for case in scene.expand() for gate in own_gates(case, source))
+    check_words(scene, source)
+    own = tuple(gate for case in scene.expand() for gate in own_gates(case))
     return Study(
         scene.name,
         scene.title or scene.name,
@@ -170,14 +168,32 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     )
 
 
-def own_gates(case: Scene, source: str) -> tuple[Gate, ...]:
-    """Return the gates that a scene file states for one of its cases."""
-    for number, section in enumerate(case.gate):
+def check_words(scene: Scene, source: str) -> None:
+    """Check the words of a scene that name solvers, columns, metrics and pairs, before anything runs.
+
+    Raises
+    ------
+    SceneError
+        A solver or a metric is unknown, a column is one that none of the solvers has, or a gate's pair does not fit.
+    """
+    for name in scene.run.solvers:
+        if name.removesuffix(FULL).partition(":")[0] not in solver_names():
+            raise SceneError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {name!r}")
+    known = [get_solver(name.removesuffix(FULL)).columns() for name in scene.run.solvers]
+    served = dict.fromkeys(column for columns in known for column in columns or scene.run.columns)
+    for column in scene.run.columns:
+        if column not in served:
+            raise SceneError(f"{source}: run.columns: must be among {', '.join(served)}, got {column!r}")
+    _check_gates(scene, source)
+
+
+def _check_gates(scene: Scene, source: str) -> None:
+    for number, section in enumerate(scene.gate):
         if section.metric not in METRICS:
             raise SceneError(
                 f"{source}: gate.{number}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}"
             )
-        missing = [name for name in section.pair if name not in case.run.solvers]
+        missing = [name for name in section.pair if name not in scene.run.solvers]
         if missing:
             raise SceneError(
                 f"{source}: gate.{number}.pair: must be solvers that run.solvers lists, got {missing[0]!r}"
@@ -187,6 +203,10 @@ def own_gates(case: Scene, source: str) -> tuple[Gate, ...]:
                 f"{source}: gate.{number}.pair: must name a solver and a reference for {section.metric}, "
                 f"got {list(section.pair)}"
             )
+
+
+def own_gates(case: Scene) -> tuple[Gate, ...]:
+    """Return the gates that a scene file states for one of its cases."""
     return tuple(Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate)
 
 
