@@ -1,6 +1,11 @@
 """The command line as a user types it: exit status, one line for bad input, nothing half-written."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +126,19 @@ def test_overflow_is_a_numerical_failure(scene_file: Path) -> None:
     done = cli("solve", scene_file, *(part for text in sets for part in ("--set", text)))
     assert done.returncode == 3
     assert "overflow: The numbers left the range of double precision." in done.stdout
+
+
+def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("steps = 50", "steps = 40000") + '[sweep]\n"time.gg" = [1.0, 0.9, 0.8]\n')
+    command = [sys.executable, "-m", "validation", "run", str(scene_file), "--results", str(tmp_path / "r")]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        rows = tmp_path / "r" / "rows.jsonl"
+        while not rows.exists() and process.poll() is None:
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said.strip() == "interrupted: finished rows are kept, the same command goes on from there"
 
 
 def test_help_has_an_example_everywhere() -> None:

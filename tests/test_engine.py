@@ -1,6 +1,8 @@
 """The engine: every case once, kept, resumed, judged; failures by name."""
 
 import json
+import multiprocessing
+import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -126,7 +128,8 @@ class Broken(Solver):
         values = np.zeros(n - 1 if self.way == "short" else n)
         values[3:] = {"nan": np.nan, "inf": np.inf}.get(self.way, 1.0)
         columns: Mapping[str, np.ndarray] = dict.fromkeys(scene.run.columns, values)
-        return Run(Outcome.COMPLETED, History(scene.time.step * np.arange(1, n + 1), columns))
+        history = History(scene.time.step * np.arange(1, n + 1), columns)
+        return Run(Outcome.COMPLETED, history, estimate=float("nan"))
 
 
 @pytest.mark.parametrize(
@@ -152,6 +155,53 @@ def test_a_failure_is_a_named_outcome(
     verdict = run_study(broken, Results(tmp_path))[0]
     assert verdict.status is (Status.NOT_RUN if way == "inapplicable" else Status.FAIL)
     assert words in verdict.why
+
+
+class Beside(Broken):
+    """A sound history; the static solution and the choice of scenes are broken."""
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        raise RuntimeError("exactly singular")
+
+    def applicable(self, scene: Scene) -> str | None:
+        raise IndexError(self.way)
+
+
+def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert attempt(Beside("x"), scene, False).notes == ("IndexError: x",)
+    monkeypatch.setattr(Case, "make_solver", lambda self: Beside("x"))
+    monkeypatch.setattr(Beside, "applicable", Broken.applicable)
+    row, history = execute(Case(scene, "dda"), "key", "test")
+    assert row.outcome is Outcome.COMPLETED and history is not None
+    assert row.estimate is None and row.line(), "a row is JSON, which knows no NaN"
+    assert row.metrics["displacement.static"] == "not reported"
+    assert row.notes[-1] == "static not reported: RuntimeError: exactly singular"
+
+
+class Deadly(Broken):
+    """A solver that takes its process down for one of the scenes, until it is mended."""
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        if scene.time.step == 0.2 and not Path(self.way).exists():
+            os._exit(9)
+        return super().solve(scene, full, fields)
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="workers inherit the patched solver by fork")
+def test_a_case_that_kills_its_worker_is_a_row_and_is_tried_again(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mended = tmp_path / "mended"
+    monkeypatch.setattr(Case, "make_solver", lambda self: Deadly(str(mended)))
+    swept = scene.model_copy(update={"sweep": {"time.step": [0.1, 0.2, 0.3]}})
+    cases = Study("test", "t", "p", [swept], ("dda",)).cases()
+    outcomes = []
+    for _ in range(2):
+        rows = finish(cases, study(scene), Results(tmp_path / "r"), jobs=2).rows
+        outcomes.append([row.outcome for row in rows.values()])
+        mended.touch()
+    died = [Outcome.COMPLETED, Outcome.RAISED, Outcome.COMPLETED]
+    assert outcomes == [died, [Outcome.COMPLETED] * 3]
 
 
 def test_a_solver_compared_with_itself_fails(scene: Scene, tmp_path: Path) -> None:

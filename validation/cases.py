@@ -6,6 +6,8 @@ import functools
 import hashlib
 import importlib.util
 import json
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -98,7 +100,9 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     run = check(attempt(solver, case.scene, case.full), case.scene)
     if case.scene.time.allow_unstable:
         run = stability.named(run, solver, case.scene)
-    measured = _measure(solver, case, run)
+    failed: list[str] = []
+    with np.errstate(all="ignore"):
+        measured = _measure(solver, case, run, failed)
     row = Row(
         key=key,
         study=study,
@@ -108,19 +112,19 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         metrics=measured,
         work=dict(run.work),
         seconds={k: round(v, 6) for k, v in run.seconds.items()},
-        notes=run.notes,
-        estimate=run.estimate,
+        notes=(*run.notes, *failed),
+        estimate=run.estimate if run.estimate is not None and math.isfinite(run.estimate) else None,
     )
     return row, run.history if run.outcome is Outcome.COMPLETED or run.outcome is Outcome.UNSTABLE else None
 
 
 def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> Run:
     """Call a solver and turn its errors into outcomes."""
-    if reason := solver.applicable(scene):
-        return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
-    asked, absent = _columns(solver, scene)
-    notes = (f"not reported: {', '.join(absent)}",) if absent else ()
     try:
+        if reason := solver.applicable(scene):
+            return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
+        asked, absent = _columns(solver, scene)
+        notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of
             run = solver.solve(asked, full=full, fields=fields)
         return replace(run, notes=(*run.notes, *notes))
@@ -161,12 +165,12 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
     return Run(outcome, run.history, run.work, run.seconds, (*run.notes, note), run.estimate)
 
 
-def _measure(solver: Solver, case: Case, run: Run) -> dict[str, Any]:
-    """Metrics of the run itself; of its history none where that is not sound."""
+def _measure(solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Any]:
+    """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     scene, measured = case.scene, dict[str, Any]()
     if "history" in case.measures and run.history is not None and run.outcome is Outcome.COMPLETED:
-        static = _reported(solver.static, scene, {})
-        modes = _reported(solver.modes, scene, ()) if "modes" in case.measures else ()
+        static = _reported(solver.static, scene, {}, failed)
+        modes = _reported(solver.modes, scene, (), failed) if "modes" in case.measures else ()
         seen = metrics.Measurable(run.history, scene.time.step, static, modes)
         measured = metrics.solo(seen, "modes" in case.measures)
     if "stability" in case.measures and run.outcome not in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
@@ -176,8 +180,12 @@ def _measure(solver: Solver, case: Case, run: Run) -> dict[str, Any]:
     return measured
 
 
-def _reported(part: Any, scene: Scene, absent: Any) -> Any:
+def _reported(part: Callable[[Scene], Any], scene: Scene, absent: Any, failed: list[str]) -> Any:
+    """Return what a solver reports beside its history, or what stands for its absence."""
     try:
         return part(scene)
     except NotReported:
+        return absent
+    except Exception as error:  # anybody's code, as in `attempt`; the history is sound and is kept
+        failed.append(f"{part.__name__} not reported: {type(error).__name__}: {error}")
         return absent

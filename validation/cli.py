@@ -324,11 +324,13 @@ def main() -> None:
         text = " ".join(error.format_message().split())  # type: ignore[attr-defined]
         _stop(f"error: {text} (see dda-validate --help)", BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
-        _stop("interrupted: finished rows are kept, the same command goes on from there", INTERRUPTED)
+        status = INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    else:
-        sys.exit(status or PASSED)
+        status = PASSED
+    if status == INTERRUPTED:  # which typer may have made of the interruption itself
+        _stop("interrupted: finished rows are kept, the same command goes on from there", INTERRUPTED)
+    sys.exit(status or PASSED)
 
 
 def _stop(line: str, status: int) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import signal
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -116,8 +116,8 @@ def finish(
     """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
     keyed = [(case, case.key()) for case in cases]
     known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
-    # What was not installed then may be installed now.
-    known = {key: row for key, row in known.items() if row.outcome is not Outcome.NOT_RUN}
+    # What was not installed then may be installed now, and what raised may have wanted memory.
+    known = {key: row for key, row in known.items() if row.outcome not in (Outcome.NOT_RUN, Outcome.RAISED)}
     pending = {key: case for case, key in keyed if key not in known}
     done = len(keyed) - len(pending)
     for row, history in _executed(pending, study, jobs, executor):
@@ -143,10 +143,26 @@ def _executed(
         for key, case in pending.items():
             yield execute(case, key, study.name)
         return
+    lost = []
     with _pool(executor, min(jobs, len(pending))) as pool:
-        futures = [pool.submit(execute, case, key, study.name) for key, case in pending.items()]
+        futures = {pool.submit(execute, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
-            yield future.result()
+            if isinstance(future.exception(), BrokenExecutor):
+                lost.append(futures[future])
+            else:
+                yield future.result()
+    for key in lost:
+        yield _alone(pending[key], key, study)
+
+
+def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
+    """Run a case in a process of its own: one that kills its worker, for want of memory, is a row like any other."""
+    with _pool(None, 1) as pool:
+        try:
+            return pool.submit(execute, case, key, study.name).result()
+        except BrokenExecutor:
+            note = "the process died, for want of memory or by a signal"
+            return Row(key, study.name, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
 
 
 @contextmanager
