@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -59,13 +60,13 @@ class Joint:
         if not math.dist(self.start, self.end) > 0:
             raise ValueError(f"end: must differ from start, got {self.end!r}")
 
-    @property
+    @cached_property
     def tangent(self) -> Array:
         """Unit direction from start to end."""
         t: Array = np.subtract(self.end, self.start) / math.dist(self.start, self.end)
         return t
 
-    @property
+    @cached_property
     def stiffness(self) -> Array:
         """Matrix of the spring at one end, 2 x 2 in global directions [N/m]."""
         t = self.tangent
@@ -99,7 +100,6 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[tuple[int, int]]]:
     if not len(points):
         return []
     cell = _SAME_PLACE * float(np.max(np.ptp(points, axis=0)))
-    # Two grids, half a cell apart: points nearer than a quarter of a cell share a place in one of them.
     labels = _labels(points - points.min(axis=0), 4 * cell)
     found: dict[int, list[tuple[int, int]]] = {}
     for number, label in enumerate(labels):

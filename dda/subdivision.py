@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,7 @@ from dda.two_block import TwoBlockModel
 Array = NDArray[np.float64]
 Pattern = Literal["squares", "triangles"]
 Corner = tuple[int, int]
+Point = tuple[float, float]
 
 
 def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares") -> BlockSystem:
@@ -56,7 +58,7 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
     for (start, end), number in edges.items():
         ends = place(start), place(end)
         if start[1] == end[1] == 0:
-            share = math.dist(*ends) / a
+            share = base_share(math.dist(*ends), a)
             supports.append(Joint(number, FIXED, *ends, model.contact.normal * share, model.contact.shear * share))
         if _on_side(start, end, (model.top - model.base) % 4, columns, rows):
             loads += _surface_loads(model, number, ends)
@@ -71,6 +73,11 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         model.motion,
         base_normal=(float(normal[0]), float(normal[1])),
     )
+
+
+def base_share(length: float, a: float) -> float:
+    """Return the share of the corner springs' stiffness that each end of a base edge of some length carries."""
+    return length / a
 
 
 def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: str) -> None:
@@ -88,11 +95,11 @@ def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: 
         raise ValueError(f"vertices: only convex quadrilaterals are cut into sub-blocks, got {len(corners)} corners")
 
 
-def _corner_map(model: TwoBlockModel, columns: int, rows: int):  # type: ignore[no-untyped-def]
+def _corner_map(model: TwoBlockModel, columns: int, rows: int) -> Callable[[Corner], Point]:
     """Return the map from a corner's numbers (i, j) to its place [m]."""
     a, b, c, d = np.roll(model.block.corners, -model.base, axis=0)
 
-    def place(corner: Corner) -> tuple[float, float]:
+    def place(corner: Corner) -> Point:
         i, j = corner
         # numerators are whole numbers: opposite corners of a rectangle keep equal coordinates
         low = ((columns - i) * a + i * b) / columns
@@ -119,22 +126,21 @@ def _on_side(start: Corner, end: Corner, side: int, columns: int, rows: int) -> 
     return start[axis] == end[axis] == value
 
 
-def _surface_loads(model: TwoBlockModel, number: int, ends: tuple[tuple[float, float], ...]) -> list[SurfaceLoad]:
+def _surface_loads(model: TwoBlockModel, number: int, ends: tuple[Point, Point]) -> list[SurfaceLoad]:
     """Return traction and pressure on one sub-block's part of the top edge."""
     start, end = np.array(ends[0]), np.array(ends[1])
     loads = []
     if model.traction:
         loads.append(SurfaceLoad(number, ends[0], ends[1], (model.traction, 0.0)))
-    if model.eccentricity == 0:
-        part = (ends[0], ends[1]) if model.pressure else None
-    else:
+    part: tuple[Point, Point] | None = ends
+    if model.eccentricity != 0:
         part = _overlap(start, end, *pressed_part(*model.block.edge(model.top), model.eccentricity))
     if part and model.pressure:
         loads.append(SurfaceLoad(number, *part, (0.0, -model.pressure)))
     return loads
 
 
-def _overlap(start: Array, end: Array, low: Array, high: Array):  # type: ignore[no-untyped-def]
+def _overlap(start: Array, end: Array, low: Array, high: Array) -> tuple[Point, Point] | None:
     """Return the part of the edge start-end between two points of its line, or None."""
     side = end - start
     length2 = float(side @ side)
@@ -142,4 +148,5 @@ def _overlap(start: Array, end: Array, low: Array, high: Array):  # type: ignore
     first, last = max(first, 0.0), min(last, 1.0)
     if not last > first:
         return None
-    return tuple(tuple(float(v) for v in start + s * side) for s in (first, last))
+    (x1, y1), (x2, y2) = start + first * side, start + last * side
+    return (float(x1), float(y1)), (float(x2), float(y2))

@@ -8,7 +8,7 @@ stiffness and joint stiffness are never added, so that stiff joints cost no digi
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.block import Block
-from dda.gap_form import COLUMNS
+from dda.joint_solver import saddle
 from dda.joints import FIXED, Joint, gap_groups
 from dda.load import BaseMotion
 
@@ -99,6 +99,11 @@ class BlockSystem:
             kept=np.arange(6 * len(blocks)),
         )
 
+    @cached_property
+    def reached(self) -> Equations:
+        """The equations without the unknowns and gaps that no load can reach."""
+        return self.equations.reduced()
+
     def _load(self, blocks: Sequence[Block], place: dict[int, int]) -> Array:
         """Return surface loads and weights, six for each block."""
         F = np.zeros((len(blocks), 6))
@@ -145,6 +150,11 @@ class Equations:
         """Return a matrix of 6 x 6 blocks as a sparse one in the kept unknowns."""
         full = _sparse_blocks(matrices)
         return full if len(self.kept) == full.shape[0] else full[self.kept][:, self.kept]
+
+    @cached_property
+    def at_rest(self) -> Callable[[Array, Array], tuple[Array, Array]]:
+        """The solver (F, g) -> (D, lambda) of Ke D + B' lambda = F, B D - C lambda = g, factorised once."""
+        return saddle(self.blockwise(self.elastic), self.B, self.C, float(np.max(np.abs(self.elastic))))
 
     def reduced(self) -> Equations:
         """Return the equations without the unknowns and gaps that no load can reach.
@@ -257,6 +267,3 @@ def _holds(corners: Array, point: Array) -> bool:
         return True
     turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.sum(a * b, axis=1))
     return bool(abs(np.sum(turn)) > math.pi)
-
-
-__all__ = ["COLUMNS", "BlockSystem", "Equations", "SurfaceLoad"]

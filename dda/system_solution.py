@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.joint_solver import factor
 from dda.modes import Mode, scalar_eigenvalues
 from dda.newmark import Scheme, effective_matrix, predictor, velocity_corrector
 from dda.solution import Result, bound_overflow, check_request, step_times
@@ -32,24 +32,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _DENSE = 300  # unknowns up to which all modes are found by a dense solver
-
-
-@dataclass
-class Factor:
-    """A factorised sparse symmetric matrix and its size."""
-
-    solve: Callable[[Array], Array]
-    nonzeros: int
-
-
-def factor(matrix: csr_array, definite: bool = True) -> Factor:
-    """Factorise a matrix; a definite one keeps its diagonal pivots and its symmetric fill-in."""
-    from scipy.sparse import csc_array
-    from scipy.sparse.linalg import splu
-
-    held: dict[str, Any] = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
-    lu = splu(csc_array(matrix), **(held if definite else {}))
-    return Factor(lu.solve, int(matrix.nnz))
 
 
 def joint_flexibility(scheme: Scheme, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
@@ -120,7 +102,7 @@ def solve_system(
     """
     check_request(steps, columns)
     began = perf_counter()
-    equations = system.equations if full else system.equations.reduced()
+    equations = system.equations if full else system.reached
     stepper = _Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
@@ -152,29 +134,13 @@ def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:
     return () if kept == total else (f"{kept} of {total} unknowns kept",)
 
 
-def _saddle(equations: Equations) -> Callable[[Array, Array], tuple[Array, Array]]:
-    """Return the solver of Ke D + B' lambda = F, B D - C lambda = g, in moduli near one."""
-    from scipy.sparse import block_array
-
-    E = float(np.max(np.abs(equations.elastic)))
-    Ke = equations.blockwise(equations.elastic / E)
-    lu = factor(block_array([[Ke, equations.B.T], [equations.B, -E * equations.C]], format="csr"), definite=False)
-    n = len(equations.F)
-
-    def solve(F: Array, g: Array) -> tuple[Array, Array]:
-        found = lu.solve(np.concatenate([F / E, g]))
-        return found[:n], E * found[n:]
-
-    return solve
-
-
 def static_system(system: BlockSystem) -> dict[str, float]:
     """Return the value of every column at rest under the constant loads, on the base's last position."""
-    equations = system.equations.reduced()
+    equations = system.reached
     names = (*equations.observers, "contact_pressure")
     by_D, by_force = equations.rows(names)
     last = _moved(system, np.array([math.inf]))[0]
-    D, force = _saddle(equations)(equations.F, equations.G @ last)
+    D, force = equations.at_rest(equations.F, equations.G @ last)
     values = (by_D @ D + by_force @ force) * system.load_size + 0.0
     return dict(zip(names, values.tolist(), strict=True))
 
@@ -189,8 +155,8 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
     full : bool
         Count the modes that no load can reach as well.
     """
-    equations = system.equations if full else system.equations.reduced()
-    solve = _saddle(equations)
+    equations = system.equations if full else system.reached
+    solve = equations.at_rest
     F = equations.F if np.any(equations.F) else equations.B.T @ (equations.kappa @ equations.G.sum(axis=1))
     D, _ = solve(F, np.zeros(len(equations.pressure)))
     while True:
@@ -241,7 +207,7 @@ def highest_frequency(system: BlockSystem) -> float:
     from scipy.linalg import eigh
     from scipy.sparse.linalg import eigsh
 
-    e = system.equations.reduced()
+    e = system.reached
     M = e.blockwise(e.mass)
     K = e.blockwise(e.elastic) + e.B.T @ e.kappa @ e.B
     if len(e.F) <= _DENSE:

@@ -6,7 +6,7 @@ a fault reaches run again, the others are taken from the sound run.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,11 +23,13 @@ import fem_reference.elasticity
 import fem_reference.model
 import fem_reference.newmark
 import fem_reference.solver
+from validation.cases import Case
 from validation.core import CORE
 from validation.engine import Finished, evaluate, finish
-from validation.gates import Status
+from validation.gates import Gate, Status
 from validation.history import History
 from validation.results import Results
+from validation.studies import Study
 
 SLOW = ("figure-7",)  # 20,000 steps: their gates are bitten by the same faults as those of the other scenes
 
@@ -178,31 +180,38 @@ CASES = [case for case in CORE.cases() if not case.scene.name.startswith(SLOW)]
 GATES = [gate for gate in CORE.gates() if not gate.scene.startswith(SLOW)]
 
 
-def failed(finished: Finished) -> set[str]:
-    return {gate.id for gate in GATES if evaluate(gate, finished).status is Status.FAIL}
+def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
+    return {gate.id for gate in gates if evaluate(gate, finished).status is Status.FAIL}
 
 
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
-    sound = finish(CASES, CORE, Results(tmp_path / "sound"))
-    assert not failed(sound)
+    check_kill_matrix(CORE, CASES, GATES, FAULTS, tmp_path)
+
+
+def check_kill_matrix(
+    study: Study, cases: Sequence[Case], gates: Sequence[Gate], faults: Sequence[Fault], directory: Path
+) -> None:
+    """Run the cases sound and with every fault; no fault may pass unseen, no gate may stay unbitten."""
+    sound = finish(cases, study, Results(directory / "sound"))
+    assert not failed(sound, gates)
     kills: dict[str, set[str]] = {}
-    for number, fault in enumerate(FAULTS):
-        reached = [case for case in CASES if case.solver in fault.solvers]
+    for number, fault in enumerate(faults):
+        reached = [case for case in cases if case.solver in fault.solvers]
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
-            faulty = finish(reached, CORE, Overlay(tmp_path / str(number), sound.results))
-        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results, faulty.derived))
-    print_matrix(kills)
+            faulty = finish(reached, study, Overlay(directory / str(number), sound.results))
+        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results, faulty.derived), gates)
+    print_matrix(kills, gates)
     unseen = [name for name, killed in kills.items() if not killed]
-    unbitten = sorted({gate.id for gate in GATES} - set().union(*kills.values()))
+    unbitten = sorted({gate.id for gate in gates} - set().union(*kills.values()))
     assert not unseen, f"faults that no gate sees: {unseen}"
     assert not unbitten, f"gates that no fault bites: {unbitten}"
 
 
-def print_matrix(kills: dict[str, set[str]]) -> None:
+def print_matrix(kills: dict[str, set[str]], gates: Sequence[Gate]) -> None:
     """Print one row a gate, one column a fault."""
     names = list(kills)
     for number, name in enumerate(names):
         print(f"{number + 1:>3}  {name}: {len(kills[name])} gates")
-    for gate in GATES:
+    for gate in gates:
         print("".join("x" if gate.id in kills[name] else "." for name in names), gate.id)

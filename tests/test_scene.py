@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from conftest import SCENE
 
+from validation.cases import Case
 from validation.scene import Scene, SceneError, load_scene, parse_assignment, parse_scene, scene_names
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
@@ -223,3 +224,15 @@ def test_the_papers_figures_are_there() -> None:
     assert values("figure-8", "time.alpha") == [0.25, 0.5]
     assert values("figure-9", "time.gg") == [1.0, 0.98, 0.95, 0.90]
     assert set(values("poisson", "block.poisson")) == {0.25}
+
+
+def test_swept_counts_of_sub_blocks_are_named_as_products() -> None:
+    cases = parse(sweep={"block.subdivide": [[1, 2], [4, 4]]}).expand()
+    assert [case.name for case in cases] == ["scene[block.subdivide=1x2]", "scene[block.subdivide=4x4]"]
+    assert cases[1].block.subdivide == (4, 4)
+
+
+def test_a_solver_that_does_not_see_sub_blocks_keeps_one_result_for_all_of_them() -> None:
+    whole, cut = parse(), parse(block__subdivide=[2, 2])
+    keys = {name: {Case(scene, name).key() for scene in (whole, cut)} for name in ("dda", "fem", "bar")}
+    assert {name: len(found) for name, found in keys.items()} == {"dda": 2, "fem": 1, "bar": 1}

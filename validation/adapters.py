@@ -117,6 +117,7 @@ class DDA(Solver):
 
     name = "dda"
     sources: tuple[str, ...] = ("dda",)
+    _kept: tuple[Scene, dda.BlockSystem] | None = None
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
@@ -137,13 +138,15 @@ class DDA(Solver):
         )
 
     def system(self, scene: Scene) -> dda.BlockSystem | None:
-        """Return the system of sub-blocks of a scene, or None where the block is whole."""
+        """Return the system of sub-blocks of a scene, or None where the block is whole; the last one is kept."""
         import dda
 
         b = scene.block
         if b.subdivide is None:
             return None
-        return dda.subdivided(self.model(scene), *b.subdivide, b.glue_ratio * b.young, b.pattern)
+        if self._kept is None or self._kept[0] is not scene:
+            self._kept = scene, dda.subdivided(self.model(scene), *b.subdivide, b.glue_ratio * b.young, b.pattern)
+        return self._kept[1]
 
     def scheme(self, scene: Scene) -> dda.Scheme:
         """Return the scheme of a scene."""
@@ -223,6 +226,7 @@ class FiniteElements(Solver):
 
     name = "fem"
     sections = ("block", "contact", "load", "time", "run", "fem")
+    unread = ("block.subdivide", "block.pattern", "block.glue_ratio")
     sources: tuple[str, ...] = ("fem_reference",)
 
     def columns(self) -> tuple[str, ...] | None:

@@ -55,7 +55,9 @@ class Case:
         """Hash of what decides the result: the tables that the solver reads, its options, its sources."""
         solver = self.make_solver()
         data = self.scene.model_dump(mode="json")
-        read = {section: data[section] for section in solver.sections}
+        read: dict[str, Any] = {section: dict(data[section]) for section in solver.sections}
+        for section, _, key in (name.partition(".") for name in solver.unread):
+            read[section].pop(key, None)
         read["run"] = sorted(self.scene.run.columns)
         if self.scene.fem.mesh and "fem" in solver.sections:
             read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")

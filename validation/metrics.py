@@ -20,7 +20,12 @@ from validation.results import Value
 UNDEFINED, NOT_REPORTED = "undefined", "not reported"
 SETTLED = 0.01  # of the static value
 NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
-QUANTITIES = {"displacement": DISPLACEMENT, "pressure": PRESSURE}
+QUANTITIES = {
+    "displacement": DISPLACEMENT,
+    "pressure": PRESSURE,
+    "horizontal": "horizontal_displacement",
+    "rotation": "rotation",
+}
 
 
 @dataclass(frozen=True)

@@ -369,6 +369,8 @@ class Scene(Section):
 
 def _short(value: object) -> str:
     """Return a value for a name; digits beyond six are kept, since names must tell cases apart."""
+    if isinstance(value, list | tuple):
+        return "x".join(map(_short, value))
     if not isinstance(value, float):
         return str(value)
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)

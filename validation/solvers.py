@@ -18,7 +18,8 @@ class Solver:
     """Base of all solvers; a new one is this checklist.
 
     1. `name`: how the command line and the tables call it.
-    2. `sections`: the tables of a scene that it reads; a change elsewhere does not make it run again.
+    2. `sections`: the tables of a scene that it reads, and `unread`: keys in them that it does not; a change
+       elsewhere does not make it run again.
     3. `sources`: modules or packages whose files enter the key of its results.
     4. `applicable(scene)`: None, or the reason in words why it cannot run this scene.
     5. `solve(scene, full)`: a `Run` whose history holds one value per step, from the first step on, for every
@@ -29,6 +30,7 @@ class Solver:
 
     name: str = ""
     sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
+    unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
 
     def option(self, text: str) -> Solver:

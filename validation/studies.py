@@ -129,6 +129,7 @@ STUDIES = {
     "paper": "validation.paper:PAPER",
     "stability-small": "validation.stability_study:small",
     "stability": "validation.stability_study:full",
+    "subblocks": "validation.subblocks:SUBBLOCKS",
 }
 
 
