@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,17 +42,21 @@ def area_integrals(vertices: Array) -> AreaIntegrals:
     vertices : (n, 2) array [m]
         Corners in counter-clockwise order; the origin should lie near the polygon.
     """
-    x, y = vertices.T
-    xn, yn = np.roll(vertices, -1, axis=0).T
-    c = x * yn - xn * y
-    return AreaIntegrals(
-        area=float(np.sum(c)) / 2,
-        x=float(np.sum(c * (x + xn))) / 6,
-        y=float(np.sum(c * (y + yn))) / 6,
-        xx=float(np.sum(c * (x * x + x * xn + xn * xn))) / 12,
-        yy=float(np.sum(c * (y * y + y * yn + yn * yn))) / 12,
-        xy=float(np.sum(c * (x * yn + 2 * x * y + 2 * xn * yn + xn * y))) / 24,
-    )
+    corners = vertices.tolist()
+    total = [0.0] * 6
+    for (x, y), (X, Y) in zip(corners, corners[1:] + corners[:1], strict=True):
+        c = x * Y - X * y
+        moments = (
+            1.0,
+            x + X,
+            y + Y,
+            x * x + x * X + X * X,
+            y * y + y * Y + Y * Y,
+            x * Y + 2 * x * y + 2 * X * Y + X * y,
+        )
+        total = [t + c * m for t, m in zip(total, moments, strict=True)]
+    area, sx, sy, xx, yy, xy = total
+    return AreaIntegrals(area / 2, sx / 6, sy / 6, xx / 12, yy / 12, xy / 24)
 
 
 def section(vertices: Array) -> Section:
@@ -83,14 +88,33 @@ def checked_polygon(vertices: ArrayLike) -> Array:
     if not np.all(np.isfinite(points)):
         raise ValueError(f"vertices: coordinates must be finite, got {points.tolist()}")
     local = points - points[0]
-    if not np.all(np.any(np.roll(local, -1, axis=0) != local, axis=1)):
-        raise ValueError(f"vertices: consecutive corners must differ, got {points.tolist()}")
-    if _touches_itself(local):
-        raise ValueError(f"vertices: edges must not cross or touch each other, got {points.tolist()}")
-    if not area_integrals(local).area > 0:
-        raise ValueError(f"vertices: corners must run counter-clockwise, got {points.tolist()}")
+    if not _convex(local) and (fault := _fault(local)):
+        raise ValueError(f"vertices: {fault}, got {points.tolist()}")
     points.setflags(write=False)
     return points
+
+
+def _convex(points: Array) -> bool:
+    """Tell whether every corner turns left and all of them once around: such a polygon is simple."""
+    corners = points.tolist()
+    following = corners[1:] + corners[:1]
+    edges = [(X - x, Y - y) for (x, y), (X, Y) in zip(corners, following, strict=True)]
+    turned = 0.0
+    for (x, y), (X, Y) in zip(edges, edges[1:] + edges[:1], strict=True):
+        turn = x * Y - X * y
+        if not turn > 0:
+            return False
+        turned += math.atan2(turn, x * X + y * Y)
+    return turned < 3 * math.pi  # once around is 2 pi, twice 4 pi
+
+
+def _fault(local: Array) -> str | None:
+    """Return what keeps corners, relative to the first, from being a simple counter-clockwise polygon."""
+    if not np.all(np.any(np.roll(local, -1, axis=0) != local, axis=1)):
+        return "consecutive corners must differ"
+    if _touches_itself(local):
+        return "edges must not cross or touch each other"
+    return None if area_integrals(local).area > 0 else "corners must run counter-clockwise"
 
 
 def _orientation(a: Array, b: Array, c: Array) -> Array:

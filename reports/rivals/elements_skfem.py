@@ -1,0 +1,69 @@
+"""Rival of `fem`: the loop that a competent user writes with scikit-fem and SuperLU.
+
+Bilinear elements on the whole square, a distributed foundation, the step's matrix factored once with the ordering
+and the symmetric mode that suit a positive definite matrix (three times faster than SuperLU's default).
+"""
+
+import numpy as np
+from scipy.sparse.linalg import splu
+from skfem import Basis, BilinearForm, ElementQuad1, ElementVector, FacetBasis, LinearForm, MeshQuad
+from skfem.helpers import ddot, div, dot, sym_grad
+
+
+@BilinearForm
+def _mass(u, v, w):
+    return dot(u, v)
+
+
+@BilinearForm
+def _elastic(u, v, w):
+    return w.lam * div(u) * div(v) + 2 * w.mu * ddot(sym_grad(u), sym_grad(v))
+
+
+@LinearForm
+def _down(v, w):
+    return -v[1]
+
+
+def history(
+    steps: int,
+    n: int = 64,
+    poisson: float = 0.25,
+    side: float = 2.0,
+    rho: float = 2700.0,
+    young: float = 1e9,
+    p: float = 1e9,
+    q: float = 5e6,
+    dt: float = 1e-3,
+    alpha: float = 0.5,
+    delta: float = 1.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacement [m] and contact pressure [Pa] of every step, plane stress."""
+    grid = np.linspace(0, side, n + 1)
+    mesh = MeshQuad.init_tensor(grid, grid)
+    basis = Basis(mesh, ElementVector(ElementQuad1()))
+    base = FacetBasis(mesh, basis.elem, facets=mesh.facets_satisfying(lambda x: x[1] == 0, boundaries_only=True))
+    top = FacetBasis(mesh, basis.elem, facets=mesh.facets_satisfying(lambda x: x[1] == side, boundaries_only=True))
+    lam, mu = young * poisson / (1 - poisson**2), young / (2 * (1 + poisson))
+    k = 2 * p / side
+    M = rho * _mass.assemble(basis)
+    K = _elastic.assemble(basis, lam=lam, mu=mu) + k * _mass.assemble(base)
+    F, press = q * _down.assemble(top), k / side * _down.assemble(base)
+    lu = splu(
+        (M + alpha * dt**2 * K).tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    middle = basis.nodal_dofs[1, np.argmin(np.hypot(*(mesh.p - side / 2)))]
+    D, V, A = np.zeros_like(F), np.zeros_like(F), np.zeros_like(F)
+    displacement, contact = np.empty(steps), np.empty(steps)
+    for step in range(steps):
+        ahead = dt * V + dt**2 * (0.5 - alpha) * A
+        dD = lu.solve(M @ ahead + alpha * dt**2 * (F - K @ D))
+        A1 = (dD - ahead) / (alpha * dt**2)
+        V = V + dt * ((1 - delta) * A + delta * A1)
+        D, A = D + dD, A1
+        displacement[step] = D[middle]
+        contact[step] = press @ D
+    return displacement, contact
