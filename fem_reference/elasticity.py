@@ -13,6 +13,8 @@ intervals end where a patch ends, so that it is integrated exactly on any mesh.
 
 from __future__ import annotations
 
+import functools
+import operator
 from typing import NamedTuple
 
 import numpy as np
@@ -63,17 +65,31 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
     return Basis(mesh, element, intorder=2 * degree + 1)
 
 
-def mass(basis: Basis, density: float) -> csr_array:
-    """Consistent mass matrix [kg]."""
-    return density * csr_array(mass_form.assemble(basis))
+def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
+    """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
+
+    Where all cells are translates of the first one its element matrix is that of all.
+    """
+    terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
+    if not congruent:
+        parts = [coefficient * csr_array(form.assemble(basis)) for coefficient, form in terms]
+        return functools.reduce(operator.add, parts)
+    first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
+    local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
+    dofs = basis.element_dofs.T.astype(np.int32)
+    rows, columns = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+    data = np.tile(local.ravel(), len(dofs))
+    return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
 
 
-def stiffness(basis: Basis, problem: Problem) -> csr_array:
-    """Elastic stiffness matrix [N/m]; a term whose coefficient is zero leaves no entry."""
-    K = problem.shear_modulus * csr_array(strain_form.assemble(basis))
-    if problem.lame != 0:
-        K = K + problem.lame * csr_array(dilatation_form.assemble(basis))
-    return K
+def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
+    """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
+    return assembled([(density, mass_form)], basis, congruent)
+
+
+def stiffness(basis: Basis, problem: Problem, congruent: bool = False) -> csr_array:
+    """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
+    return assembled([(problem.shear_modulus, strain_form), (problem.lame, dilatation_form)], basis, congruent)
 
 
 def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:

@@ -58,8 +58,10 @@ class KrylovSpace:
         w -= self.diagonal[-1] * v
         if j:
             w -= self.beside[-1] * V[j - 1]
-        w -= (V @ (self._S @ w)) @ V
-        size = float(np.sqrt(max(w @ (self._S @ w), 0.0)))
+        Sw = self._S @ w
+        outside = V @ Sw
+        size = float(np.sqrt(max(w @ Sw - outside @ outside, 0.0)))
+        w -= outside @ V
         self.closed = size <= CLOSED or j + 1 == len(v)
         self.beside.append(size)
         if not self.closed:

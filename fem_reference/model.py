@@ -106,15 +106,15 @@ def assemble(problem: Problem) -> Assembled:
     return _assemble_on(problem, block_mesh(problem))
 
 
-def _assemble_on(problem: Problem, tagged: TaggedMesh, half: bool = False) -> Assembled:
+def _assemble_on(problem: Problem, tagged: TaggedMesh, half: bool = False, congruent: bool = False) -> Assembled:
     basis = elasticity.vector_basis(tagged.mesh, problem.degree)
     rule = elasticity.foundation_rule(problem, tagged.mesh, tagged.base, half)
     springs, pressure = elasticity.springs(basis, problem, rule)
     u, v, rotation = elasticity.point_values(basis, problem.centroid)
-    M = elasticity.mass(basis, problem.density)
+    M = elasticity.mass(basis, problem.density, congruent)
     return Assembled(
         M=M,
-        K=elasticity.stiffness(basis, problem),
+        K=elasticity.stiffness(basis, problem, congruent),
         springs=springs,
         F=elasticity.load(basis, problem, tagged.top, M),
         basis=basis,
@@ -204,7 +204,7 @@ def _tensor(problem: Problem) -> bool:
 
 def half_block(problem: Problem) -> Model:
     """Model of the half next to the start of the base, with u = 0 on the mirror line."""
-    assembled = _assemble_on(problem.unit, structured(problem, half=True), half=True)
+    assembled = _assemble_on(problem.unit, structured(problem, half=True), half=True, congruent=True)
     # The other half's springs press as much: the mean over the base counts each half once. Nothing turns the middle.
     doubled = {"contact_pressure": 2 * assembled.observers["contact_pressure"]}
     observers = assembled.observers | doubled | {"rotation": np.zeros(assembled.basis.N)}

@@ -18,14 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
-from fem_reference.bar_scheme import applicable
+from fem_reference.bar_scheme import applicable, determinant
 from fem_reference.krylov import KrylovSpace
 from fem_reference.newmark import State, Stepper, advance, initial_acceleration
 from fem_reference.problem import Array, Scheme
 
 Extended = NDArray[np.longdouble]
 
-TOLERANCE = 1e-11
+TOLERANCE = 3e-11
 """Change of the history, over its maximum, at which a space is large enough."""
 HALFWAY = 1e-2
 """Change that half of the greatest space must have reached; the convergence is faster than linear from there."""
@@ -37,6 +37,8 @@ CANCELLED = 1e-11
 """Rounding of a column, over its maximum, beyond which it must be stepped."""
 FEWEST, LARGEST = 8, 400
 """Least and greatest number of vectors."""
+SLOW = 0.1
+"""kappa below which 1 - tau is formed again where digits count."""
 PAID = 4
 """Steps that a vector must save: it costs about a step and a half."""
 BLOCK = 256
@@ -78,7 +80,7 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
     changes: list[float] = []
     size = 0
     while size < capacity:
-        size = min(capacity, size + max(FEWEST, size // 4))
+        size = min(capacity, size + max(FEWEST, size // 8))
         space.grow(size)
         modes = modes_of(space, stepper, rows, steps)
         if stepper.scheme.start == "consistent" and np.min(modes.inertia) < LIGHTEST:
@@ -139,15 +141,18 @@ def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> M
     # The largest tau is that of the slowest mode, whose stiffness 1 - tau has lost most.
     loss = _phase_error(float(kappa[-1]), float(_stiffness(stepper, turn[:, -1:].T @ vectors)[0]), scheme, steps)
     if loss > TOLERANCE:
-        kappa = _stiffness(stepper, turn.T @ vectors)
-        tau = np.where(kappa < 0.5, 1 - kappa, tau)
-    return Modes(tau, kappa, scheme.step**2 * space.load * turn[0], (rows @ vectors.T) @ turn, FLOOR + 4 * loss)
+        slow = kappa < SLOW
+        kappa[slow] = _stiffness(stepper, turn.T[slow] @ vectors)
+        tau[slow] = 1 - kappa[slow]
+    return Modes(tau, kappa, scheme.step**2 * space.load * turn[0], (rows @ vectors.T) @ turn, FLOOR + 10 * loss)
 
 
 def _phase_error(kappa: float, exact: float, scheme: Scheme, steps: int) -> float:
-    """Phase that a mode loses by the last step because its stiffness has lost digits, as plain steps lose them."""
+    """Phase that a mode loses before it is damped because its stiffness has lost digits, as plain steps lose them."""
     digits = max(abs(kappa - exact) / exact, np.finfo(float).eps / exact)
-    return float(digits * np.sqrt(exact / scheme.alpha) / 2 * steps)
+    modulus = float(np.sqrt(determinant(np.array(exact / scheme.alpha), scheme)))
+    lasting = min(steps, 1 / (1 - modulus)) if modulus < 1 else steps
+    return float(digits * np.sqrt(exact / scheme.alpha) / 2 * lasting)
 
 
 def _stiffness(stepper: Stepper, shapes: Array) -> Array:
