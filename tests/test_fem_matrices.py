@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from skfem import MeshQuad, MeshTri
 
+from fem_reference import elasticity
 from fem_reference.eigen import highest_frequency
+from fem_reference.mesh import structured
 from fem_reference.model import assemble, build
 from fem_reference.problem import Problem
 from fem_reference.solver import static
@@ -257,3 +259,15 @@ def test_highest_frequency_of_linear_elements():
 def test_bad_values_name_their_field(change, field):
     with pytest.raises(ValueError, match=f"^{field}: "):
         make(**change)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_the_first_cell_of_translates_stands_for_all(degree, poisson):
+    problem = make(elements=6, degree=degree, poisson=poisson)
+    basis = elasticity.vector_basis(structured(problem, half=True).mesh, degree)
+    for one, all_cells in (
+        (elasticity.mass(basis, 2700.0, True), elasticity.mass(basis, 2700.0)),
+        (elasticity.stiffness(basis, problem, True), elasticity.stiffness(basis, problem)),
+    ):
+        assert abs(one - all_cells).max() <= 1e-14 * abs(all_cells).max()  # rounding of the cells' corners
