@@ -62,7 +62,7 @@ def test_one_module_of_validation_knows_both_solvers() -> None:
 
 
 def test_only_figures_import_matplotlib_and_only_the_report_the_pdf_writer() -> None:
-    assert importers("validation", "matplotlib") == {"figures.py"}
+    assert {name for name in importers("validation", "matplotlib") if not name.startswith("figures")} == set()
     assert importers("validation", "typst") == {"report.py"}
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from validation import figures
 from validation.chapters_curves import COLUMNS, Panel
+from validation.chapters_damping import alarm_blocks, budget_blocks
 from validation.chapters_data import Case, Group, groups, varied_fields
 from validation.chapters_ledger import METRICS
 from validation.chapters_text import AS_STATED, bounded, cell, parameters, percent, plain, short, span, word_notes
@@ -50,6 +51,7 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
         blocks += _drift_blocks(group, drift, directory)
     if any(_finished(case) for case in group.cases):
         blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
+    blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
     if group.verdicts:
         blocks += [Heading("Gates", 3), gate_table(group.verdicts, {case.name: case.label for case in group.cases})]
     return blocks

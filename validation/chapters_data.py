@@ -46,6 +46,8 @@ class Group:
     cases: tuple[Case, ...]
     comparisons: tuple[Mapping[str, Any], ...]
     verdicts: tuple[Mapping[str, Any], ...]
+    alarms: tuple[Mapping[str, Any], ...] = ()
+    budgets: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def solvers(self) -> list[str]:
@@ -105,6 +107,8 @@ def _group(
         cases,
         tuple(c for c in manifest.get("comparisons", []) if base_name(c["scene"]) == base),
         tuple(v for v in verdicts if base_name(v["scene"]) == base),
+        tuple(a for a in manifest.get("alarms", []) if base_name(a["scene"]) == base),
+        tuple(b for b in manifest.get("budgets", []) if base_name(b["scene"]) == base),
     )
 
 

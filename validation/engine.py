@@ -15,6 +15,7 @@ from typing import Any
 
 from validation import metrics
 from validation.alarms import Alarm, alarms
+from validation.budget import budgets
 from validation.cases import Case, execute
 from validation.gates import Gate, Status, Verdict, judge, rounded
 from validation.history import History, Outcome
@@ -295,6 +296,7 @@ def _manifest(
         "comparisons": comparisons,
         "derived": [_derived_record(finished, *name) for name in finished.derived],
         "data": dict(study.data()),
+        "budgets": list(budgets(case.scene for case in cases if case.solver == "dda")),
         "alarms": [alarm.record() for alarm in raised],
         "provenance": provenance(),
     }

@@ -61,7 +61,7 @@ class Margins:
     bottom: float = 8.5
 
 
-def _grid(
+def axes_grid(
     rows: Sequence[tuple[float, float]], columns: int, margins: Margins, width: float = WIDTH
 ) -> tuple[Figure, list[list[Axes]]]:
     """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
@@ -76,7 +76,7 @@ def _grid(
     return figure, grid
 
 
-def _size(axes: Axes) -> tuple[float, float]:
+def size_of(axes: Axes) -> tuple[float, float]:
     """Return width and height of the axes [mm]."""
     figure = axes.get_figure()
     if not isinstance(figure, Figure):
@@ -92,7 +92,7 @@ def label_ends(axes: Axes, ends: Mapping[str, float], names: Mapping[str, str] |
     """
     if not ends:
         return
-    width, height = _size(axes)
+    width, height = size_of(axes)
     inverse = axes.transAxes.inverted()
     right = axes.get_xlim()[1]
     points = [inverse.transform(axes.transData.transform((right, y))) for y in ends.values()]
@@ -112,7 +112,8 @@ def label_ends(axes: Axes, ends: Mapping[str, float], names: Mapping[str, str] |
         )
 
 
-def _draw(axes: Axes, name: str, x: Array, y: Array) -> None:
+def draw_line(axes: Axes, name: str, x: Array, y: Array) -> None:
+    """Draw a solver's line in its own style."""
     style = style_of(name)
     axes.plot(
         x, y, color=style.color, lw=style.width, zorder=2 + style.layer, ls=(0, style.dash) if style.dash else "-"
@@ -136,7 +137,7 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     columns = _columns(len(panels))
     bands = -(-len(panels) // columns)
     with house_style():
-        figure, grid = _grid([(24.0, 2.5), (15.0, 13.0)] * bands, columns, Margins(right=_label_room(panels)))
+        figure, grid = axes_grid([(24.0, 2.5), (15.0, 13.0)] * bands, columns, Margins(right=_label_room(panels)))
         for band in range(bands):
             some = panels[band * columns : (band + 1) * columns]
             _history_row(grid[2 * band], some, column)
@@ -165,7 +166,7 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str) -> None:
         axes.set_ylim(factor * (low - pad), factor * (high + pad))
         for solver, history in panel.histories.items():
             x, y = thin(history.time, np.clip(history.columns[column], low - 9 * pad, high + 9 * pad))
-            _draw(axes, solver, x, factor * y)
+            draw_line(axes, solver, x, factor * y)
         _time_axis(axes, panel)
         axes.tick_params(labelbottom=False)
         axes.yaxis.set_major_locator(MaxNLocator(5))
@@ -188,7 +189,7 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str) -> No
     for axes, panel, lines in zip(row, panels, curves, strict=False):
         _log_axis(axes, min(low, high / 10), high)
         for solver, (x, y) in lines.items():
-            _draw(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
+            draw_line(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
         _time_axis(axes, panel)
         axes.set_xlabel("Time [s]", labelpad=1.5)
     ends = {s: float(np.clip(y[-1], low, high)) for lines in curves for s, (_, y) in lines.items()}
@@ -198,7 +199,7 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str) -> No
 def _row_labels(row: list[Axes], panels: Sequence[Panel], label: str, ends: Mapping[str, float]) -> None:
     """Label the y axis at the left, hide the other panels' tick labels, name the lines at the right."""
     row[0].set_ylabel(label)
-    row[0].yaxis.set_label_coords(-9.5 / _size(row[0])[0], 0.5)
+    row[0].yaxis.set_label_coords(-9.5 / size_of(row[0])[0], 0.5)
     for axes in row[1 : len(panels)]:
         axes.tick_params(labelleft=False)
     for axes in row[len(panels) :]:
@@ -210,7 +211,7 @@ def _time_axis(axes: Axes, panel: Panel) -> None:
     """Set limits and ticks; the outer tick labels stay inside, clear of the neighbouring panels."""
     longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
     axes.set_xlim(0, longest)
-    ticks = MaxNLocator(3 if _size(axes)[0] < 40 else 5, steps=[1, 2, 5, 10]).tick_values(0, longest)
+    ticks = MaxNLocator(3 if size_of(axes)[0] < 40 else 5, steps=[1, 2, 5, 10]).tick_values(0, longest)
     shown = [float(tick) for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)]
     axes.set_xticks(shown, [f"{tick:g}" for tick in shown])
     labels = axes.get_xticklabels()
@@ -234,7 +235,7 @@ def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
     low, high = min(values, default=1e-16), max(values, default=1.0)
     limits = 10.0 ** math.floor(math.log10(max(low, 1e-17))), 10.0 ** math.ceil(math.log10(min(high, 1e3)) + 0.05)
     with house_style():
-        figure, (row,) = _grid([(max(12.0, 3.3 * len(lines)), 0.0)], len(parts), Margins(left=48.0, right=4.0))
+        figure, (row,) = axes_grid([(max(12.0, 3.3 * len(lines)), 0.0)], len(parts), Margins(left=48.0, right=4.0))
         for axes, part in zip(row, parts, strict=True):
             axes.set_title(part)
             _ledger_axes(axes, [line.parts.get(part, (None, None)) for line in lines], limits)
@@ -281,13 +282,13 @@ def line_figure(
 ) -> Figure:
     """Draw named lines (with markers where they have few points) and horizontal levels, labelled at their ends."""
     with house_style():
-        figure, ((axes,),) = _grid([(38.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
+        figure, ((axes,),) = axes_grid([(38.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
         if log2_x:
             axes.set_xscale("log", base=2)
             axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         for line in lines:
             x, y = thin(line.x, line.y)
-            _draw(axes, line.name, x, y)
+            draw_line(axes, line.name, x, y)
             if x.size <= 20:
                 axes.plot(x, y, "o", ms=3, color=style_of(line.name).color, zorder=9)
         for name, level in (levels or {}).items():
@@ -307,14 +308,14 @@ def line_figure(
 def error_figure(lines: Sequence[Line], x_label: str, y_label: str) -> Figure:
     """Draw errors over step or mesh size, both logarithmic; each name carries the fitted order, with its sign."""
     with house_style():
-        figure, ((axes,),) = _grid([(52.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
+        figure, ((axes,),) = axes_grid([(52.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
         axes.set_xscale("log")
         axes.set_yscale("log")
         names, ends = {}, {}
         for line in lines:
             good = (line.y > 0) & np.isfinite(line.y)
             x, y = line.x[good], line.y[good]
-            _draw(axes, line.name, x, y)
+            draw_line(axes, line.name, x, y)
             axes.plot(x, y, "o", ms=3, color=style_of(line.name).color, zorder=9)
             order = float(np.polyfit(np.log(x), np.log(y), 1)[0]) if x.size > 1 else math.nan
             names[line.name], ends[line.name] = f"{line.name} (order {order:.2f})", float(y[np.argmax(x)])
@@ -331,7 +332,7 @@ def digits_figure(error: Array, rows: Sequence[str], columns: Sequence[str], x_l
     """Draw a map of correct digits, -log10 of the error cut to 0..16, with the number in every cell."""
     digits = np.clip(-np.log10(np.clip(np.nan_to_num(error, nan=1.0, posinf=1.0), 1e-16, 1.0)), 0, 16) + 0.0
     with house_style():
-        figure, ((axes,),) = _grid(
+        figure, ((axes,),) = axes_grid(
             [(5.0 * len(rows), 0.0)], 1, Margins(24.0, 4.0, 3.0, 11.0), min(WIDTH, 32.0 + 10.0 * len(columns))
         )
         axes.imshow(digits, cmap="cividis", vmin=0, vmax=16, aspect="auto")

@@ -78,7 +78,7 @@ def derived() -> tuple[Derived, ...]:
 
 
 def data() -> Mapping[str, Any]:
-    """Return the curves of Figure 1: spectral radius over w dt, and the square root of 1 + h that the paper draws."""
+    """Return the claims, and Figure 1: spectral radius over w dt, and the square root of 1 + h that the paper draws."""
     from validation.spectra import radii
 
     omega = np.geomspace(0.1, 100, 241)
@@ -86,7 +86,8 @@ def data() -> Mapping[str, Any]:
     for name, (alpha, delta) in SCHEMES.items():
         printed = np.sqrt(np.abs(1 + (0.5 - delta) * omega**2 / (1 + alpha * omega**2)))
         curves[name] = {"radius": _short(radii(omega, alpha, delta, 1.0)), "printed": _short(printed)}
-    return {"omega": _short(omega), "schemes": curves}
+    claims = [{key: getattr(claim, key) for key in ("id", "place", "says", "why", "condition")} for claim in CLAIMS]
+    return {"omega": _short(omega), "schemes": curves, "claims": claims}
 
 
 def _short(values: Any) -> list[float]:

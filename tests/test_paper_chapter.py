@@ -1,0 +1,91 @@
+"""The chapter of the paper and the pages' damping budgets: every figure drawn, from a results directory alone."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation import budget
+from validation.engine import run_study
+from validation.paper import PAPER
+from validation.report import FigureBlock, Table, chapter_of, figures
+from validation.results import Results
+from validation.scene import load_scene
+from validation.studies import Study, scene_study
+
+pytestmark = pytest.mark.xdist_group("paper-chapter")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """The study with shorter histories and without the slow solvers."""
+    kept = Results(tmp_path_factory.mktemp("results"))
+    scenes = [load_scene(s) if isinstance(s, str) else s for s in PAPER.scenes if s != "poisson-statics"]
+    short = [s.with_values({"time.steps": min(s.time.steps, 120)}) for s in scenes]
+    study = Study("paper", PAPER.title, PAPER.purpose, short, ("dda", "bar"), data=PAPER.data)
+    run_study(study, kept)
+    return kept
+
+
+def test_every_figure_is_written_as_svg_and_png(results: Results, tmp_path: Path) -> None:
+    written = {path.name for path in figures("paper", results, tmp_path)}
+    assert {f"figure-{n}.{kind}" for n in (1, 3, 4, 5, 6, 7, 8, 9) for kind in ("svg", "png")} <= written
+    assert "figures-3-4-damping-budget.svg" in written
+    assert all((tmp_path / name).stat().st_size > 2000 for name in written)
+
+
+def test_the_chapter_lists_every_claim_and_loads_no_solver(results: Results, tmp_path: Path) -> None:
+    blocks = chapter_of("paper")(results, results.manifest("paper"), tmp_path)
+    tables = [block for block in blocks if isinstance(block, Table)]
+    ids = [row[0] for table in tables[:2] for row in table.rows]
+    assert {f"C{i}" for i in range(1, 14)} | {"S16", "S21", "S32"} <= set(ids)
+    code = (
+        "import sys; from pathlib import Path; from validation.report import figures; "
+        "from validation.results import Results; "
+        f"figures('paper', Results({str(results.directory)!r}), Path({str(tmp_path)!r})); "
+        "print([m for m in ('dda', 'fem_reference', 'skfem', 'validation.adapters') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_scene_page_shows_its_budget_and_its_alarms(tmp_path: Path) -> None:
+    scene = load_scene("figures-5-6")
+    study = scene_study("figures-5-6")
+    kept = Results(tmp_path)
+    run_study(Study(study.name, study.title, study.purpose, [scene], ("dda", "bar", "continuum")), kept)
+    blocks = chapter_of("figures-5-6")(kept, kept.manifest("figures-5-6"), tmp_path)
+    captions = [block.caption for block in blocks if isinstance(block, FigureBlock)]
+    assert any("Damping budget" in caption and "1.052 to 1.102 times" in caption for caption in captions)
+    said = [block.caption for block in blocks if isinstance(block, Table)]
+    assert all(
+        any(kind in text for text in said) for kind in ("agreement by damping", "hidden tension", "contact ringing")
+    )
+
+
+def test_a_budget_holds_curves_and_limits() -> None:
+    cases = load_scene("figures-3-4").expand()
+    (found,) = budget.budgets(cases)
+    assert found["steps"] == [0.001, 0.002, 0.01]
+    assert found["limits"]["real roots"] * 344.5612 == pytest.approx(4.0, rel=2e-3)
+    assert found["real roots at"] == pytest.approx(4.0, rel=2e-3)
+    assert found["limits"]["wave transit"] == pytest.approx(3.29e-3, abs=5e-6)
+    assert found["floor"] == pytest.approx(1.0515, abs=5e-5)
+    dt, first = np.array(found["dt"]), found["modes"]["first axial"]
+    i = int(np.argmin(np.abs(dt - 0.002)))
+    assert first["total"][i] == pytest.approx(344.5612 * dt[i] / 4, rel=0.2)
+    assert first["total"][-1] is None and first["kinetic"][0] == 0
+
+
+def test_a_budget_splits_damping_and_keeps_a_rate() -> None:
+    light = load_scene("figure-9").expand()[1]
+    (found,) = budget.budgets([light])
+    assert found["limits"]["overdamped below"] == pytest.approx(2.93e-5, rel=2e-3)
+    rate = light.with_values({"time.gg_rate": 20.0})
+    (kept,) = budget.budgets([rate])
+    first = kept["modes"]["first axial"]
+    assert first["kinetic"][0] == pytest.approx(20.0 / (2 * 344.5612), rel=1e-3)  # c / (2 w) at small dt
+    assert "overdamped below" not in kept["limits"]
+    assert len(list(budget.budgets(load_scene("figure-9").expand()))) == 4
