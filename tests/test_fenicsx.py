@@ -161,7 +161,7 @@ FEM_FAULTS = [
 GATES = TWO_CODES.gates()
 CASES = TWO_CODES.cases()
 EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
-FEW = "block.poisson=0.25,block.hypothesis=plane strain"
+FEW = "block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent"
 
 
 def failed(finished: Finished) -> set[str]:

@@ -171,9 +171,10 @@ def _measure(solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[st
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     scene, measured = case.scene, dict[str, Any]()
     if "history" in case.measures and run.history is not None and run.outcome is Outcome.COMPLETED:
-        static = _reported(solver.static, scene, {}, failed)
+        static = _reported(solver.static, scene, None, failed)
+        assumed = solver.assumed_static(scene) if static is None else static
         modes = _reported(solver.modes, scene, (), failed) if "modes" in case.measures else ()
-        seen = metrics.Measurable(run.history, scene.time.step, static, modes)
+        seen = metrics.Measurable(run.history, scene.time.step, assumed, modes, static is not None)
         measured = metrics.solo(seen, "modes" in case.measures)
     if "stability" in case.measures and run.outcome not in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
         measured |= stability.measure(solver, scene, run)

@@ -119,6 +119,9 @@ def finish(
     known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
     # What was not installed then may be installed now, and what raised may have wanted memory.
     known = {key: row for key, row in known.items() if row.outcome not in (Outcome.NOT_RUN, Outcome.RAISED)}
+    for case, key in keyed:
+        if not case.make_solver().cached:
+            known.pop(key, None)
     pending = {key: case for case, key in keyed if key not in known}
     done = len(keyed) - len(pending)
     for row, history in _executed(pending, study, jobs, executor):

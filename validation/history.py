@@ -31,6 +31,7 @@ class Outcome(enum.StrEnum):
     MISPREDICTED = "unstable, not as predicted"
     NOT_A_NUMBER = "not a number"
     WRONG_SHAPE = "wrong shape"
+    WRONG_UNITS = "wrong units"
     RAISED = "raised"
     TIMEOUT = "timeout"
     REFUSED = "refused"
@@ -50,6 +51,7 @@ _SENTENCES = {
     Outcome.MISPREDICTED: "The step lies beyond the limit of the scheme and the numbers grew at another rate.",
     Outcome.NOT_A_NUMBER: "The history holds values that are not numbers.",
     Outcome.WRONG_SHAPE: "The history does not hold one value for each step of the scene.",
+    Outcome.WRONG_UNITS: "The history is in other units or has another sign.",
     Outcome.RAISED: "The solver raised an error.",
     Outcome.TIMEOUT: "The solver did not finish within its time limit.",
     Outcome.REFUSED: "The scene asks for what the solver must refuse.",

@@ -36,6 +36,7 @@ class Measurable:
     step: float  # s
     static: Mapping[str, float]
     modes: tuple[Mode, ...]
+    static_reported: bool = True  # otherwise `static` is another solver's, and settling is measured from that
 
 
 def largest(x: Array) -> float:
@@ -95,7 +96,7 @@ def _solo_quantity(name: str, m: Measurable) -> dict[str, Value]:
         return dict.fromkeys((f"{name}.{part}" for part in names), NOT_REPORTED)
     static = m.static.get(QUANTITIES[name])
     found: dict[str, Value] = {
-        "static": NOT_REPORTED if static is None else static,
+        "static": NOT_REPORTED if static is None or not m.static_reported else static,
         "final": float(x[-1]),
         "minimum": float(np.min(x)),
     }

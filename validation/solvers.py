@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
+import importlib.metadata
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -32,6 +34,7 @@ class Solver:
     sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
     unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
+    cached: bool = True  # whether a finished case is kept for the next run
 
     def option(self, text: str) -> Solver:
         """Return this solver with the option that ``name:option`` gives, such as a number of ranks.
@@ -59,6 +62,10 @@ class Solver:
         """Return the static solution, column name to value."""
         raise NotReported(f"{self.name} reports no static solution")
 
+    def assumed_static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution that settling is measured from where `static` is not reported."""
+        return {}
+
     def modes(self, scene: Scene) -> tuple[Mode, ...]:
         """Return the modes, the one with the largest share of the static response first."""
         raise NotReported(f"{self.name} reports no modes")
@@ -83,13 +90,35 @@ DISTRIBUTED = ("fenicsx",)  # solvers whose option is a number of ranks
 REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
 
 
+GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
+
+
+@functools.cache
+def entry_points() -> Mapping[str, str]:
+    """Return the solvers that installed packages bring, name to ``module:attribute``."""
+    found = importlib.metadata.entry_points(group=GROUP)
+    return {point.name: point.value for point in sorted(found, key=lambda p: p.name) if point.name not in BUILT_IN}
+
+
 def solver_names() -> list[str]:
-    """Return the names of all solvers."""
-    return list(BUILT_IN)
+    """Return the names of all solvers: the built-in ones and those of installed packages."""
+    return [*BUILT_IN, *entry_points()]
+
+
+def is_solver(name: str) -> bool:
+    """Whether a name is a solver's, with or without an option, or names one as ``module:attribute``."""
+    plain, _, attribute = name.partition(":")
+    return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
+
+
+def _is_target(module: str, attribute: str) -> bool:
+    return all(part.isidentifier() for text in (module, attribute) for part in text.split("."))
 
 
 def get_solver(name: str) -> Solver:
-    """Return a solver by name, importing its adapter now; ``name:option`` gives it an option.
+    """Return a solver by name, importing its adapter now.
+
+    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own.
 
     Raises
     ------
@@ -97,8 +126,12 @@ def get_solver(name: str) -> Solver:
         There is no such solver, or it does not take the option.
     """
     plain, colon, option = name.partition(":")
+    if plain not in BUILT_IN and is_solver(name):
+        from validation.adapters_user import UserSolver
+
+        return UserSolver(name, entry_points().get(name, name))
     if plain not in BUILT_IN:
-        raise SceneError(f"solver: must be one of {', '.join(solver_names())}, got {name!r}")
+        raise SceneError(f"solver: must be one of {', '.join(solver_names())}, or module:attribute, got {name!r}")
     module, _, attribute = BUILT_IN[plain].partition(":")
     solver: Solver = getattr(importlib.import_module(module), attribute)()
     return solver.option(option) if colon else solver

@@ -13,7 +13,7 @@ from validation.gates import Gate
 from validation.metrics import METRICS, PAIRS
 from validation.results import Value
 from validation.scene import Scene, SceneError, load_scene, scene_names
-from validation.solvers import get_solver, solver_names
+from validation.solvers import get_solver, is_solver, solver_names
 
 if TYPE_CHECKING:
     from validation.engine import Finished
@@ -178,7 +178,7 @@ def check_words(scene: Scene, source: str) -> None:
         A solver or a metric is unknown, a column is one that none of the solvers has, or a gate's pair does not fit.
     """
     for name in scene.run.solvers:
-        if name.removesuffix(FULL).partition(":")[0] not in solver_names():
+        if not is_solver(name.removesuffix(FULL)):
             raise SceneError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {name!r}")
     known = [get_solver(name.removesuffix(FULL)).columns() for name in scene.run.solvers]
     served = dict.fromkeys(column for columns in known for column in columns or scene.run.columns)

@@ -1,4 +1,4 @@
-"""A worker process: one JSON object a line in, one a line out, kept between requests."""
+"""A worker process: one JSON object a line in, one a line out, kept between requests, killed where it hangs."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import atexit
 import contextlib
 import json
 import os
+import select
+import signal
 import subprocess
+import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 TAIL = 3  # lines of a dead worker's standard error that are worth telling
@@ -18,22 +21,33 @@ class WorkerDied(RuntimeError):
     """The worker ended before it answered; the text holds the last lines of its standard error."""
 
 
+class WorkerHangs(RuntimeError):
+    """The worker did not answer within its time limit; it has been killed."""
+
+
 class Worker:
-    """A process that answers requests until this one ends."""
+    """A process, with whatever processes it starts, that answers requests until this one ends."""
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the worker
         self._process = subprocess.Popen(
-            list(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=dict(environment)
+            list(command),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=dict(environment),
+            start_new_session=True,
         )
 
-    def ask(self, request: Mapping[str, Any]) -> dict[str, Any]:
-        """Send a request and wait for its answer.
+    def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
+        """Send a request and wait for its answer, at most `limit` seconds.
 
         Raises
         ------
         WorkerDied
             The process ended without an answer.
+        WorkerHangs
+            There was no answer within the limit.
         """
         given, taken = self._process.stdin, self._process.stdout
         line = b""
@@ -41,9 +55,11 @@ class Worker:
             with contextlib.suppress(BrokenPipeError):
                 given.write(json.dumps(request).encode() + b"\n")
                 given.flush()
+                if not select.select([taken], [], [], limit)[0]:
+                    raise WorkerHangs(f"no answer within {limit:g} s")
                 line = taken.readline()
         if not line:
-            raise WorkerDied(f"the worker ended with status {self._process.wait()}: {self._tail()}")
+            raise WorkerDied(f"the process ended with status {self._process.wait()}: {self._tail()}")
         return dict(json.loads(line))
 
     def _tail(self) -> str:
@@ -60,9 +76,14 @@ class Worker:
         try:
             self._process.wait(timeout=5)
         except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+            self.kill()
         self._errors.close()
+
+    def kill(self) -> None:
+        """End the process and all that it started, at once."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
 
 
 _kept: dict[tuple[int, tuple[str, ...]], Worker] = {}
@@ -75,19 +96,35 @@ def close_all() -> None:
         _kept.pop(key).close()
 
 
-def ask(command: Sequence[str], environment: Mapping[str, str], request: Mapping[str, Any]) -> dict[str, Any]:
+def ask(
+    command: Sequence[str], environment: Mapping[str, str], request: Mapping[str, Any], limit: float | None = None
+) -> dict[str, Any]:
     """Ask the worker of a command, starting it where this process has none yet.
 
     Raises
     ------
-    WorkerDied
-        The worker ended without an answer; the next request starts another.
+    WorkerDied, WorkerHangs
+        There is no answer; the next request starts another worker.
     """
     key = (os.getpid(), tuple(command))  # a forked process must not share its parent's pipes
     if key not in _kept:
         _kept[key] = Worker(command, environment)
     try:
-        return _kept[key].ask(request)
+        return _kept[key].ask(request, limit)
     except BaseException:
-        _kept.pop(key).close()  # dead, or interrupted with an answer on its way
+        worker = _kept.pop(key)  # dead, hanging, or interrupted with an answer on its way
+        worker.kill()
+        worker.close()
         raise
+
+
+def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
+    """Answer requests from standard input until it ends; what else is printed goes to standard error."""
+    requests, answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    for line in requests:
+        answers.write(json.dumps(answer(json.loads(line))) + "\n")
+        answers.flush()

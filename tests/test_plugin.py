@@ -1,0 +1,128 @@
+"""Users' solvers: by name, by entry point, through the gates; what is wrong with one is named."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, cli
+
+from validation.adapters_user import VARIABLE, UserSolver
+from validation.cases import Case, attempt, check, execute
+from validation.history import Outcome
+from validation.results import Results
+from validation.scene import Scene, SceneError, load_scene
+from validation.solvers import get_solver, is_solver
+from validation.studies import scene_study
+
+GATES = "--pyargs validation -m validation -q -rs -p no:cacheprovider -k figures-3-4"
+HERE = Path(__file__).parent / "user_solvers"
+
+
+@pytest.fixture
+def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+    monkeypatch.syspath_prepend(str(HERE))
+    return load_scene(scene_file)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "outcome", "words"),
+    [
+        ("solve", Outcome.COMPLETED, ""),
+        ("table", Outcome.COMPLETED, ""),
+        ("Reporting", Outcome.COMPLETED, ""),
+        ("slack", Outcome.COMPLETED, ""),
+        ("raises", Outcome.RAISED, "ZeroDivisionError: division by zero"),
+        ("exits", Outcome.RAISED, "SystemExit: 3"),
+        ("crashes", Outcome.RAISED, "crashed: the process ended with status 139: segmentation fault"),
+        ("absent", Outcome.RAISED, "AttributeError: module 'my_solver' has no attribute 'absent'"),
+        ("nothing", Outcome.RAISED, "must return a History, a Run, a mapping of columns"),
+        ("not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 4"),
+        ("short", Outcome.WRONG_SHAPE, "displacement has shape (49,), not (50,)"),
+        ("with_step_zero", Outcome.WRONG_SHAPE, "step 0, the state at rest, is not reported"),
+        ("late", Outcome.WRONG_SHAPE, "time begins [0.004 0.006], not [0.002 0.004] s"),
+        ("pressure_only", Outcome.WRONG_SHAPE, "no column displacement, got contact_pressure"),
+        ("millimetres", Outcome.WRONG_UNITS, "displacement is 1000 times what is expected in SI, mm?"),
+        ("megapascals", Outcome.WRONG_UNITS, "contact_pressure is 1e-06 times what is expected in SI, MPa?"),
+        ("force", Outcome.WRONG_UNITS, "2 times what is expected, the length of the base: a force?"),
+        ("upwards", Outcome.WRONG_UNITS, "wrong sign: displacement is the negative"),
+        ("milliseconds", Outcome.WRONG_UNITS, "time is 1000 times what is expected in SI, milliseconds?"),
+    ],
+)
+def test_what_a_solver_does_is_named(scene: Scene, attribute: str, outcome: Outcome, words: str) -> None:
+    run = check(attempt(get_solver(f"my_solver:{attribute}"), scene, False), scene)
+    assert run.outcome is outcome, run.notes
+    assert words in "; ".join(run.notes)
+
+
+def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "1.5")
+    run = attempt(get_solver("my_solver:hangs"), scene, False)
+    assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("hangs: no history within 1.5 s",))
+    shown = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    assert "time.sleep(60)" not in shown and "my_solver:hangs" not in shown
+
+
+def test_what_is_not_reported_is_not_made_up(scene: Scene) -> None:
+    row, _ = execute(Case(scene, "my_solver:displacement_only"), "key", "study")
+    assert row.metrics["displacement.static"] == row.metrics["mode1.damping"] == "not reported"
+    assert row.metrics["pressure.final"] == "not reported"
+    assert row.metrics["displacement.settling_step"] == 44.0  # measured from the block's own static value
+    row, _ = execute(Case(scene, "my_solver:Reporting"), "key", "study")
+    assert row.metrics["displacement.static"] == -0.01
+
+
+def test_names(scene: Scene) -> None:
+    assert isinstance(get_solver("my_solver:solve"), UserSolver)
+    assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
+    with pytest.raises(SceneError, match=r"must be one of dda, .* or module:attribute, got 'femm:2'"):
+        get_solver("femm:2")
+
+
+def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
+    from validation.engine import run_study
+
+    path = tmp_path / "own.toml"
+    path.write_text(SCENE + '[run]\nsolvers = ["my_solver:solve", "dda"]\n')
+    seen: list[str] = []
+    for _ in range(2):
+        run_study(scene_study(str(path)), Results(tmp_path / "r"), progress=lambda d, t, label: seen.append(label))
+    assert sorted(seen) == ["own dda", "own my_solver:solve", "own my_solver:solve"]
+
+
+def test_an_entry_point_is_a_name_everywhere(scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "site/my_package-1.0.dist-info"
+    package.mkdir(parents=True)
+    (package / "METADATA").write_text("Metadata-Version: 2.1\nName: my-package\nVersion: 1.0\n")
+    (package / "entry_points.txt").write_text("[dda_validation.solvers]\nmine = my_solver:solve\n")
+    path = os.pathsep.join([str(package.parent), str(HERE), os.environ.get("PYTHONPATH", "")])
+    monkeypatch.setenv("PYTHONPATH", path)
+    assert ", mine" in cli("list").stdout
+    done = cli("solve", scene_file, "--solver", "mine", "--csv", tmp_path / "mine.csv")
+    assert done.returncode == 0 and (tmp_path / "mine.csv").exists()
+
+
+def through_the_gates(attribute: str, *options: str) -> str:
+    """Run the gates of Figures 3 and 4 on a user's solver, as the user does, and return what pytest says."""
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *GATES.split(), "--dda-solver", f"my_solver:{attribute}", *options],
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=HERE,
+    )
+    return done.stdout + done.stderr
+
+
+def test_a_sound_solver_passes_every_gate_that_applies() -> None:
+    shown = through_the_gates("solve")
+    assert "18 passed" in shown and "failed" not in shown
+
+
+def test_a_broken_solver_fails_by_name() -> None:
+    shown = through_the_gates("slack")
+    assert "failed" in shown and "is outside [" in shown
+    shown = through_the_gates("hangs", "--dda-timeout", "1")
+    assert "18 failed" in shown and "hangs: no history within 1 s" in shown
+    assert "hung in 2 cases already and is not tried again" in shown
