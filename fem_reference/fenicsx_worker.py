@@ -8,7 +8,8 @@ line from standard input and answers each with one line of JSON; it ends where i
     mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
 
 A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness,
-shear_stiffness, pressure, degree, foundation, patch_width, elements (or points and cells of a mesh file), alpha,
+shear_stiffness, pressure, degree, foundation, patch_width, elements and
+cells ("quadrilaterals" or "triangles"; or points and cells of a mesh file), alpha,
 delta, gg, step, start, steps, columns. An answer holds time, columns, static, unknowns, nonzeros, factorisations,
 solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad input),
 "inapplicable" or "raised" with a sentence.
@@ -80,6 +81,8 @@ def nodes_and_cells(request: Request, outline: Outline) -> tuple[np.ndarray, np.
     a, b, c, d = outline.corners
     points = (1 - up) * ((1 - right) * a + right * b) + up * ((1 - right) * d + right * c)
     first = (np.arange(n) + (n + 1) * np.arange(n)[:, None]).reshape(-1, 1)
+    if request["cells"] == "triangles":  # each square cut from its lower left to its upper right corner
+        return points, np.vstack([first + np.array([0, 1, n + 2]), first + np.array([0, n + 2, n + 1])])
     return points, first + np.array([0, 1, n + 1, n + 2])
 
 

@@ -91,13 +91,14 @@ def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
     "values",
     [
         {"fem.degree": 1, "contact.shear_stiffness": 3e8},
+        {"fem.cells": "triangles", "block.poisson": 0.3, "block.hypothesis": "plane strain"},
         {"fem.foundation": "corner", "block.poisson": 0.3},
         {"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.5}},
         {"block.vertices": INCLINED, "block.base": 1, "block.top": 3, "block.poisson": 0.2},
         {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 1e-5, "time.start": "consistent"},
         {"contact.stiffness": 1e17, "block.hypothesis": "plane strain", "block.poisson": 0.45},
     ],
-    ids=["linear", "corner", "patch", "inclined", "explicit", "stiff"],
+    ids=["linear", "triangles", "corner", "patch", "inclined", "explicit", "stiff"],
 )
 def test_the_two_codes_agree(scene: Scene, values: dict[str, object]) -> None:
     assert 0 < error(scene.with_values(values)) <= SAME

@@ -95,6 +95,8 @@ class FEniCSx(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which load this solver does not take."""
+        if scene.fem.foundation == "nodes":
+            return "it takes springs spread over edges or at the corners, and none at nodes"
         return None if scene.load.centred else "it takes a centred pressure and no other load"
 
     def missing(self) -> str | None:
@@ -173,6 +175,7 @@ def request(scene: Scene) -> dict[str, Any]:
         "foundation": f.foundation,
         "patch_width": f.patch_width,
         "elements": f.per_side,
+        "cells": f.cells,
         "alpha": t.alpha,
         "delta": t.delta,
         "gg": t.discount,
