@@ -15,6 +15,7 @@ import numpy as np
 
 from validation.adapters import DDA, _no_fields, pulls
 from validation.history import DISPLACEMENT, PRESSURE, Array, History, Mode, Outcome, Run
+from validation.metrics import norm
 from validation.scene import Scene
 from validation.solvers import NotReported, Solver
 from validation.worker import WorkerDied, WorkerHangs, ask
@@ -105,10 +106,10 @@ def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
 
 def _factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
     """Say by which known factor a column differs from what is expected, if by one."""
-    sizes = float(np.linalg.norm(values)), float(np.linalg.norm(sound))
+    sizes = norm(values), norm(sound)
     if min(sizes) == 0 or not np.isfinite(sizes).all():
         return None
-    alike = float(values @ sound) / sizes[0] / sizes[1]
+    alike = float((values / sizes[0]) @ (sound / sizes[1]))
     if abs(alike) < ALIKE:
         return None
     ratio = sizes[0] / sizes[1]
