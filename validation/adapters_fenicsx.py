@@ -85,6 +85,10 @@ class FEniCSx(Solver):
         self.ranks = 1
         self._answer: tuple[str, dict[str, Any]] | None = None
 
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return COLUMNS
+
     def option(self, text: str) -> Solver:
         """Return the solver for ``fenicsx:N``, N ranks."""
         if not text.isdecimal() or int(text) < 1:
