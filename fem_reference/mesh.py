@@ -5,6 +5,8 @@ Coordinates are relative to the start of the base, so that a block far from the 
 
 from __future__ import annotations
 
+import io
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 
 import meshio
@@ -117,12 +119,15 @@ def from_file(problem: Problem) -> TaggedMesh:
 
 
 def _read(path: str) -> Mesh:
+    said = io.StringIO()  # meshio prints and exits where no reader of it takes the file
     try:
-        data = meshio.read(path)
-        data.points = data.points[:, :2]
-        mesh = from_meshio(data)
-    except (OSError, KeyError, NotImplementedError, meshio.ReadError, SystemExit) as error:
-        raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {error}") from error
+        with redirect_stdout(said), redirect_stderr(said):
+            data = meshio.read(path)
+            data.points = data.points[:, :2]
+            mesh = from_meshio(data)
+    except (Exception, SystemExit) as error:  # its readers raise anything at a file that is not whole
+        words = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+        raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {words}") from error
     if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
         raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {type(mesh).__name__} in {path!r}")
     return mesh

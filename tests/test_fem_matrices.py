@@ -1,5 +1,7 @@
 """The finite-element matrices against the affine block, on every kind of mesh."""
 
+from pathlib import Path
+
 import meshio
 import numpy as np
 import pytest
@@ -224,6 +226,16 @@ def test_mesh_file_that_is_not_the_block_is_refused(tmp_path):
         build(make(mesh=str(tmp_path / "short.msh")))
     with pytest.raises(ValueError, match="mesh: must be a readable"):
         build(make(mesh=str(tmp_path / "absent.msh")))
+
+
+@pytest.mark.parametrize("text", ["garbage", "", None], ids=["garbage", "empty", "cut"])
+def test_mesh_file_that_is_not_whole_is_refused_in_one_sentence(text, tmp_path, capfd):
+    grid = np.linspace(0, 1, 4)
+    file = Path(write_mesh(tmp_path / "grid.msh", make(), MeshQuad.init_tensor(grid, grid)))
+    file.write_text(file.read_text()[:300] if text is None else text)
+    with pytest.raises(ValueError, match=r"mesh: must be a readable mesh of triangles or quadrilaterals, .*grid\.msh"):
+        build(make(mesh=str(file)))
+    assert capfd.readouterr() == ("", "")
 
 
 def test_polygon_without_mesh_file_names_the_cure():
