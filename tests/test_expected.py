@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from validation import expected
+from validation.core import CORE
 from validation.scene import Scene, load_scene
 
 BASE = load_scene("poisson-statics").with_values({"contact.stiffness": 1e9})
@@ -76,3 +77,8 @@ def test_numbers_of_the_independent_computation() -> None:
         assert expected.damping_ratio(
             light.with_values({"time.step": dt}), expected.dda_frequency(light)
         ) == pytest.approx(xi, rel=5e-3)
+
+
+def test_a_number_of_an_independent_program_is_not_called_exact() -> None:
+    gates = [gate for gate in CORE.gates() if "independent program" in gate.reason]
+    assert gates and {gate.reference_kind for gate in gates} == {"other code"}
