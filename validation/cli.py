@@ -85,6 +85,9 @@ def run(
     full: FullOption = False,
     ranks: RanksOption = 1,
     jobs: Annotated[int | None, typer.Option(help="Worker processes; default: the machine's cores.", min=1)] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Run on the workers of this Dask scheduler instead.", metavar="tcp://HOST:PORT")
+    ] = None,
     require: Annotated[
         list[str] | None, typer.Option(help="Fail if gates of this solver were NOT RUN.", metavar="NAME")
     ] = None,
@@ -95,6 +98,7 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
+    from validation.cluster import executor
     from validation.engine import run_study
     from validation.results import Results
     from validation.scene import parse_assignment
@@ -102,10 +106,13 @@ def run(
 
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, verdicts = Results(results), []
-    for study in studies:
-        with _progress(study.name) as progress:
-            workers = jobs or os.cpu_count() or 1
-            verdicts += run_study(study, kept, full=full, ranks=ranks, jobs=workers, progress=progress)
+    workers = jobs or os.cpu_count() or 1
+    with executor(scheduler) as pool:
+        for study in studies:
+            with _progress(study.name) as progress:
+                verdicts += run_study(
+                    study, kept, full=full, ranks=ranks, jobs=workers, executor=pool, progress=progress
+                )
     names = [study.name for study in studies]
     _print_verdicts(verdicts, kept, names)
     refused = _print_failures(kept, names)

@@ -1,0 +1,99 @@
+"""Sweeps over processes and over a Dask cluster: the same rows, streamed into the same results directory."""
+
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from validation import cluster
+from validation.cli import app
+from validation.engine import run_study
+from validation.results import Results
+from validation.scene import SceneError, load_scene
+from validation.studies import Study
+
+STUDY = Study(
+    "sweep",
+    "Sweep",
+    "A sweep.",
+    [load_scene("figures-5-6")],
+    ("dda", "bar"),
+    {"time.step": [1e-3, 2e-3], "time.gg": [1.0, 0.98]},
+)
+
+
+def rows(directory: Path) -> dict:
+    """Return the rows without what a clock or an address decides."""
+    return {key: replace(row, seconds={}) for key, row in Results(directory).rows().items()}
+
+
+def same_histories(one: Path, other: Path) -> bool:
+    keys = rows(one)
+    return all(
+        np.array_equal(values, Results(other).history(key).columns[name])
+        for key in keys
+        for name, values in Results(one).history(key).columns.items()
+    )
+
+
+def test_any_executor_gives_the_same_rows(tmp_path):
+    run_study(STUDY, Results(tmp_path / "serial"))
+    with ProcessPoolExecutor(2) as pool:
+        run_study(STUDY, Results(tmp_path / "pool"), executor=pool)
+    assert rows(tmp_path / "serial") == rows(tmp_path / "pool")
+    assert len(rows(tmp_path / "serial")) == len(STUDY.cases())
+    assert same_histories(tmp_path / "serial", tmp_path / "pool")
+
+
+def test_without_a_scheduler_there_is_no_executor():
+    with cluster.executor(None) as pool:
+        assert pool is None
+
+
+def test_an_absent_package_is_named(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
+    with pytest.raises(SceneError, match=r"^--scheduler: needs .*\[cluster\]"), cluster.executor("tcp://127.0.0.1:1"):
+        pass
+
+
+@pytest.mark.filterwarnings("ignore")  # another package's own
+def test_a_dask_cluster_gives_the_same_rows(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    run_study(STUDY, Results(tmp_path / "serial"))
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as workers:
+        address = workers.scheduler_address
+        with cluster.executor(address) as pool:
+            run_study(STUDY, Results(tmp_path / "dask"), executor=pool)
+        arguments = ["run", "poisson-statics", "--scheduler", address, "--results", str(tmp_path / "cli")]
+        assert CliRunner().invoke(app, arguments).exit_code == 0
+    assert rows(tmp_path / "serial") == rows(tmp_path / "dask")
+    assert same_histories(tmp_path / "serial", tmp_path / "dask")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_lost_worker_costs_its_row_only(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    workers = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    lost = []
+
+    def lose(done: int, total: int, label: str) -> None:
+        if not lost:
+            lost.append(next(iter(workers.workers.values())).pid)
+            __import__("os").kill(lost[0], 9)
+
+    with workers, cluster.executor(workers.scheduler_address) as pool:
+        run_study(STUDY, Results(tmp_path), executor=pool, progress=lose)
+    assert lost
+    assert all(row.outcome == "completed" for row in rows(tmp_path).values())
+    assert len(rows(tmp_path)) == len(STUDY.cases())
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_nobody_at_the_address_is_said(monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "PATIENCE", "1s")
+    with pytest.raises(SceneError, match=r"^--scheduler: .*running"), cluster.executor("tcp://127.0.0.1:1"):
+        pass
