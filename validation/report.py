@@ -22,9 +22,11 @@ from validation.results import Results
 from validation.scene import SceneError
 
 TEMPLATE = Path(__file__).with_name("report.typ")
+# study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
 CHAPTERS: dict[str, str] = {
     "paper": "validation.chapters_paper:paper_chapter",
-}  # study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
+    "subblocks": "validation.chapters_subblocks:chapter",
+}
 DEFAULT_CHAPTER = "validation.chapters:scene_chapter"
 PIXELS_PER_INCH = 200.0
 
