@@ -193,7 +193,7 @@ def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
     """1 - x of one mode at steps 1 to `steps`, keeping the digits of small values."""
     s, (y1, y2) = spectrum(omega, scheme), first_steps(omega, scheme)
     x1, rise, k = 1 - y1, y1 - y2, np.arange(steps)
-    if s.trace[0] < 0 or abs(s.discriminant[0]) < (CLOSE * s.trace[0]) ** 2:
+    if s.trace[0] < 0 or abs(s.discriminant[0]) <= (CLOSE * s.trace[0]) ** 2:
         return np.asarray(1 - _chunk(omega, np.ones((1, 1)), scheme, steps)[0], dtype=np.float64)
     gap = np.sqrt(np.abs(s.discriminant))
     if s.discriminant[0] < 0:
@@ -210,7 +210,7 @@ def _chunk(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
     """Sum over modes of weights * x."""
     s, h, (y1, y2) = spectrum(omega, scheme), h_of(omega, scheme), first_steps(omega, scheme)
     pair = s.discriminant < 0
-    close = ~pair & (s.discriminant < (CLOSE * s.trace) ** 2)
+    close = ~pair & (s.discriminant <= (CLOSE * s.trace) ** 2)
     total = np.zeros((len(weights), steps))
     for chosen, response in ((pair, _turning), (~pair & ~close, _decaying), (close, _confluent)):
         if np.any(chosen):
@@ -245,6 +245,9 @@ def _confluent(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, sc
     total = np.zeros((len(weights), steps))
     log, sign = _one_minus(distance)
     for i in range(len(log)):
+        if larger[i] == 0:  # no damping is faster: at rest from the third step on
+            total[:, :2] += weights[:, [i]] * np.array([x1[i], x1[i] + rise[i]])[:steps]
+            continue
         quotient = k / larger[i]
         if gap[i] != 0:
             quotient = -np.expm1(k * np.log1p(-gap[i] / larger[i])) / gap[i]

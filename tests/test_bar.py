@@ -205,3 +205,12 @@ def test_where_the_bar_is_exact():
 def test_bar_does_not_load_the_finite_elements():
     code = "import sys, fem_reference.bar; sys.exit('skfem' in sys.modules or 'meshio' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_mode_that_stops_at_once_has_no_power():
+    """At gg = 0 and Omega to infinity both roots of constant acceleration are zero: static from the third step on."""
+    bar = Bar(height=1.3, width=0.7, density=2100.0, young=4e7, base_stiffness=3e8, pressure=2e5)
+    result = bar.solve(Scheme(0.5, 1.0, 0.0, 1e9), 7)
+    for name, values in result.columns.items():
+        assert np.all(np.isfinite(values)) and values[2:] == pytest.approx(bar.static()[name], rel=1e-13)
+    assert np.isfinite(result.estimate)

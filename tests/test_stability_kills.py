@@ -1,11 +1,11 @@
-"""The gates on digits and growth are bitten: the corners of `stability` x seeded faults."""
+"""The gates on digits, growth and stiff contacts are bitten by seeded faults, and their chapters are written."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.linalg
-from test_kill_matrix import Fault, Overlay, thousandth, times, with_scheme
+from test_kill_matrix import Fault, Overlay, late, thousandth, times, with_scheme
 
 import dda
 import dda.gap_form
@@ -15,12 +15,11 @@ import fem_reference.bar
 import fem_reference.newmark
 import fem_reference.solver
 from dda.natural_modes import ModalForm
-from validation.engine import Finished, evaluate, finish
+from validation.engine import Finished, evaluate, finish, run_study
 from validation.gates import Status
+from validation.report import build, figures
 from validation.results import Results
-from validation.studies import get_study
-
-STUDY = get_study("stability-small")
+from validation.studies import Study, get_study
 
 
 def printed_recursion(sound):
@@ -86,22 +85,33 @@ FAULTS = [
 ]
 
 
-def failed(finished: Finished) -> set[str]:
-    return {gate.id for gate in STUDY.gates() if evaluate(gate, finished).status is Status.FAIL}
+CONTACT_FAULTS = [
+    Fault("dda: delta 0.1 % high", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)),
+    Fault("dda: one step late", ("dda",), dda.solution, "modal_histories", late),
+    Fault("dda: an offset", ("dda",), dda.solution, "bound_overflow", offset),
+]
 
 
-def test_every_gate_on_digits_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
-    cases = STUDY.cases()
-    sound = finish(cases, STUDY, Results(tmp_path / "sound"))
-    assert not failed(sound)
+def failed(study: Study, finished: Finished) -> set[str]:
+    return {gate.id for gate in study.gates() if evaluate(gate, finished).status is Status.FAIL}
+
+
+@pytest.mark.parametrize(("name", "faults"), [("stability-small", FAULTS), ("stiff-contact", CONTACT_FAULTS)])
+def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, faults: list[Fault], tmp_path: Path) -> None:
+    study = get_study(name)
+    cases, results = study.cases(), Results(tmp_path / "sound")
+    assert {verdict.status for verdict in run_study(study, results)} == {Status.PASS}
+    sound = finish(cases, study, results)
     kills: dict[str, set[str]] = {}
-    for number, fault in enumerate(FAULTS):
+    for number, fault in enumerate(faults):
         reached = [case for case in cases if case.solver in fault.solvers]
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
-            faulty = finish(reached, STUDY, Overlay(tmp_path / str(number), sound.results))
-        kills[fault.name] = failed(Finished(sound.rows | faulty.rows, faulty.results))
+            faulty = finish(reached, study, Overlay(tmp_path / str(number), results))
+        kills[fault.name] = failed(study, Finished(sound.rows | faulty.rows, faulty.results))
         print(f"{len(kills[fault.name]):>4}  {fault.name}")
     assert all(kills.values()), f"faults that no gate sees: {[name for name, killed in kills.items() if not killed]}"
-    unbitten = sorted({gate.id for gate in STUDY.gates()} - set().union(*kills.values()))
+    unbitten = sorted({gate.id for gate in study.gates()} - set().union(*kills.values()))
     assert not unbitten, f"gates that no fault bites: {unbitten}"
+    assert build(results, tmp_path / "report.pdf").stat().st_size > 20_000
+    assert all(path.exists() for path in figures(name, results, tmp_path / "figures"))

@@ -19,6 +19,7 @@ from validation.results import Value
 
 UNDEFINED, NOT_REPORTED = "undefined", "not reported"
 SETTLED = 0.01  # of the static value
+FINELY = 1e-4  # of the static value: a contact that rings shows here, long after it has settled to one per cent
 NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
 QUANTITIES = {
     "displacement": DISPLACEMENT,
@@ -91,7 +92,7 @@ def first_peak(x: Array, static: float) -> int | None:
 def _solo_quantity(name: str, m: Measurable) -> dict[str, Value]:
     """Metrics of one column of one run."""
     x = m.history.columns.get(QUANTITIES[name])
-    names = ("static", "final", "peak", "peak_time", "settling_step", "minimum")
+    names = ("static", "final", "peak", "peak_time", "settling_step", "fine_settling_step", "minimum")
     if x is None:
         return dict.fromkeys((f"{name}.{part}" for part in names), NOT_REPORTED)
     static = m.static.get(QUANTITIES[name])
@@ -104,6 +105,7 @@ def _solo_quantity(name: str, m: Measurable) -> dict[str, Value]:
     found["peak"] = UNDEFINED if peak is None else float(x[peak])
     found["peak_time"] = UNDEFINED if peak is None else float(m.history.time[peak])
     found["settling_step"] = NOT_REPORTED if static is None else settling_step(x, static)
+    found["fine_settling_step"] = NOT_REPORTED if static is None else settling_step(x, static, FINELY)
     return {f"{name}.{part}": value for part, value in found.items()}
 
 

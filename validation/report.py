@@ -26,6 +26,9 @@ TEMPLATE = Path(__file__).with_name("report.typ")
 CHAPTERS: dict[str, str] = {
     "paper": "validation.chapters_paper:paper_chapter",
     "subblocks": "validation.chapters_subblocks:chapter",
+    "stability": "validation.chapters_stability:stability_chapter",
+    "stability-small": "validation.chapters_stability:stability_chapter",
+    "stiff-contact": "validation.chapters_contact:contact_chapter",
 }
 DEFAULT_CHAPTER = "validation.chapters:scene_chapter"
 PIXELS_PER_INCH = 200.0

@@ -127,6 +127,7 @@ STUDIES = {
     "core": "validation.core:CORE",
     "two-codes": "validation.two_codes:TWO_CODES",
     "paper": "validation.paper:PAPER",
+    "stiff-contact": "validation.stiff_contact:STUDY",
     "stability-small": "validation.stability_study:small",
     "stability": "validation.stability_study:full",
     "subblocks": "validation.subblocks:SUBBLOCKS",
