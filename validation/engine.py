@@ -58,7 +58,10 @@ class Finished:
             if row is None or row.outcome is not Outcome.COMPLETED:
                 outcome = Outcome.NOT_RUN if row is None else row.outcome
                 return Row("", "", scene, name, outcome, {}, notes=(f"needs {need[1]} on {need[0]}",))
-        return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
+        try:
+            return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
+        except (ArithmeticError, LookupError, ValueError) as error:  # numbers that a faulty run leaves without meaning
+            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(f"{type(error).__name__}: {error}",))
 
     def history(self, scene: str, solver: str) -> History | None:
         """Return the history of a case, or None."""
