@@ -167,6 +167,10 @@ def test_numbers_of_the_examples_readme() -> None:
     target = Target(column, np.full(200, 0.002), np.arange(200), foreign.displacement)
     plain = Variant(0.5, 1.0, 1.0)
     moving = replace(plain, updated=True)
+    heavy = replace(moving, base=10.0, softness=0.005, weight=1.0)
+    (swinging,) = fit(target, [(heavy, ("softness", "base", "weight"))], rounds=30)
+    assert (f"{swinging.misfit:.0e}", round(swinging.variant.base, -1)) == ("5e-07", 20)
+    assert swinging.variant.weight == pytest.approx(0.943, abs=5e-4)
     found = fit(
         target, [(plain, ()), (moving, ("softness",)), (moving, ("softness", "load")), (moving, ("softness", "weight"))]
     )

@@ -28,6 +28,8 @@ FAULT = 3e-3  # relative L2 that a fault must put into a history to be named: a 
 FACTOR = 3.0  # by which a scheme without a name must fit better than any with one
 CLOSE = 1e-4  # relative L2 up to which the fitted variant's own contact state is taken
 FREE_FLIGHT = 2e-3  # share of the static pressure that counts as none
+APART = 0.02  # of alpha or delta: a scheme closer to a named one is that one
+BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
 SAME_NUMBER = 2e-3  # relative: a discount or a load closer than this is not another one
 
 
@@ -108,44 +110,55 @@ def explain(target: Target, scene: Variant) -> Fit:
     scene
         The scene's own scheme, nothing added.
     """
-    found = fit(target, _openings(scene))
+    free = ((), ("weight",), ("gg",), ("gg", "weight"))
+    found = fit(target, _family([(scene.alpha, scene.delta)], scene, free))
+    if min(f.misfit for f in found) > FLOOR:
+        found += fit(target, _openings(scene))
     best = min(found, key=_order)
     waited = 0
     for _ in range(DEPTH):
         if best.misfit <= FLOOR or waited == PATIENCE:
             break
-        bases = _bases(found)
+        bases = _bases(found, scene)
         found = bases + fit(target, [start for base in bases for start in _further(base)])
         challenger = min(found, key=_order)
         if better(challenger, best, 1, FLOOR):
             best, waited = challenger, 0
         else:
             waited += 1
-    return _pruned(target, _own_scheme(target, best), scene)
+    return _pruned(target, _own_scheme(target, best, scene), scene)
 
 
-def _own_scheme(target: Target, found: Fit) -> Fit:
+def _own_scheme(target: Target, found: Fit, scene: Variant) -> Fit:
     """Return the fit with its scheme free, if no named scheme explains nearly as much; else with a named one."""
-    if "alpha" in found.free:
-        plain = tuple(name for name in found.free if name not in ("alpha", "delta"))
-        near = fit(target, [(replace(found.variant, alpha=a, delta=d), plain) for a, d in NAMED.values()])
-        close = min(near, key=_order)
-        return found if _unnamed(found, close) else close
-    (free,) = fit(target, [(found.variant, tuple(dict.fromkeys(("alpha", "delta", *found.free))))])
-    return free if _unnamed(free, found) else found
+    free, v = found, found.variant
+    if "alpha" not in found.free:
+        if found.misfit <= FLOOR:
+            return found
+        (free,) = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", *found.free))))])
+        return free if _unnamed(free, found) else found
+    plain = tuple(name for name in found.free if name not in ("alpha", "delta"))
+    still = tuple(name for name in plain if name != "gg")
+    pairs = NAMED.values()
+    near = [(replace(v, alpha=a, delta=d), plain) for a, d in pairs]
+    near += [(replace(v, alpha=a, delta=d, gg=scene.gg), still) for a, d in pairs]
+    close = min(fit(target, near), key=_order)
+    return found if _unnamed(found, close) else close
 
 
 def _unnamed(free: Fit, close: Fit) -> bool:
     """Whether a scheme without a name is worth believing in."""
-    return close.misfit > FACTOR * free.misfit and better(free, close, 2, FLOOR, FAULT)
+    apart = max(abs(free.variant.alpha - close.variant.alpha), abs(free.variant.delta - close.variant.delta))
+    return apart > APART and close.misfit > FACTOR * free.misfit and better(free, close, 2, FLOOR, FAULT)
 
 
-def _bases(found: Sequence[Fit]) -> list[Fit]:
-    """Return the best fit of each of the best few schemes."""
+def _bases(found: Sequence[Fit], scene: Variant) -> list[Fit]:
+    """Return the best fit of each of the best few schemes, and of the scene's own."""
     first: dict[tuple[float, float, bool], Fit] = {}
     for f in sorted(found, key=_order):
         first.setdefault((f.variant.alpha, f.variant.delta, f.variant.opens), f)
-    return list(first.values())[:KEPT]
+    own = [f for key, f in first.items() if key[:2] == (scene.alpha, scene.delta)]
+    return list(first.values())[:KEPT] + [f for f in own if f not in list(first.values())[:KEPT]]
 
 
 def _order(found: Fit) -> tuple[float, int]:
@@ -155,19 +168,25 @@ def _order(found: Fit) -> tuple[float, int]:
     return round(math.log(max(found.misfit, FLOOR / 10)), 2), sum(added) + len(found.free)
 
 
-def _openings(scene: Variant) -> list[Start]:
-    """Return what the search begins with."""
-    pairs = dict.fromkeys([(scene.alpha, scene.delta), *NAMED.values()])
+def _family(pairs: Sequence[tuple[float, float]], scene: Variant, more: Sequence[tuple[str, ...]]) -> list[Start]:
+    """Return schemes with and without opening and moving geometry, and what is free in each besides the springs."""
     flags = [(False, False), (True, False), (False, True), (True, True)]
     plain = [
         replace(scene, alpha=alpha, delta=delta, opens=opens, updated=updated)
         for alpha, delta in pairs
         for opens, updated in flags
     ]
+    return [(v, ("softness", *names)) for v in plain for names in more]
+
+
+def _openings(scene: Variant) -> list[Start]:
+    """Return the named schemes, springs of quite another stiffness, and a scheme with no name."""
+    own = (scene.alpha, scene.delta)
     softer = [replace(scene, softness=value) for value in SOFTNESSES]
-    starts: list[Start] = [(v, ("softness",)) for v in (*plain, *softer)]
-    starts += [(v, ("softness", *more)) for v in plain for more in (("weight",), ("gg",), ("gg", "weight"))]
-    return starts + [(replace(scene, opens=opens), ("alpha", "delta", "softness")) for opens in (False, True)]
+    free = [(replace(scene, opens=opens), ("alpha", "delta", "softness")) for opens in (False, True)]
+    starts: list[Start] = [(v, ("softness",)) for v in softer]
+    others = [pair for pair in NAMED.values() if pair != own]
+    return _family(others, scene, ((), ("gg",))) + starts + free
 
 
 def _further(base: Fit) -> list[Start]:
@@ -183,8 +202,11 @@ def _further(base: Fit) -> list[Start]:
     if v.gg < 1:
         moves += [{"discounted": name} for name in ("both", "velocity", "displacement") if name != v.discounted]
     starts: list[Start] = [(changed(v, move), free) for move in moves]
-    starts += [(replace(v, softness=value), free) for value in SOFTNESSES]
+    if not (v.opens or v.updated) and free == ("softness",):
+        starts += [(replace(v, softness=value), free) for value in SOFTNESSES]
     starts += [(replace(v, alpha=a, delta=d), free) for a, d in NAMED.values() if (a, d) != (v.alpha, v.delta)]
+    if v.softness > 0 and "base" not in free:
+        starts += [(replace(v, base=mass, softness=v.softness * soft), (*free, "base")) for mass, soft in BASES]
     return starts + [(v, (*free, name)) for name in ("gg", "weight", "load") if name not in free]
 
 
@@ -197,6 +219,7 @@ _FIELDS = {
     ("discounted",): False,
     ("gg",): False,
     ("load",): False,
+    ("base",): True,
     ("weight",): True,
     ("updated",): True,
 }

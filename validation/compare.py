@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -21,6 +21,9 @@ from validation.scene import Scene, SceneError
 
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
 UNEXPLAINED = 0.02  # relative L2: what is left beyond is a departure, cause known or not
+CLEAR = 3e-3  # relative L2 below which DDA is the model, whatever the rivals' schemes
+MUCH = 0.7  # of a misfit: what a less likely reading has to come below
+PLAIN = 0.05  # relative L2 below which a reading is right
 RIVAL = 0.5  # share of DDA's misfit below which another solver is the model
 RIVALS = ("bar", "continuum")
 MODEL_WORDS = {"dda": "one strain a block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
@@ -81,13 +84,9 @@ def compare(scene: Scene, foreign: Foreign) -> Answer:
     if column is None:
         return _without_rectangle(scene, foreign)
     own = Variant(scene.time.alpha, scene.time.delta, scene.time.discount, scene.time.start)
-    explained = [
-        (reading, target, causes.explain(target, own))
-        for reading in _readings(scene, column, own, foreign)
-        for target in [_target(column, reading)]
-    ]
-    reading, target, found = min(explained, key=lambda e: e[2].misfit)
-    others = _others(scene, reading, RIVALS if scene.block.poisson == 0 else ("fem",))
+    reading, target, found = _best_reading(_readings(scene, column, own, foreign), column, own)
+    clear = [(found.variant.alpha, found.variant.delta)] if found.misfit < CLEAR else NAMED.values()
+    others = _others(scene, reading, RIVALS if scene.block.poisson == 0 else ("fem",), clear)
     if others and others[0].misfit < RIVAL * found.misfit:
         return _answer_of_rival(scene, foreign, reading, others)
     return _answer(scene, foreign, reading, target, found, own, others)
@@ -121,6 +120,21 @@ def _slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Arra
     return readings
 
 
+def _best_reading(readings: Sequence[Reading], column: Column, own: Variant) -> tuple[Reading, Target, Fit]:
+    """Return the likeliest reading with what explains it; a less likely one must explain much more."""
+    best: tuple[Reading, Target, Fit] | None = None
+    for reading in readings:
+        target = _target(column, reading)
+        found = causes.explain(target, own)
+        if best is None or found.misfit < MUCH * best[2].misfit:
+            best = reading, target, found
+        if best[2].misfit < PLAIN:
+            break
+    if best is None:
+        raise SceneError("steps: must fit the times of the history in some way, got none")
+    return best
+
+
 def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
     """Return the sign and the powers of ten by which values may be off, the likeliest first."""
     with np.errstate(all="ignore"):
@@ -128,14 +142,19 @@ def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
-    return [(sign, factor) for factor in (*near, 1.0)]
+    return [(way * sign, factor) for way in (1.0, -1.0) for factor in (*near, 1.0)]
 
 
 def _target(column: Column, reading: Reading) -> Target:
     return Target(column, reading.stepping.steps, reading.stepping.rows, reading.displacement, reading.pressure)
 
 
-def _others(scene: Scene, reading: Reading, names: Sequence[str]) -> list[Rival]:
+def _others(
+    scene: Scene,
+    reading: Reading,
+    names: Sequence[str],
+    schemes: Iterable[tuple[float, float]] = NAMED.values(),
+) -> list[Rival]:
     """Return the other solvers' best answers; none where the steps are not equal, which they need."""
     steps = reading.stepping.steps
     if np.ptp(steps) > 0:
@@ -148,7 +167,8 @@ def _others(scene: Scene, reading: Reading, names: Sequence[str]) -> list[Rival]
             "run.solvers": ["dda"],
         }
     )
-    return rivals(same, names, Goal(reading.stepping.rows, reading.displacement, reading.pressure))
+    goal = Goal(reading.stepping.rows, reading.displacement, reading.pressure)
+    return rivals(same, names, goal, schemes)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------

@@ -27,12 +27,22 @@ NAMED: dict[str, tuple[float, float]] = {
     "unconditionally complex": (9 / 16, 1.0),
     "backward differences": (4 / 5, 3 / 2),
 }
-FREE = ("alpha", "delta", "gg", "softness", "weight", "load")
-SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "weight": 1.0, "load": 0.1}  # what counts as a change
-LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -12.0, "weight": 0.0, "load": -1e4}
-HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.02, "softness": 12.0, "weight": 1e4, "load": 1e4}
+SPAN = {
+    "alpha": 0.5,
+    "delta": 1.0,
+    "gg": 0.1,
+    "softness": 0.1,
+    "base": 10.0,
+    "weight": 1.0,
+    "load": 0.1,
+}  # what counts as a change
+LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -12.0, "base": 0.0, "weight": 0.0, "load": -1e4}
+HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.02, "softness": 12.0, "base": 1e4, "weight": 1e4, "load": 1e4}
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
+UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
+SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
+ROUNDING = 1e-9  # relative L2 that no recorded history comes below
 LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
 NEXT_TO_NOTHING = 20.0  # times smaller
 UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
@@ -123,7 +133,7 @@ def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], round
         for i, new in zip(trial_of, _linearised(target, trials, goal), strict=True):
             gain = best[i].misfit - new.misfit
             damping[i] *= 0.1 if gain > 0 else 10.0
-            active[i] = damping[i] < 1e4 and not 0 <= gain <= 1e-4 * new.misfit
+            active[i] = damping[i] < 1e4 and not 0 <= gain <= SETTLED * new.misfit and new.misfit > ROUNDING
             if gain > 0:
                 best[i] = new
     return best
@@ -161,8 +171,8 @@ def _moved(found: Fit, damping: float) -> Variant:
     span = np.array([SPAN[name] for name in found.free])
     J = found.jacobian * span
     H = J.T @ J
-    scale = np.diag(H) + 1e-30
-    step = np.linalg.lstsq(H + damping * np.diag(scale), J.T @ found.residual, rcond=None)[0] * span
+    scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
+    step = np.linalg.solve(H + damping * np.diag(scale), J.T @ found.residual) * span
     changes = {
         name: float(np.clip(getattr(found.variant, name) + change, LOW[name], HIGH[name]))
         for name, change in zip(found.free, step, strict=True)

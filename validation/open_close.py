@@ -5,13 +5,14 @@ known ways, and to recognise them their histories have to be computed, many vari
 is an array over the variants, and one pass through the steps serves them all.
 
 An upright rectangle of width a and height h has the unknowns (v, ey, ex); both corner springs carry the same. The
-increments x of a step solve, with the area S = a h and the base's gap g = v - (h/2) ey (accumulated),
+increments x of a step solve, with the area S = a h and the base's gap g = v - (h/2) ey - b (accumulated),
 
     (M + alpha dt^2 K) x = M x* + alpha dt^2 (F - internal),     x* = gg dt V + dt^2 (1/2 - alpha) A
 
-    M = diag(m, m h^2/12, m a^2/12),    m = rho S,    K = S C + k c c' + kx,    c = (1, -h/2, 0)
+    M = diag(m, m h^2/12, m a^2/12, m_b),    m = rho S,    K = S C + k c c' + kx + kb,    c = (1, -h/2, 0, -1)
 
-k is the stiffness of both normal springs in series with the base; kx = p_s a^2/2. Where the contact may open, the
+for (v, ey, ex, b), b the motion of a base of mass m_b on a spring kb. A base without mass stands in series with the
+contact: b is held then, and k is the stiffness of both together; kx = p_s a^2/2. Where the contact may open, the
 springs are on in a step if the base penetrates at its end, which the open-close iteration decides. Where the
 geometry moves, a, h and with them S and m follow the strain after each step.
 """
@@ -42,6 +43,7 @@ class Variant:
     gg: float  # share of the velocity that a step starts with [-]
     start: Literal["zero", "consistent"] = "zero"
     softness: float = 0.0  # ln of the scene's spring stiffness over that in effect [-]
+    base: float = 0.0  # mass of the yielding base over that of the block; 0 is a spring in series [-]
     weight: float = 0.0  # own weight, as a share of 9.81 m/s2 [-]
     load: float = 1.0  # load over the scene's load [-]
     updated: bool = False  # geometry follows the strain
@@ -141,9 +143,9 @@ class _Stepping:
 
     def __init__(self, column: Column, variants: Sequence[Variant]) -> None:
         self.column = column
-        self.alpha, self.delta, gg, softness, weight, load = (
+        self.alpha, self.delta, gg, softness, base, weight, load = (
             np.array([getattr(v, name) for v in variants])
-            for name in ("alpha", "delta", "gg", "softness", "weight", "load")
+            for name in ("alpha", "delta", "gg", "softness", "base", "weight", "load")
         )
         formulas = np.array([v.discounted for v in variants])
         self.gg_displacement = np.where(formulas == "velocity", 1.0, gg)
@@ -151,19 +153,24 @@ class _Stepping:
         self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated = np.array([v.updated for v in variants], dtype=float)
         self.opens = np.array([v.opens for v in variants])
-        self.normal = column.normal * np.exp(-softness)
+        heavy = (base > 0) & (softness > 0)
+        self.normal = column.normal * np.exp(-np.where(heavy, 0.0, softness))
+        self.held = np.where(heavy, 0.0, 1.0)
+        self.base = np.where(heavy, base, 1.0) * column.density * column.width * column.height
+        self.kb = column.normal / np.expm1(np.where(heavy, softness, 1.0))
         self.gravity = column.gravity + weight * GRAVITY
         self.force = load * column.pressure * column.width
         zero = np.zeros(len(variants))
         self.a, self.h = zero + column.width, zero + column.height
-        self.D, self.gap, self.sheared, self.sx, self.sy = zero, zero, zero, zero, zero
-        self.V, self.A = np.zeros((3, len(variants))), np.zeros((3, len(variants)))
+        self.D, self.B, self.gap, self.sheared, self.sx, self.sy = zero, zero, zero, zero, zero, zero
+        self.V, self.A = np.zeros((4, len(variants))), np.zeros((4, len(variants)))
         self.on = np.ones(len(variants), dtype=bool)
 
     def run(self, steps: Array) -> Iterator[tuple[Array, Array, Flags, Array]]:
         """Yield displacement, pressure, the open flags and the area of every step."""
         inertia, h = self._inertia(), self.h
-        load = np.stack([-self.force - inertia[0] * self.gravity, -self.force * h / 2, np.zeros_like(h)])
+        weights = (-self.force - inertia[0] * self.gravity, -self.force * h / 2)
+        load = np.stack([*weights, np.zeros_like(h), np.zeros_like(h)])
         self.A = self.consistent * load / inertia
         for dt in steps.tolist():
             area = self.a * self.h / (self.column.width * self.column.height)
@@ -171,16 +178,16 @@ class _Stepping:
             yield self.D, np.where(self.on, -self.normal * self.gap, 0.0) / self.column.width, ~self.on, area
 
     def _inertia(self) -> Array:
-        """Return the diagonal of M in (v, ey, ex), shape (3, variants)."""
+        """Return the diagonal of M in (v, ey, ex, b), shape (4, variants)."""
         m = self.column.density * self.a * self.h
-        return np.stack([m, m * self.h**2 / 12, m * self.a**2 / 12])
+        return np.stack([m, m * self.h**2 / 12, m * self.a**2 / 12, self.base])
 
     def _step(self, dt: float) -> None:
         inertia = self._inertia()
         star = self.gg_displacement * dt * self.V + dt * dt * (0.5 - self.alpha) * self.A
         for _ in range(OPEN_CLOSE_ITERATIONS):
             x, acceleration = self._solve(dt, inertia, star)
-            gap = self.gap + x[0] - self.h / 2 * x[1]
+            gap = self.gap + x[0] - self.h / 2 * x[1] - x[3]
             on = np.where(self.opens, gap < 0, True)
             if np.array_equal(on, self.on):
                 break
@@ -188,33 +195,47 @@ class _Stepping:
         self._accept(dt, x, acceleration, gap)
 
     def _solve(self, dt: float, inertia: Array, star: Array) -> tuple[Array, Array]:
-        """Return the increments (v, ey, ex) and the accelerations at the end for the present contact state."""
-        c, S, half = self.column, self.a * self.h, self.h / 2
+        """Return the increments (v, ey, ex, b) and the accelerations at the end for the present contact state."""
+        c, S, half, free = self.column, self.a * self.h, self.h / 2, 1 - self.held
         k = np.where(self.on, self.normal, 0.0)
         kx = np.where(self.on, c.shear * self.a**2 / 4, 0.0)
         Kvy, Kyy = -k * half, S * c.c11 + k * half**2
         Kxy, Kxx = S * c.c12, S * c.c11 + kx
+        Kvb, Kyb, Kbb = -k * free, k * half * free, k + self.kb
         F = np.stack(
             [
                 -self.force - inertia[0] * self.gravity - k * self.gap,
                 (k * self.gap - self.force) * half - S * self.sy,
                 -S * self.sx - kx * self.sheared,
+                free * (k * self.gap - self.kb * self.B - inertia[3] * self.gravity),
             ]
         )
-        b = self.alpha * dt * dt
-        rv, ry, rx = inertia * star + b * F
-        Svv, Syy, Sxx = inertia[0] + b * k, inertia[1] + b * Kyy, inertia[2] + b * Kxx
-        Svy, Sxy = b * Kvy, b * Kxy
-        y = (ry - Svy * rv / Svv - Sxy * rx / Sxx) / (Syy - Svy**2 / Svv - Sxy**2 / Sxx)
-        v, x = (rv - Svy * y) / Svv, (rx - Sxy * y) / Sxx
-        internal = np.stack([k * v + Kvy * y, Kvy * v + Kyy * y + Kxy * x, Kxy * y + Kxx * x])
-        return np.stack([v, y, x]), (F - internal) / inertia
+        e = self.alpha * dt * dt
+        rv, ry, rx, rb = inertia * star + e * F
+        # the base and ex are eliminated first, then (v, ey) remain
+        tb, tx = e / (inertia[3] + e * Kbb), e / (inertia[2] + e * Kxx)
+        Svv, Svy = inertia[0] + e * (k - tb * Kvb**2), e * (Kvy - tb * Kvb * Kyb)
+        Syy = inertia[1] + e * (Kyy - tb * Kyb**2 - tx * Kxy**2)
+        rv, ry = rv - tb * Kvb * rb, ry - tb * Kyb * rb - tx * Kxy * rx
+        y = (ry - Svy * rv / Svv) / (Syy - Svy**2 / Svv)
+        v = (rv - Svy * y) / Svv
+        x = (rx - e * Kxy * y) / (inertia[2] + e * Kxx)
+        b = (rb - e * (Kvb * v + Kyb * y)) / (inertia[3] + e * Kbb)
+        internal = np.stack(
+            [
+                k * v + Kvy * y + Kvb * b,
+                Kvy * v + Kyy * y + Kxy * x + Kyb * b,
+                Kxy * y + Kxx * x,
+                free * (Kvb * v + Kyb * y + Kbb * b),
+            ]
+        )
+        return np.stack([v, y, x, b]), (F - internal) / inertia
 
     def _accept(self, dt: float, x: Array, acceleration: Array, gap: Array) -> None:
         """Move to the end of the step."""
         c = self.column
         self.V = self.gg_velocity * self.V + dt * ((1 - self.delta) * self.A + self.delta * acceleration)
-        self.A, self.gap, self.D = acceleration, gap, self.D + x[0]
+        self.A, self.gap, self.D, self.B = acceleration, gap, self.D + x[0], self.B + x[3]
         self.sy = self.sy + c.c11 * x[1] + c.c12 * x[2]
         self.sx = self.sx + c.c11 * x[2] + c.c12 * x[1]
         self.sheared = np.where(self.on, self.sheared + x[2], 0.0)

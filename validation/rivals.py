@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from validation.identify import NAMED
 from validation.scene import Scene, SceneError
 from validation.solvers import get_solver
 
+SCHEMES_OF = {"continuum": 1, "fem": 2}  # how many are tried: the continuum has none, finite elements take long
 NUDGE = 1e-4  # of ln stiffness, for the derivative
 ROUNDS = 4  # of Gauss-Newton: a compliance of some per cent needs two
 MOST = math.log(1e3)  # no spring is softer or stiffer than that
@@ -31,8 +32,10 @@ class Rival:
     displacement: Array  # of every step [m]
 
 
-def rivals(scene: Scene, solvers: Sequence[str], goal: Goal) -> list[Rival]:
-    """Return the solvers that apply to the scene under every named scheme and the scene's own.
+def rivals(
+    scene: Scene, solvers: Sequence[str], goal: Goal, schemes: Iterable[tuple[float, float]] = NAMED.values()
+) -> list[Rival]:
+    """Return the solvers that apply to the scene, under the scene's own and other schemes.
 
     Parameters
     ----------
@@ -42,11 +45,13 @@ def rivals(scene: Scene, solvers: Sequence[str], goal: Goal) -> list[Rival]:
         Names of solvers; the continuum has no scheme.
     goal
         The history.
+    schemes
+        Pairs (alpha, delta), the likeliest first; by default the named ones.
     """
     t, found = scene.time, []
-    schemes = dict.fromkeys([(t.alpha, t.delta), *NAMED.values()])
+    every = dict.fromkeys([(t.alpha, t.delta), *schemes])
     for name in solvers:
-        pairs = schemes if name != "continuum" else [(t.alpha, t.delta)]
+        pairs = list(every)[: SCHEMES_OF.get(name, len(every))]
         for alpha, delta in pairs:
             rival = _fitted(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
             if rival is not None:
