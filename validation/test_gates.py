@@ -38,7 +38,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     user = metafunc.config.getoption("--dda-solver", None)
     names = [name for name, (_, gate) in _gates().items() if user is None or gate.pair[0] == JUDGED]
     marks = {name: pytest.mark.xdist_group(_gates()[name][1].scene.partition("[")[0]) for name in names}
-    metafunc.parametrize("name", [pytest.param(name, marks=marks[name]) for name in names])
+    metafunc.parametrize("name", [pytest.param(name, marks=marks[name], id=name) for name in names])
 
 
 @pytest.fixture(scope="session")
