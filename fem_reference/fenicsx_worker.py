@@ -8,7 +8,8 @@ line from standard input and answers each with one line of JSON; it ends where i
     mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
 
 A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness,
-shear_stiffness, pressure, degree, foundation, patch_width, elements and
+shear_stiffness, pressure, eccentricity, traction, gravity, moved (displacements (x, y) of the base at t = 0, dt, ...
+or null), last (where the base comes to rest), degree, foundation, patch_width, elements and
 cells ("quadrilaterals" or "triangles"; or points and cells of a mesh file), alpha,
 delta, gg, step, start, steps, columns. An answer holds time, columns, static, unknowns, nonzeros, factorisations,
 solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad input),
@@ -38,7 +39,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 COMM = MPI.COMM_WORLD
-BASE, TOP = 1, 2
+BASE, TOP, PRESSED = 1, 2, 3  # the top without its pressed part, and that part
 IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
 Request = dict[str, Any]
 
@@ -132,8 +133,14 @@ def spring_intervals(request: Request, length: float) -> list[tuple[float, float
     return [(0.0, length)] if w is None or 2 * w >= length else [(0.0, w), (length - w, length)]
 
 
+def pressed_part(request: Request, length: float) -> tuple[float, float]:
+    """Interval of the top edge, as long as it can be about its shifted middle, that carries the pressure."""
+    shift = request["along"] * request["eccentricity"]
+    return max(0.0, 2 * shift), min(length, length + 2 * shift)
+
+
 class Block:
-    """M D'' + K D = F for a unit pressure, and the rows that observe D."""
+    """M D'' + K D = F + pushes y, y the displacement of the base, and the rows that observe D."""
 
     def __init__(self, request: Request) -> None:
         self.request, self.outline = request, Outline(request)
@@ -150,9 +157,13 @@ class Block:
         _, _, length = self.outline.side(0)
         pieces = [facets_on(self.mesh, self.outline, 0, *span) for span in spring_intervals(self.request, length)]
         springs = np.unique(np.concatenate([*pieces, np.empty(0, np.int32)])).astype(np.int32)
-        top = facets_on(self.mesh, self.outline, self.outline.top, 0.0, self.outline.side(self.outline.top)[2])
-        facets = np.concatenate([springs, top])
-        values = np.repeat(np.array([BASE, TOP], np.int32), [len(springs), len(top)])
+        _, along, full = self.outline.side(self.outline.top)
+        self.request["along"] = 1.0 if along[0] > 0 or (along[0] == 0 and along[1] > 0) else -1.0
+        top = facets_on(self.mesh, self.outline, self.outline.top, 0.0, full)
+        pressed = facets_on(self.mesh, self.outline, self.outline.top, *pressed_part(self.request, full))
+        rest = np.setdiff1d(top, pressed).astype(np.int32)
+        facets = np.concatenate([springs, rest, pressed])
+        values = np.repeat(np.array([BASE, TOP, PRESSED], np.int32), [len(springs), len(rest), len(pressed)])
         order = np.argsort(facets)
         tags = dolfinx.mesh.meshtags(self.mesh, 1, facets[order], values[order])
         rule = {"quadrature_degree": 2 * self.request["degree"] + 1}
@@ -167,10 +178,14 @@ class Block:
         """Refuse a mesh that is not the block's: area, perimeter, loaded and carried length."""
         o, request = self.outline, self.request
         perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
-        found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (self.ds(TOP), o.side(o.top)[2])}
+        top = self.ds((TOP, PRESSED))
+        found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
         for name, (measure, expected) in found.items():
             if abs(self._integral(measure) - expected) > 1e-9 * expected:
                 raise ValueError(f"mesh: outline must be the block's, but its {name} is another")
+        low, high = pressed_part(request, o.side(o.top)[2])
+        if abs(self._integral(self.ds(PRESSED)) - (high - low)) > 1e-9 * o.side(o.top)[2]:
+            raise Inapplicable("the pressed part ends inside elements, and fenicsx integrates whole edges only")
         spans = spring_intervals(request, o.side(0)[2])
         carried = sum(high - low for low, high in spans)
         if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
@@ -194,8 +209,27 @@ class Block:
         self.M = assembled(ufl.dot(u, v) * dx)
         self.M.scale(r["density"])
         self.K = assembled(elastic + springs, self._corner_springs if r["foundation"] == "corner" else None)
-        self.F = self._vector(-v[1] * ds(TOP))
+        down, right, weight = (constant(mesh, r[name]) for name in ("pressure", "traction", "gravity"))
+        rho = constant(mesh, r["density"])
+        load = right * v[0] * ds((TOP, PRESSED)) - down * v[1] * ds(PRESSED) - rho * weight * v[1] * dx
+        self.F = self._vector(load)
+        self.pushes = [self._push(kn, kt, n, t, v, np.eye(2)[i]) for i in (0, 1)]
         self.pressure = self._vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))
+
+    def _push(self, kn: Any, kt: Any, n: Any, t: Any, v: Any, way: np.ndarray) -> Any:
+        """Load of a unit displacement of the base in one direction."""
+        across, along = (constant(self.mesh, float(axis @ way)) for axis in (self.normal, self.tangent))
+        found = self._vector((kn * across * ufl.dot(n, v) + kt * along * ufl.dot(t, v)) * self.ds(BASE))
+        if self.request["foundation"] == "corner":
+            for pair in self._corners():
+                found.setValues(pair.astype(np.int32), self._spring() @ way, addv=PETSc.InsertMode.ADD_VALUES)
+            found.assemble()
+        return found
+
+    def _spring(self) -> np.ndarray:
+        """Matrix of one corner spring."""
+        p, ps = self.request["stiffness"], self.request["shear_stiffness"]
+        return np.asarray(p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent))
 
     def _corners(self) -> list[np.ndarray]:
         """Global numbers of the two unknowns of each end of the base that this rank owns."""
@@ -212,10 +246,8 @@ class Block:
 
     def _corner_springs(self, K: Any) -> None:
         """Add the two point springs to the stiffness."""
-        p, ps = self.request["stiffness"], self.request["shear_stiffness"]
-        spring = p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent)
         for pair in self._corners():
-            K.setValues(pair.astype(np.int32), pair.astype(np.int32), spring, addv=PETSc.InsertMode.ADD_VALUES)
+            K.setValues(pair.astype(np.int32), pair.astype(np.int32), self._spring(), addv=PETSc.InsertMode.ADD_VALUES)
 
     def _global(self, local: np.ndarray) -> np.ndarray:
         return np.asarray(self.space.dofmap.index_map.local_to_global(np.asarray(local, np.int32)), np.int64)
@@ -241,6 +273,11 @@ class Block:
             "contact_pressure": self.pressure,
             "horizontal_displacement": across,
         }
+
+    def carried_pressure(self, moved: Any) -> np.ndarray:
+        """Contact pressure of a displaced base where the block is held, for each (x, y)."""
+        found: np.ndarray = np.asarray(moved) @ self.normal * (2 * self.request["stiffness"] / self.outline.side(0)[2])
+        return found
 
     def _point_rows(self) -> tuple[Any, Any]:
         """Rows that give u and v at the centroid: the basis functions of its cell, each evaluated there."""
@@ -334,7 +371,9 @@ class Newmark:
     """
 
     def __init__(self, block: Block, request: Request) -> None:
-        self.M, self.K, self.F = block.M, block.K, block.F
+        self.M, self.K, self.moved = block.M, block.K, request["moved"]
+        self.constant, self.pushes, self.step = block.F, block.pushes, 0
+        self.F = self.load(self.moved[0] if self.moved else (0.0, 0.0))
         self.dt, self.gg = request["step"], request["gg"]
         self.alpha, self.delta = request["alpha"], request["delta"]
         S = self.M.copy()
@@ -345,6 +384,11 @@ class Newmark:
         if request["start"] == "consistent":
             self.A = (Factor(self.M) if self.alpha > 0 else self.solve)(self.F)
 
+    def load(self, moved: Any) -> Any:
+        """The load where the base is displaced by (x, y)."""
+        x, y = moved
+        return self.constant + x * self.pushes[0] + y * self.pushes[1] if x or y else self.constant
+
     def _residual(self) -> Any:
         r = self.K.createVecRight()
         self.K.multAdd(-self.D, self.F, r)
@@ -353,6 +397,9 @@ class Newmark:
     def advance(self) -> Any:
         """Take one step and return the displacement."""
         dt, alpha, A = self.dt, self.alpha, self.A
+        if self.moved:
+            self.step += 1
+            self.F = self.load(self.moved[self.step])
         ahead = self.gg * dt * self.V + dt**2 * (0.5 - alpha) * A  # D* - D
         increment = self.solve(self.M * ahead + alpha * dt**2 * self._residual())
         self.D = self.D + increment
@@ -372,12 +419,16 @@ def run(request: Request) -> dict[str, Any]:
     history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
     ended = time.perf_counter()
     done = Factor.factorisations, Factor.solves
-    q, rest = request["pressure"], Factor(block.K)(block.F)
+    rest = Factor(block.K)(scheme.load(request["last"]))
+    static = {name: float(row.dot(rest)) for name, row in block.observers.items()}
+    static["contact_pressure"] += float(block.carried_pressure(request["last"]))
+    if request["moved"] and "contact_pressure" in request["columns"]:
+        history[:, request["columns"].index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
     memory = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
     return {
         "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
-        "columns": {name: (q * history[:, i]).tolist() for i, name in enumerate(request["columns"])},
-        "static": {name: float(q * row.dot(rest)) for name, row in block.observers.items()},
+        "columns": {name: history[:, i].tolist() for i, name in enumerate(request["columns"])},
+        "static": static,
         "unknowns": block.K.getSize()[0],
         "nonzeros": scheme.nonzeros,
         "factorisations": done[0],

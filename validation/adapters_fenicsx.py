@@ -20,6 +20,7 @@ import numpy as np
 
 from validation.adapters import FiniteElements, _no_fields, check_columns, pulls
 from validation.history import History, Mode, Outcome, Run
+from validation.record import base_record
 from validation.scene import Scene, SceneError
 from validation.solvers import NotReported, Solver
 from validation.worker import ask
@@ -98,10 +99,10 @@ class FEniCSx(Solver):
         return self
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or which load this solver does not take."""
+        """Return None, or which springs this solver does not take."""
         if scene.fem.foundation == "nodes":
             return "it takes springs spread over edges or at the corners, and none at nodes"
-        return None if scene.load.centred else "it takes a centred pressure and no other load"
+        return None
 
     def missing(self) -> str | None:
         """Return None, or what is not installed and how to get it."""
@@ -163,7 +164,11 @@ class FEniCSx(Solver):
 
 def request(scene: Scene) -> dict[str, Any]:
     """Return a scene as the worker takes it; a mesh file becomes points and cells."""
-    b, c, t, f = scene.block, scene.contact, scene.time, scene.fem
+    b, c, t, f, q = scene.block, scene.contact, scene.time, scene.fem, scene.load
+    record, moved = base_record(scene), None
+    if record is not None:
+        instants = t.step * np.arange(t.steps + 1.0)
+        moved = np.column_stack([np.interp(instants, record.time, part) for part in (record.x, record.y)]).tolist()
     return {
         "vertices": b.outline,
         "base": b.base,
@@ -174,7 +179,12 @@ def request(scene: Scene) -> dict[str, Any]:
         "hypothesis": b.hypothesis,
         "stiffness": c.stiffness,
         "shear_stiffness": c.shear,
-        "pressure": scene.load.pressure,
+        "pressure": q.pressure,
+        "eccentricity": q.eccentricity,
+        "traction": q.traction,
+        "gravity": q.gravity,
+        "moved": moved,
+        "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
         "degree": f.degree,
         "foundation": f.foundation,
         "patch_width": f.patch_width,
