@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import cli
 
 from validation.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
 from validation.engine import finish, run_study
@@ -70,3 +71,10 @@ def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path) -> None:
     assert all(AGREEMENT in v["alarms"] for v in verdicts)
     kinds = {alarm["kind"] for alarm in json.loads((tmp_path / "studies/figures-5-6.json").read_text())["alarms"]}
     assert kinds == {AGREEMENT, RINGING, TENSION}
+
+
+def test_a_run_counts_its_alarms_and_warns_of_a_fixed_discount(tmp_path: Path) -> None:
+    done = cli("run", "discount-map", "--results", tmp_path)
+    assert done.returncode == 0
+    assert "warning: discount-map: dt is varied at a fixed gg = 0.98" in done.stderr
+    assert "alarms: hidden tension in" in done.stdout

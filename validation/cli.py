@@ -14,7 +14,6 @@ import typer
 
 if TYPE_CHECKING:
     from validation.gates import Verdict
-    from validation.results import Results
     from validation.scene import Scene
 
 PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
@@ -98,6 +97,7 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
+    from validation import cli_tables as tables
     from validation.cluster import executor
     from validation.engine import run_study
     from validation.results import Results
@@ -114,8 +114,9 @@ def run(
                     study, kept, full=full, ranks=ranks, jobs=workers, executor=pool, progress=progress
                 )
     names = [study.name for study in studies]
-    _print_verdicts(verdicts, kept, names)
-    refused = _print_failures(kept, names)
+    tables.print_verdicts(verdicts, kept, names)
+    tables.print_alarms(kept, names)
+    refused = tables.print_failures(kept, names)
     raise typer.Exit(_status(verdicts, require or [], refused))
 
 
@@ -249,64 +250,6 @@ def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
     finally:
         if bar.live.is_started:
             bar.stop()
-
-
-def _print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
-    """Print one table: scene, pair, metric, value, band, verdict, seconds."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    rows = results.rows()
-    cases = [case for study in studies for case in results.manifest(study)["cases"]]
-    seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("scene", "pair", "metric"):
-        table.add_column(name, overflow="fold")
-    for name in ("value", "band"):
-        table.add_column(name, justify="right")
-    table.add_column("verdict")
-    table.add_column("seconds", justify="right")
-    colours = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
-    for v in verdicts:
-        g, word = v.gate, str(v.status)
-        spent = seconds.get((g.scene, g.pair[0]))
-        table.add_row(
-            g.scene.replace("[", r"\["),
-            " | ".join(g.pair),
-            g.id.rpartition(":")[2],
-            _number(v.value),
-            f"{g.low:.4g} .. {g.high:.4g}",
-            f"[{colours[word]}]{word}[/]",
-            "" if spent is None else f"{spent:.2f}",
-        )
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    console.print(table)
-    for v in verdicts:
-        if v.status != "PASS":
-            console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
-    words = [str(v.status) for v in verdicts]
-    console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
-
-
-def _number(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
-
-
-def _print_failures(results: Results, studies: list[str]) -> bool:
-    """Name the cases that did not complete; return whether one was refused."""
-    from validation.history import Outcome
-
-    rows, refused = results.rows(), False
-    for study in studies:
-        for case in results.manifest(study)["cases"]:
-            row = rows[case["key"]]
-            refused = refused or row.outcome is Outcome.REFUSED
-            if row.outcome is not Outcome.COMPLETED:
-                typer.echo(
-                    f"{case['scene']} {row.solver}: {row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
-                )
-    return refused
 
 
 def _status(verdicts: list[Verdict], required: list[str], refused: bool) -> int:
