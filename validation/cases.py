@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from validation import metrics, stability
+from validation import memory, metrics, stability
 from validation.history import History, Outcome, Run
 from validation.results import Row
 from validation.scene import Scene, SceneError
@@ -125,6 +125,7 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
     try:
         if reason := solver.applicable(scene):
             return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
+        memory.check(scene, solver.name)
         asked, absent = _columns(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of

@@ -7,9 +7,12 @@ gates' verdicts without seconds. Everything that a report needs is here: it cann
 
 from __future__ import annotations
 
+import errno
 import json
 import os
-from collections.abc import Iterable, Mapping
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
@@ -75,7 +78,12 @@ class Results:
         path = self.directory / "rows.jsonl"
         if not path.exists():
             return {}
-        parsed = map(Row.parse, path.read_text(encoding="utf-8", errors="replace").splitlines())
+        if not path.is_file():
+            raise SceneError(f"{path}: cannot be read: it is no file; choose another place with --results")
+        try:
+            parsed = map(Row.parse, path.read_text(encoding="utf-8", errors="replace").splitlines())
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be read: {error.strerror}; choose another place with --results") from None
         return {row.key: row for row in parsed if row is not None}
 
     def append(self, row: Row, history: History | None) -> None:
@@ -89,7 +97,9 @@ class Results:
         try:
             handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
             try:
-                os.write(handle, f"\n{row.line()}\n".encode())
+                line = f"\n{row.line()}\n".encode()
+                if os.write(handle, line) < len(line):  # the beginning is not read as a row
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
             finally:
                 os.close(handle)
         except OSError as error:
@@ -111,8 +121,11 @@ class Results:
         path = self.directory / "histories" / f"{key}.npz"
         if not path.exists():
             return None
-        with np.load(path) as data:
-            columns = {name: data[name] for name in data.files}
+        try:
+            with np.load(path) as data:
+                columns = {name: data[name] for name in data.files}
+        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+            raise SceneError(f"{path}: cannot be read as a history; delete it and run again") from None
         return History(columns.pop("time"), columns)
 
     def has(self, row: Row) -> bool:
@@ -148,6 +161,26 @@ class Results:
         return [v for v in kept if study is None or v["study"] == study]
 
     def write_verdicts(self, study: str, verdicts: list[dict[str, Any]]) -> None:
-        """Replace the verdicts of one study."""
-        others = [v for v in self.verdicts() if v["study"] != study]
-        self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
+        """Replace the verdicts of one study; of two runs at once the one waits for the other."""
+        with self._alone():
+            others = [v for v in self.verdicts() if v["study"] != study]
+            self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Hold the directory's lock, where the system has locks; it falls with the process that holds it."""
+        try:
+            import fcntl
+        except ImportError:
+            yield
+            return
+        path = self._make(".lock")
+        try:
+            handle = os.open(path, os.O_WRONLY | os.O_CREAT, 0o666)
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be written: {error.strerror}; choose another place") from None
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(handle)

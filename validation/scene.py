@@ -20,6 +20,7 @@ from validation.outline import Point, check_polygon, convex_quadrilateral
 
 SCENE_DIRECTORY = Path(__file__).parent / "scenes"
 FINE_ELEMENTS = 16
+LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
 
 
 class SceneError(ValueError):
@@ -286,6 +287,9 @@ class Scene(Section):
             raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
         if mode == "zip" and len({len(v) for v in lists.values()}) > 1:
             raise ValueError(f"sweep: lists of a zip must have one length, got {[*map(len, lists.values())]}")
+        count = max(map(len, lists.values()), default=1) if mode == "zip" else math.prod(map(len, lists.values()))
+        if count > MOST_CASES:
+            raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
         if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
             raise ValueError(
                 f"fem: patch_width must be at most half the base length "
@@ -423,6 +427,8 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
         return Scene.model_validate(data)
     except ValidationError as error:
         raise SceneError(_one_line(error, source)) from None
+    except RecursionError:
+        raise SceneError(f"{source}: scene: must not be nested so deeply, got too many levels") from None
 
 
 def _one_line(error: ValidationError, source: str) -> str:
@@ -446,7 +452,10 @@ def _one_line(error: ValidationError, source: str) -> str:
 
 
 def _clip(value: object, width: int = 60) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # too many levels, or an integer of too many digits
+        text = f"a {type(value).__name__} too large to print"
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
@@ -495,6 +504,8 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
+        if path.is_file() and path.stat().st_size > LARGEST_FILE:
+            raise SceneError(f"{path}: must be at most {LARGEST_FILE} bytes, got {path.stat().st_size}")
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         known = ", ".join(scene_names())
@@ -503,7 +514,7 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: must be UTF-8 text, got bytes that are not") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
         raise SceneError(f"{path}: must be TOML: {' '.join(str(error).split())}") from None
 
 

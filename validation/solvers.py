@@ -8,6 +8,7 @@ import importlib.metadata
 from collections.abc import Mapping
 from pathlib import Path
 
+from validation import memory
 from validation.history import Mode, Run
 from validation.scene import Scene, SceneError
 
@@ -167,4 +168,5 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
         raise SceneError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
     if reason := chosen.applicable(scene):
         raise SceneError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
+    memory.check(scene, chosen.name)
     return chosen.solve(scene, full=full)

@@ -1,0 +1,158 @@
+"""Scene files, near valid and broken: one line of refusal or a scene, never a traceback, never a half-written file."""
+
+import copy
+import math
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, cli
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from validation import load_scene, memory, solve
+from validation.cases import attempt, check
+from validation.history import Outcome
+from validation.scene import Scene, SceneError, parse_scene
+from validation.solvers import get_solver
+
+DATA = tomllib.loads(SCENE)
+FIELDS = [(section, key) for section, table in DATA.items() if isinstance(table, dict) for key in table]
+MORE = [
+    ("block", "width"), ("block", "height"), ("block", "vertices"), ("block", "base"), ("block", "poisson"),
+    ("block", "hypothesis"), ("block", "subdivide"), ("contact", "shear_stiffness"), ("load", "eccentricity"),
+    ("load", "gravity"), ("load", "base_motion"), ("time", "alpha"), ("time", "delta"), ("time", "gg"),
+    ("time", "gg_rate"), ("time", "start"), ("time", "allow_unstable"), ("fem", "degree"), ("fem", "mesh"),
+    ("fem", "foundation"), ("fem", "patch_width"), ("run", "solvers"), ("run", "columns"), ("sweep", "time.step"),
+    ("sweep", "mode"), ("gate", "pair"), ("", "title"), ("", "name"), ("block", "colour"), ("", "x"),
+]  # fmt: skip
+numbers = st.one_of(
+    st.floats(),
+    st.integers(-(10**30), 10**30),
+    st.sampled_from([0, -0.0, 1e-320, 1e308, -1, math.nan, math.inf, -math.inf, 10**400, 2**63, 2**63 - 1]),
+)
+leaves = st.one_of(numbers, st.booleans(), st.text(max_size=20), st.none())
+values = st.recursive(
+    leaves, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=8,
+)  # fmt: skip
+QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+
+
+def one_line(error: SceneError) -> None:
+    text = str(error)
+    assert "\n" not in text and len(text) < 2000
+
+
+@QUICK
+@given(st.dictionaries(st.sampled_from(FIELDS + MORE), values, min_size=1, max_size=4))
+def test_any_value_anywhere_gives_a_scene_or_one_line(changes):
+    data = copy.deepcopy(DATA)
+    for (section, key), value in changes.items():
+        table = data.setdefault(section, {}) if section else data
+        if isinstance(table, dict):
+            table[key] = value
+    try:
+        scene = parse_scene(data, "x.toml")
+        cases = scene.expand() if scene.sweep else (scene,)
+    except SceneError as error:
+        one_line(error)
+        return
+    assert all(isinstance(case, Scene) for case in cases)
+
+
+positive = st.floats(min_value=1e-9, max_value=1e12)
+
+
+@QUICK
+@given(
+    st.fixed_dictionaries(
+        {
+            "block.density": positive, "block.young": positive, "contact.stiffness": positive,
+            "block.side": st.floats(1e-6, 1e6), "block.poisson": st.floats(-0.99, 0.5),
+            "load.pressure": st.floats(-1e300, 1e300), "time.step": st.floats(1e-12, 1e6),
+            "time.alpha": st.floats(0, 2), "time.delta": st.floats(0, 2), "time.gg": st.floats(0, 1),
+            "time.allow_unstable": st.booleans(), "time.start": st.sampled_from(["zero", "consistent"]),
+        }
+    ),
+    st.sampled_from(["dda", "dda-textbook", "bar"]),
+)  # fmt: skip
+def test_any_valid_scene_ends_by_name(values, solver):
+    scene = parse_scene(DATA, "x.toml").with_values(values | {"time.steps": 12})
+    run = check(attempt(get_solver(solver), scene, False), scene)
+    assert run.outcome not in (Outcome.RAISED, Outcome.WRONG_SHAPE, Outcome.NOT_A_NUMBER), run.notes
+    if run.outcome is Outcome.COMPLETED:
+        assert all(math.isfinite(x) for x in (run.displacement.max(), run.contact_pressure.min()))
+
+
+BROKEN = {
+    "empty": b"",
+    "binary": bytes(range(256)) * 20,
+    "latin": "title = 'café'".encode("latin-1"),
+    "duplicate key": SCENE.encode() + b'\n[block]\nside = 3.0\n',
+    "duplicate value": SCENE.replace("side = 2.0", "side = 2.0\nside = 3.0").encode(),
+    "unclosed": SCENE.encode() + b"\n[run\n",
+    "deep lists": SCENE.encode() + b"\n[sweep]\n'time.step' = " + b"[" * 5000 + b"]" * 5000,
+    "nested lists": SCENE.encode() + b"\n[sweep]\n'time.step' = " + b"[" * 150 + b"]" * 150,
+    "deep tables": SCENE.encode() + b"\n[" + b".".join([b"a"] * 3000) + b"]\n",
+    "huge integer": SCENE.replace("steps = 50", "steps = " + "9" * 5000).encode(),
+    "date": SCENE.replace("steps = 50", "steps = 1979-05-27").encode(),
+    "null byte": SCENE.encode() + b"\x00",
+    "unicode key": SCENE.encode() + '\n["ключ"]\n"🧱" = 1\n'.encode(),
+    "oversized": SCENE.encode() + b"# " + b"x" * 1_000_000,
+    "too many cases": f'{SCENE}[sweep]\n"time.step" = {[0.1] * 400}\n"time.gg" = {[0.5] * 400}\n'.encode(),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_files_are_refused_in_one_line(name, tmp_path):
+    (tmp_path / "x.toml").write_bytes(BROKEN[name])
+    with pytest.raises(SceneError) as caught:
+        load_scene(tmp_path / "x.toml").expand()
+    one_line(caught.value)
+
+
+def test_a_directory_and_a_missing_file_are_refused(tmp_path):
+    (tmp_path / "d.toml").mkdir()
+    for name in ("d.toml", "gone.toml", "a\0b.toml", "x" * 300 + ".toml"):
+        with pytest.raises(SceneError) as caught:
+            load_scene(tmp_path / name)
+        one_line(caught.value)
+
+
+@pytest.mark.parametrize("name", ["empty", "binary", "deep lists", "oversized"])
+def test_the_command_line_says_one_line_and_writes_nothing(name, tmp_path):
+    (tmp_path / "x.toml").write_bytes(BROKEN[name])
+    done = cli("run", "x.toml", "--results", "r", cwd=tmp_path)
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["x.toml"]
+
+
+LARGE = [
+    ("dda", {"time.steps": 10**14}, "time.steps: must fit into memory, dda needs about 1.44e+07 GB"),
+    ("fem", {"fem.elements": 10**6, "block.poisson": 0.3}, "fem.elements: must fit into memory, fem needs about"),
+    ("dda", {"block.subdivide": [10**4, 10**4]}, "block.subdivide: must fit into memory"),
+]
+
+
+@pytest.mark.parametrize(("solver", "values", "words"), LARGE)
+def test_what_cannot_fit_is_refused_with_the_estimate(solver, values, words):
+    scene = parse_scene(DATA, "x.toml").with_values(values)
+    with pytest.raises(SceneError, match="GB are there, got") as caught:
+        solve(scene, solver)
+    assert words in str(caught.value)
+    assert attempt(get_solver(solver), scene, False).outcome is Outcome.REFUSED
+
+
+def test_the_estimate_of_a_mesh_is_no_less_than_what_it_takes():
+    """Unknowns, matrices and factor of a mesh that was measured at 0.25 GB (48 elements of degree 2 a side)."""
+    scene = parse_scene(DATA, "x.toml").with_values({"fem.elements": 48, "fem.degree": 2, "block.poisson": 0.3})
+    size, field = memory.needed(scene, "fem")
+    assert field == "fem.elements" and 5e7 < size < 1e9
+    assert memory.available() > 1e6
+
+
+def test_a_mesh_file_that_is_not_there_is_said_where_it_is_read(tmp_path):
+    scene = parse_scene(DATA | {"fem": {"mesh": str(Path(tmp_path) / "no.msh")}}, "x.toml")
+    assert memory.needed(scene, "fem")[1] == "time.steps"
