@@ -81,3 +81,11 @@ def test_no_metric_is_ever_nan() -> None:
             metrics.Measurable(broken, 1.0, {"displacement": static, "contact_pressure": static}, modes)
         )
         assert not [key for key, value in values.items() if isinstance(value, float) and not math.isfinite(value)]
+
+
+def test_the_worst_of_two_needs_no_further_column() -> None:
+    time = np.array([1.0, 2.0])
+    exact = History(time, {"displacement": np.array([1.0, 2.0]), "contact_pressure": np.array([4.0, 8.0])})
+    found = History(time, {"displacement": np.array([1.0, 2.5]), "contact_pressure": np.array([4.0, 4.0])})
+    assert metrics.pair(metrics.WORST, found, exact) == 0.5
+    assert metrics.pair(metrics.WORST, History(time, {"displacement": time}), exact) == metrics.NOT_REPORTED
