@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 Array = NDArray[np.float64]
+_STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
 _DENSE = 300  # unknowns up to which all modes are found by a dense solver
 
 
@@ -51,13 +52,32 @@ class _Stepper:
         self.inverse = equations.blockwise(_inverse(S))
         self.BS = (B @ self.inverse).tocsr()
         self.BSt = self.BS.T.tocsr()
-        self.factor = factor(joint_flexibility(scheme, equations.C / scheme.step**2, B, self.inverse))
+        self.S, self.C = equations.blockwise(S), equations.C / scheme.step**2
+        self.factor = factor(joint_flexibility(scheme, self.C, B, self.inverse))
+        stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
+        self.corrections = sum(stiff > limit for limit in _STIFF)
+
+    def _increments(self, r: Array, push: Array) -> tuple[Array, Array]:
+        """Return dD and dmu of S dD + alpha B' dmu = r, B dD - C' dmu = G dy.
+
+        Where a block's stiffness outweighs its inertia in S, its rigid motion is a small difference
+        of joint forces: each correction takes the digits back that this costs.
+        """
+        dD, dmu = self._solve(r, push)
+        for _ in range(self.corrections):
+            left = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
+            correction = self._solve(left, push - self.B @ dD + self.C @ dmu)
+            dD, dmu = dD + correction[0], dmu + correction[1]
+        return dD, dmu
+
+    def _solve(self, r: Array, push: Array) -> tuple[Array, Array]:
+        dmu = self.factor.solve(self.BS @ r - push)
+        return self.inverse @ r - self.scheme.alpha * (self.BSt @ dmu), dmu
 
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and lambda at every step, (rows, steps)."""
         e, s = self.equations, self.scheme
         F, pushes = s.step**2 * e.F, np.diff(moved, axis=0) @ e.G.T
-        still = not np.any(pushes)
         by_D, by_mu = rows[0], rows[1] / s.step**2
         D, P = np.zeros_like(F), np.zeros_like(F)
         mu = -(s.step**2 * (e.kappa @ (e.G @ moved[0])))
@@ -65,11 +85,8 @@ class _Stepper:
         f = F - held if s.start == "consistent" else 0 * F
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
-            r = predictor(s, P, f) + s.alpha * (F - held)
-            gap = self.BS @ r
-            dmu = self.factor.solve(gap if still else gap - pushes[n])
-            D = D + self.inverse @ r - s.alpha * (self.BSt @ dmu)
-            mu = mu + dmu
+            dD, dmu = self._increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
+            D, mu = D + dD, mu + dmu
             held = self.k @ D + self.Bt @ mu
             f1 = F - held
             P, f = velocity_corrector(s, P, f, f1), f1
@@ -117,7 +134,7 @@ def solve_system(
         unknowns=len(equations.F),
         nonzeros=stepper.factor.nonzeros,
         factorisations=1,
-        solves=steps,
+        solves=steps * (1 + stepper.corrections),
         notes=_savings(system, equations) + bound_overflow(observed, system.load_size),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
