@@ -16,9 +16,7 @@ from validation.history import History, Outcome
 from validation.results import Results, Row
 from validation.scene import SceneError
 
-SWEEP = (
-    '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
-)
+SWEEP = '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
 
 
 @pytest.fixture

@@ -40,6 +40,7 @@ class Case:
     without_savings: bool = False
     ranks: int = 1  # of the solvers that can be distributed
     measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "limit"
+    repeats: int = 0  # of a timed case, after a run that warms up
 
     @property
     def full(self) -> bool:
@@ -99,7 +100,7 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     The row with the metrics of the run itself, and the history where there is one.
     """
     solver = case.make_solver()
-    run = check(attempt(solver, case.scene, case.full), case.scene)
+    run = _repeated(check(attempt(solver, case.scene, case.full), case.scene), solver, case)
     if case.scene.time.allow_unstable:
         run = stability.named(run, solver, case.scene)
     failed: list[str] = []
@@ -118,6 +119,17 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         estimate=run.estimate if run.estimate is not None and math.isfinite(run.estimate) else None,
     )
     return row, run.history if run.outcome is Outcome.COMPLETED or run.outcome is Outcome.UNSTABLE else None
+
+
+def _repeated(run: Run, solver: Solver, case: Case) -> Run:
+    """Return the run with the least seconds of its repeats, each part apart, and their spread."""
+    if not case.repeats or run.outcome is not Outcome.COMPLETED:
+        return run
+    timings = [attempt(solver, case.scene, case.full).seconds for _ in range(case.repeats)]
+    sums = [sum(timing.values()) for timing in timings]
+    least = {part: min(timing[part] for timing in timings) for part in timings[0]}
+    spread = f"least seconds of {case.repeats} repeats, spread {max(sums) - min(sums):.1g} s"
+    return replace(run, seconds=least, notes=(*run.notes, spread))
 
 
 def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> Run:

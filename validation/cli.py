@@ -288,7 +288,7 @@ def _stop(line: str, status: int) -> None:
     sys.exit(status)
 
 
-from validation import cli_compare, cli_damping  # noqa: E402, F401  (add their commands to app)
+from validation import cli_compare, cli_damping, cli_work  # noqa: E402, F401  (add their commands to app)
 
 if __name__ == "__main__":
     main()

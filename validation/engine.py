@@ -146,7 +146,7 @@ def _executed(
     pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
 ) -> Iterator[tuple[Row, History | None]]:
     """Run the pending cases, in this process where one worker or one case is all there is."""
-    if executor is None and min(jobs, len(pending)) <= 1:
+    if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
             yield execute(case, key, study.name)
         return

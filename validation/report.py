@@ -24,6 +24,7 @@ from validation.scene import SceneError
 TEMPLATE = Path(__file__).with_name("report.typ")
 # study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
 CHAPTERS: dict[str, str] = {
+    "work-precision": "validation.chapters_work:chapter",
     "paper": "validation.chapters_paper:paper_chapter",
     "subblocks": "validation.chapters_subblocks:chapter",
     "stability": "validation.chapters_stability:stability_chapter",

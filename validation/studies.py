@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from validation.engine import Finished
 
 
+REPEATS = 3  # of each case of a study of timings
+
+
 def _no_gates() -> tuple[Gate, ...]:
     return ()
 
@@ -70,7 +73,7 @@ class Study:
     gates
         Function that returns the gates, so that listing studies computes nothing.
     timed
-        Whether the study is one of timings, which always run afresh.
+        Whether the study is one of timings, which always run afresh, alone and repeatedly.
     derived
         Function that returns the rows that are computed from finished cases.
     data
@@ -104,7 +107,8 @@ class Study:
         named = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
-        return [Case(scene, solver, full, ranks, self.measures) for scene, solver in pairs]
+        repeats = REPEATS if self.timed else 0
+        return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 
     def recipes(self) -> dict[tuple[str, str], Derived]:
         """Return the derived rows by the names that gates address them with."""
@@ -131,6 +135,7 @@ STUDIES = {
     "stability-small": "validation.stability_study:small",
     "stability": "validation.stability_study:full",
     "subblocks": "validation.subblocks:SUBBLOCKS",
+    "work-precision": "validation.work_precision:WORK_PRECISION",
 }
 
 
