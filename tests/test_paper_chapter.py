@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from validation import budget
+from validation.chapters_paper import claims_table, conclusion
 from validation.engine import run_study
 from validation.paper import PAPER
-from validation.report import FigureBlock, Table, chapter_of, figures
+from validation.report import FigureBlock, Table, chapter_of
 from validation.results import Results
 from validation.scene import load_scene
 from validation.studies import Study, scene_study
@@ -29,18 +30,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return kept
 
 
-def test_every_figure_is_written_as_svg_and_png(results: Results, tmp_path: Path) -> None:
-    written = {path.name for path in figures("paper", results, tmp_path)}
-    assert {f"figure-{n}.{kind}" for n in (1, 3, 4, 5, 6, 7, 8, 9) for kind in ("svg", "png")} <= written
-    assert "figures-3-4-damping-budget.svg" in written
-    assert all((tmp_path / name).stat().st_size > 2000 for name in written)
-
-
-def test_the_chapter_lists_every_claim_and_loads_no_solver(results: Results, tmp_path: Path) -> None:
-    blocks = chapter_of("paper")(results, results.manifest("paper"), tmp_path)
-    tables = [block for block in blocks if isinstance(block, Table)]
-    ids = [row[0] for table in tables[:2] for row in table.rows]
-    assert {f"C{i}" for i in range(1, 14)} | {"S16", "S21", "S32"} <= set(ids)
+def test_every_figure_is_written_as_svg_and_png_and_no_solver_is_loaded(results: Results, tmp_path: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from validation.report import figures; "
         "from validation.results import Results; "
@@ -49,6 +39,21 @@ def test_the_chapter_lists_every_claim_and_loads_no_solver(results: Results, tmp
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+    written = {path.name for path in tmp_path.iterdir()}
+    assert {f"figure-{n}.{kind}" for n in (1, 3, 4, 5, 6, 7, 8, 9) for kind in ("svg", "png")} <= written
+    assert "figures-3-4-damping-budget.svg" in written
+    assert all((tmp_path / name).stat().st_size > 2000 for name in written)
+
+
+def test_the_register_lists_every_claim(results: Results) -> None:
+    manifest = results.manifest("paper")
+    table = claims_table(manifest["data"]["claims"], {"C1": {"verdict": 2.0, "left": 0.001}, "C6": {"verdict": 1.0}})
+    rows = {row[0]: row for row in table.rows}
+    assert {f"C{i}" for i in range(1, 14)} | {"S13", "S16", "S20", "S21", "S29", "S32"} == set(rows)
+    assert rows["C1"][1] == "confirmed" and rows["C1"][4] == "left 0.001"
+    assert rows["C6"][1] == "under a condition" and "Condition: mode by mode" in rows["C6"][3]
+    assert rows["C2"][1] == "not tested"
+    assert "1 is confirmed, 1 holds under a condition" in conclusion({"C1": {"verdict": 2.0}, "C6": {"verdict": 1.0}})
 
 
 def test_a_scene_page_shows_its_budget_and_its_alarms(tmp_path: Path) -> None:

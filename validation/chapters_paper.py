@@ -22,6 +22,11 @@ from validation.results import Results
 SOLVERS = ("continuum", "bar", "fem", "dda")
 COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
 WORDS = {0: "refuted", 1: "under a condition", 2: "confirmed"}
+VERBS = {  # of one, of several
+    "confirmed": ("is confirmed", "are confirmed"),
+    "under a condition": tuple(f"{verb} under a condition that the paper does not name" for verb in ("holds", "hold")),
+    "refuted": ("is refuted", "are refuted"),
+}
 CLAIMS = "claims"
 
 
@@ -77,9 +82,8 @@ def paper_chapter(results: Results, manifest: dict[str, Any], directory: Path) -
 def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     """Return one sentence on the register."""
     count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
-    said = [f"{count[word]} are {word}" for word in ("confirmed", "under a condition", "refuted") if count[word]]
-    text = f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(said)}"
-    return text.replace("are under a condition", "hold under a condition that the paper does not name") + "."
+    said = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
+    return f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(said)}."
 
 
 def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
