@@ -129,6 +129,18 @@ def test_the_contact_force_follows_from_displacements_alone() -> None:
     np.testing.assert_allclose(force, other.pressure, atol=1e-4 * program.q)
 
 
+def test_a_base_that_gives_way_is_no_fault_of_the_integrator(tmp_path: Path) -> None:
+    """A heavy base that adds 1 % to the static displacement, and swings at 1.4 krad/s."""
+    program = Program(dt=5e-4, steps=60, base_young=1e12, fixed=5e9, gg=0.99)
+    history = run(program)
+    s = scene(time__step=program.dt, time__gg=program.gg)
+    answer = compare(s, read(write_measured_point(history, tmp_path / "m.m", program.dt)))
+    assert answer.causes == ["contact-opened", "base-compliance", "geometry-updated"]
+    assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": 0.99}
+    assert answer.ranking[0]["compliance"] == pytest.approx(0.01, abs=1e-3)
+    assert answer.opened == (1, 6) == tuple(history.opened or ())
+
+
 def test_steps_are_written_as_runs() -> None:
     assert span([1, 2, 3, 7, 9, 10]) == "1-3, 7, 9-10"
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from validation.causes import BENIGN_COMPLIANCE, CAUSES, compliance
+from validation.causes import CAUSES, benign_springs
 from validation.history import Array
 from validation.identify import Fit, Target
 from validation.open_close import Variant, histories
@@ -33,8 +33,8 @@ def expected(target: Target, found: Fit, scene: Variant) -> Array:
     Weight, moving geometry and a base that gives way a little are taken over from the fit.
     """
     v = found.variant
-    soft = v.softness if -BENIGN_COMPLIANCE / 3 <= compliance(target, v) <= BENIGN_COMPLIANCE else 0.0
-    plain = replace(scene, softness=soft, weight=v.weight, updated=v.updated)
+    soft = v.softness if benign_springs(target, v) else 0.0
+    plain = replace(scene, softness=soft, base=v.base, weight=v.weight, updated=v.updated)
     return histories(target.column, [plain], target.steps).displacement[:, 0]
 
 
