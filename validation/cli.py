@@ -264,7 +264,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no
 
 def main() -> None:
     """Run the command line; bad input is one line and status 2, an interruption status 130."""
-    from validation.scene import SceneError
+    from validation.errors import SceneError
 
     try:
         status = app(standalone_mode=False)

@@ -16,15 +16,12 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
+from validation.errors import SceneError as SceneError
 from validation.outline import Point, check_polygon, convex_quadrilateral
 
 SCENE_DIRECTORY = Path(__file__).parent / "scenes"
 FINE_ELEMENTS = 16
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
-
-
-class SceneError(ValueError):
-    """A scene, an option or a file that cannot be used; the text names file, field, rule and value."""
 
 
 def _real(value: object) -> float:
