@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from validation.cli_options import BaselineOption, RanksOption, SummaryOption
+
 if TYPE_CHECKING:
     from validation.gates import Verdict
     from validation.scene import Scene
@@ -44,9 +46,6 @@ FullOption = Annotated[
         help="Switch the numerical savings off: no dropped unknowns, no single column, no half block, no small space, "
         "no blocked steps.",
     ),
-]
-RanksOption = Annotated[
-    int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
 RESULTS: Path = Path("reports/results")
 
@@ -90,6 +89,8 @@ def run(
     require: Annotated[
         list[str] | None, typer.Option(help="Fail if gates of this solver were NOT RUN.", metavar="NAME")
     ] = None,
+    summary: SummaryOption = None,
+    baseline: BaselineOption = None,
 ) -> None:
     """Run studies or scenes, judge them and print one table of verdicts.
 
@@ -117,7 +118,8 @@ def run(
     tables.print_verdicts(verdicts, kept, names)
     tables.print_alarms(kept, names)
     refused = tables.print_failures(kept, names)
-    raise typer.Exit(_status(verdicts, require or [], refused))
+    worse = cli_verdicts.after_run([v for name in names for v in kept.verdicts(name)], summary, baseline)
+    raise typer.Exit(_status(verdicts, require or [], refused, worse))
 
 
 @app.command()
@@ -252,11 +254,13 @@ def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
             bar.stop()
 
 
-def _status(verdicts: list[Verdict], required: list[str], refused: bool) -> int:
+def _status(verdicts: list[Verdict], required: list[str], refused: bool, worse: bool | None) -> int:
+    """Status of a run; `worse` says whether a gate did better in the baseline, None without one."""
     if refused:
         return BAD_INPUT
     missing = [v for v in verdicts if v.status == "NOT RUN" and set(required) & set(v.gate.pair)]
-    return GATE_FAILED if missing or any(v.status == "FAIL" for v in verdicts) else PASSED
+    failed = any(v.status == "FAIL" for v in verdicts) if worse is None else worse
+    return GATE_FAILED if missing or failed else PASSED
 
 
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
@@ -288,7 +292,7 @@ def _stop(line: str, status: int) -> None:
     sys.exit(status)
 
 
-from validation import cli_compare, cli_damping, cli_work  # noqa: E402, F401  (add their commands to app)
+from validation import cli_compare, cli_damping, cli_verdicts, cli_work  # noqa: E402, F401  (add their commands to app)
 
 if __name__ == "__main__":
     main()
