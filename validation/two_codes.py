@@ -76,5 +76,6 @@ TWO_CODES = Study(
     purpose="The same mesh, degree and scheme by scikit-fem and by FEniCSx: own nodes, own weak forms, own Newmark "
     "loop, own linear algebra, on one rank and on two.",
     scenes=SCENES,
+    measures=("history",),
     gates=gates,
 )
