@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 .PHONY: report report-all test gates lint api bench clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
-	@$(BIN)/dda-validate run core stiff-contact stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
+	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
 
 report-all: $(READY)  ## every study and one PDF
 	@$(BIN)/dda-validate run all; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status

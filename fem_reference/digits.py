@@ -31,6 +31,16 @@ def warnings(problem: Problem) -> tuple[str, ...]:
     return tuple(found)
 
 
+def front(problem: Problem, step: float) -> tuple[str, ...]:
+    """Say how many elements the wave passes in a step where they are too coarse for its front, fewer than one."""
+    if problem.mesh is not None:
+        return ()
+    modulus = problem.lame + 2 * problem.shear_modulus
+    height = float(np.ptp(problem.outline[:, 1]))
+    passed = float(np.sqrt(modulus / problem.density)) * step * problem.elements / height
+    return (f"too coarse for the wave: {passed:.3g} elements per c dt, about 40 show its front",) if passed < 1 else ()
+
+
 def bounded(history: Array, pressure: float) -> Array:
     """Return the history of a unit pressure times the pressure, infinite from its first overflow on.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fem_reference.digits import bounded
+from fem_reference.digits import bounded, front
 from fem_reference.fields import FieldWriter
 from fem_reference.model import Model, build
 from fem_reference.newmark import Stepper, Work
@@ -67,7 +67,7 @@ def solve(
         nonzeros=stepper.work.nonzeros,
         factorisations=stepper.work.factorisations,
         solves=stepper.work.solves,
-        notes=(*model.notes, note),
+        notes=(*model.notes, *front(problem, scheme.step), note),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
         estimate=estimate,

@@ -145,6 +145,22 @@ def test_fem_says_where_it_promises_fewer_digits(scene):
     assert "nearly incompressible" in notes(**{"block.poisson": 0.499999, "block.hypothesis": "plane strain"})
 
 
+def test_fem_says_where_elements_are_too_coarse_for_the_wave(scene):
+    """C = 608.58 m/s, dt = 1e-4 s, four elements on 2 m: 0.122 elements a step."""
+    found = get_solver("fem").solve(scene.with_values({"time.step": 1e-4})).notes
+    assert any("0.122 elements per c dt" in note for note in found)
+    assert not any("per c dt" in note for note in get_solver("fem").solve(scene).notes)
+
+
+def test_energy_drift_is_seen(scene):
+    undamped = scene.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.steps": 9000})
+    solver = get_solver("dda")
+    assert stability.drift(solver, undamped, solver.solve(undamped)) < 9000 * 2.3e-16
+    damped = undamped.with_values({"time.alpha": 0.2501, "time.delta": 0.5 + 1e-6})
+    assert stability.drift(solver, damped, solver.solve(damped)) > 1e-3
+    assert stability.drift(solver, scene, solver.solve(scene)) == "undefined"
+
+
 def test_an_overflow_of_the_mesh_is_infinite_from_there_on(scene):
     case = scene.with_values(EXPLICIT | {"time.step": 10.0, "load.pressure": -3.0})
     values = get_solver("fem").solve(case).displacement

@@ -39,7 +39,7 @@ class Case:
     solver: str
     without_savings: bool = False
     ranks: int = 1  # of the solvers that can be distributed
-    measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "limit"
+    measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "energy", "limit"
     repeats: int = 0  # of a timed case, after a run that warms up
 
     @property
@@ -191,6 +191,8 @@ def _measure(solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[st
         measured = metrics.solo(seen, "modes" in case.measures)
     if "stability" in case.measures and run.outcome not in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
         measured |= stability.measure(solver, scene, run)
+    if "energy" in case.measures and run.outcome is Outcome.COMPLETED:
+        measured[stability.DRIFT] = stability.drift(solver, scene, run)
     if "limit" in case.measures:
         measured[stability.LIMIT] = stability.limit(solver, scene)
     return measured

@@ -261,4 +261,4 @@ def ratio(value: Value, reference: Value) -> Value:
 
 
 SOLO = tuple(solo(Measurable(History(np.zeros(0), {}), 1.0, {}, ())))
-METRICS = (*SOLO, *stability.METRICS, stability.GROWTH, stability.LIMIT, *PAIRS)
+METRICS = (*SOLO, *stability.METRICS, stability.GROWTH, stability.LIMIT, stability.DRIFT, *PAIRS)

@@ -22,7 +22,8 @@ METRICS = {  # metric -> key of a solver's diagnostics
     "stability.residual": "scaled_residual",
     "stability.omega": "largest_omega",
 }
-GROWTH, LIMIT, KIND = "stability.growth", "stability.limit", "stability.kind"
+GROWTH, LIMIT, KIND, DRIFT = "stability.growth", "stability.limit", "stability.kind", "energy.drift"
+WINDOW = 4000  # steps at either end of a run in which the amplitudes of its modes are fitted
 ROUNDING = 1e-9  # |radius - 1| within which a mode neither grows nor decays: a double root doubles the lost digits
 DEVELOPED = 1e8  # growth over the first steps beyond which the other modes no longer disturb the measured rate
 AGREED = 1e-2  # relative difference between growth seen and predicted: several modes may grow nearly alike
@@ -167,3 +168,27 @@ def limit(solver: Solver, scene: Scene) -> Value:
         if high / low < 1 + 1e-8:
             break
     return math.sqrt(low * high)
+
+
+def drift(solver: Solver, scene: Scene, run: Run) -> Value:
+    """Return the largest relative change of a mode's energy between the first and the last steps of a run.
+
+    The amplitudes of all modes are fitted, at the numerical frequencies of the step, to each column about its static
+    value; a mode counts in the column that shows it best. Undefined for short runs and for modes that do not turn.
+    """
+    try:
+        static, modes = solver.static(scene), solver.modes(scene)
+    except NotReported:
+        return NOT_REPORTED
+    angles = np.array([np.angle(mode.eigenvalues[0]) for mode in modes])
+    if run.history is None or len(run.history.time) < 2 * WINDOW or not np.all(np.abs(np.sin(angles)) > 1e-6):
+        return UNDEFINED
+    turns = np.outer(np.arange(WINDOW), angles)
+    waves = np.concatenate([np.cos(turns), np.sin(turns)], axis=1)
+    best = np.zeros((3, len(angles)))  # share of the static value; energy at the beginning and at the end
+    for name, column in run.history.columns.items():
+        y = column / static[name] - 1
+        energy = [np.linalg.lstsq(waves, part, rcond=None)[0] ** 2 for part in (y[:WINDOW], y[-WINDOW:])]
+        first, last = (part[: len(angles)] + part[len(angles) :] for part in energy)
+        best = np.where(first > best[0], np.array([first, first, last]), best)
+    return float(np.max(np.abs(best[2] / best[1] - 1)))

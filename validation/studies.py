@@ -131,6 +131,7 @@ STUDIES = {
     "core": "validation.core:CORE",
     "two-codes": "validation.two_codes:TWO_CODES",
     "paper": "validation.paper:PAPER",
+    "limits": "validation.locking:STUDY",
     "stiff-contact": "validation.stiff_contact:STUDY",
     "stability-small": "validation.stability_study:small",
     "stability": "validation.stability_study:full",
