@@ -256,6 +256,9 @@ _MEASURES = (
 )
 
 
+LONG_LABEL = 18  # letters; a longer label breaks in the width that the numbers leave
+
+
 def damping_table(group: Group) -> Table:
     """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver."""
     rows = [
@@ -267,7 +270,12 @@ def damping_table(group: Group) -> Table:
         for case in group.cases
         for i, solver in enumerate(_finished(case))
     ]
-    columns = [Column("Case"), Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES)]
+    long = any(len(case.label) > LONG_LABEL for case in group.cases)
+    columns = [
+        Column("Case", "fill" if long else "text"),
+        Column("Solver"),
+        *(Column(m.title, "decimal", m.over) for m in _MEASURES),
+    ]
     values = [row.metrics.get(m.metric) for case in group.cases for row in case.rows.values() for m in _MEASURES]
     return Table(tuple(columns), tuple(rows), notes=word_notes(values))
 

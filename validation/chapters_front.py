@@ -10,7 +10,7 @@ from typing import Any
 from validation import figures
 from validation.chapters import ORDER, band, gate_count, value_cell
 from validation.chapters_data import Group, groups
-from validation.chapters_ledger import ledger_lines, ledger_table, part_values
+from validation.chapters_ledger import ledger_lines, ledger_table, part_values, with_entries
 from validation.chapters_text import percent, plain, span
 from validation.report import CHAPTERS, Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
 from validation.results import Results
@@ -20,7 +20,8 @@ LEDGER_FIGURE = "error-ledger.svg"
 
 def front_matter(results: Results, studies: Sequence[str], directory: Path) -> list[Block]:
     """Return conclusion, failures, verdict counts and the error ledger of the studies of scenes."""
-    found = [group for study in studies if study not in CHAPTERS for group in groups(results, results.manifest(study))]
+    scenes = [study for study in studies if study not in CHAPTERS]
+    found = with_entries([group for study in scenes for group in groups(results, results.manifest(study))])
     verdicts = [v for study in studies for v in results.verdicts(study)]
     blocks: list[Block] = [
         Paragraph(headline(found, verdicts), "lead"),

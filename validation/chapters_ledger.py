@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from validation.chapters_data import Case, Group
 from validation.chapters_text import DASH, bounded, power, raised
@@ -68,6 +68,16 @@ def _absence(case: Case, solver: str) -> str:
     if row.outcome is Outcome.COMPLETED:
         return ""
     return f"{solver}: {row.outcome}" + (f" ({'; '.join(row.notes)})." if row.notes else ".")
+
+
+def with_entries(groups: Sequence[Group]) -> list[Group]:
+    """Return the groups with the cases that some part of the ledger applies to."""
+    kept = [replace(group, cases=tuple(case for case in group.cases if _has_entry(group, case))) for group in groups]
+    return [group for group in kept if group.cases]
+
+
+def _has_entry(group: Group, case: Case) -> bool:
+    return any(value is not None for part in PARTS for value in entry(group, case, part).values)
 
 
 def ledger_table(groups: Sequence[Group]) -> Table:

@@ -31,7 +31,15 @@ _SYMBOLS = {
     "block.side": ("a", " m"),
     "load.pressure": ("q", " Pa"),
     "fem.foundation": ("foundation", ""),
+    "fem.patch_width": ("patch width", " m"),
     "time.start": ("start", ""),
+    "load.traction": ("τ", " Pa"),
+    "load.gravity": ("g", " m/s²"),
+    "load.eccentricity": ("e", " m"),
+    "block.hypothesis": ("", ""),
+    "block.pattern": ("", ""),
+    "block.subdivide": ("", " sub-blocks"),
+    "block.glue_ratio": ("glue", "E"),
 }
 
 
@@ -119,11 +127,21 @@ def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
 def _label(values: dict[str, str], scene: Scene) -> str:
     parts = []
     for field, value in values.items():
-        symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1], ""))
+        symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))
         if field == "contact.stiffness":
             symbol, value, unit = "p", f"{scene.contact.stiffness / scene.block.young:.4g}E", ""
-        parts.append(f"{symbol} = {value}{unit}".replace("-", "−"))
+        elif unit == " Pa":
+            value, unit = _pressure(value)
+        parts.append((f"{symbol} = {value}{unit}" if symbol else value).replace("-", "−"))
     return ", ".join(parts) or AS_STATED
+
+
+def _pressure(text: str) -> tuple[str, str]:
+    """Return a pressure in MPa where it is large, as number and unit; zero needs none."""
+    value = float(text)
+    if value == 0:
+        return "0", ""
+    return (f"{value / 1e6:g}", " MPa") if abs(value) >= 1e4 else (f"{value:g}", " Pa")
 
 
 def parameters(scene: Scene, varied: set[str]) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import matplotlib as mpl
@@ -33,6 +34,7 @@ DOT = "#0072b2"
 LABEL_GAP = 3.0  # mm between the names of two lines
 LETTER = 1.5  # mm, width of a letter of a name, amply
 COLUMN_GAP = 4.0  # mm between two panels
+TITLE_LETTER, TITLE_LINE = 1.6, 3.2  # mm, letter and line of a panel's title, amply
 FLOOR = 1e-17  # differences below count as zero on a logarithmic axis
 
 
@@ -137,12 +139,23 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     columns = _columns(len(panels))
     bands = -(-len(panels) // columns)
     with house_style():
-        figure, grid = axes_grid([(24.0, 2.5), (15.0, 13.0)] * bands, columns, Margins(right=_label_room(panels)))
+        margins = Margins(right=_label_room(panels))
+        titles, extra = wrapped_titles([panel.title for panel in panels], columns, margins)
+        panels = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
+        margins = replace(margins, top=margins.top + extra)
+        figure, grid = axes_grid([(24.0, 2.5), (15.0, 13.0 + extra)] * bands, columns, margins)
         for band in range(bands):
             some = panels[band * columns : (band + 1) * columns]
             _history_row(grid[2 * band], some, column)
             _difference_row(grid[2 * band + 1], some, column)
     return figure
+
+
+def wrapped_titles(titles: Sequence[str], columns: int, margins: Margins) -> tuple[list[str], float]:
+    """Break titles so that they stay above their panel; return them and the height that they need more [mm]."""
+    across = (WIDTH - margins.left - margins.right) / columns - COLUMN_GAP
+    found = [textwrap.fill(title, max(8, int(across / TITLE_LETTER))) for title in titles]
+    return found, TITLE_LINE * max((title.count("\n") for title in found), default=0)
 
 
 def _label_room(panels: Sequence[Panel]) -> float:

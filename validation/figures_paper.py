@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from validation.chapters_curves import GREY, HAIR, STYLES, thin
-from validation.figures import Margins, axes_grid, draw_line, house_style, label_ends, size_of
+from validation.figures import Margins, axes_grid, draw_line, house_style, label_ends, size_of, wrapped_titles
 from validation.history import Array
 
 SCHEME_COLORS = ("#009e73", "#5d3a9b", "#cc79a7", "#8c6d1f")  # schemes are no solvers: colours of their own
@@ -167,7 +167,11 @@ def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
     columns = min(len(panels), BUDGET_PANELS)
     bands = -(-len(panels) // columns)
     with house_style():
-        figure, rows = axes_grid([(40.0, 15.0)] * bands, columns, Margins(right=24.0, top=8.0, bottom=9.5))
+        margins = Margins(right=24.0, top=8.0, bottom=9.5)
+        titles, extra = wrapped_titles([panel.title for panel in panels], columns, margins)
+        panels = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
+        margins = replace(margins, top=margins.top + extra)
+        figure, rows = axes_grid([(40.0, 15.0 + extra)] * bands, columns, margins)
         for band in range(bands):
             some = panels[band * columns : (band + 1) * columns]
             for axes, panel in zip(rows[band], some, strict=False):
