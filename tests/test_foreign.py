@@ -74,7 +74,11 @@ def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str)
         ("time,displacement\n1,2\n2,3\n3,4\n", "4 rows after t = 0 or more, got 3"),
         ("time,uy\n1,2\n2,3\n3,4\n4,5\n", "no column 'displacement' for displacement; it has time, uy; name it with"),
         ("time,displacement\n1,2\n1,3\n3,4\n4,5\n", "time: must increase from row to row, got 1 in row 2"),
-        ("time,displacement\n1,2\n2,nan\n3,4\n4,5\n", "displacement: must be finite numbers, got nan in row 2"),
+        (
+            "time,displacement\n1,2\n2,nan\n3,4\n4,5\n",
+            "displacement: must be finite numbers below 1e+100 in size, got nan",
+        ),
+        ("time,displacement\n1,2\n2,3\n3,4\n4,1e300\n", "got 1e+300 in row 4"),
         ("time,displacement\n1,2\n2,3,4\n3,4\n4,5\n", "row 2: must be 2 numbers"),
         ("measpoint1=[\n1 2 3\n4 5 6\n];", "must hold rows of 9 numbers"),
     ],
