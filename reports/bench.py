@@ -234,6 +234,27 @@ def sweep_seconds(count: int) -> float:
         return time.perf_counter() - began
 
 
+def two_workers() -> str:
+    """Return the line of a sweep on two worker processes over that on one."""
+    import tempfile
+
+    from validation import load_scene
+    from validation.engine import run_study
+    from validation.results import Results
+    from validation.studies import Study
+
+    scene = load_scene("poisson").with_values({"fem.elements": 48, "fem.degree": 1}).model_copy(update={"sweep": {}})
+    steps = [1e-3 * (1 + i / 16) for i in range(16)]
+    study = Study("sweep", "Sweep", "Sweep.", [scene], ("fem",), {"time.step": steps}, measures=("history",))
+    spent = []
+    for jobs in (1, 2):
+        with tempfile.TemporaryDirectory() as directory:
+            began = time.perf_counter()
+            run_study(study, Results(directory), jobs=jobs)
+            spent.append(time.perf_counter() - began)
+    return f"A sweep of 16 scenes by `fem` takes {spent[0]:.2g} s on one worker and {spent[1]:.2g} s on two."
+
+
 def start_up() -> list[str]:
     """Return the lines of the start-up table: processor seconds of a fresh interpreter."""
     lines = []
@@ -276,6 +297,12 @@ A history of n steps keeps the time and the asked columns, 8 (1 + columns) n byt
 no state of any step is kept. The elements keep the vectors of the small space, 8 bytes times unknowns times
 vectors (at most 400), beside the factor of one sparse matrix; the results directory 8 (1 + columns) n bytes a case.
 
+{sweep}
+
+## The estimate
+
+{honesty}
+
 ## Start-up
 
 | what | processor seconds |
@@ -289,6 +316,8 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--quick", action="store_true", help="leave the long contests out and print only")
     quick = options.parse_args().quick
+    from rivals import estimates
+
     lines = [compete(contest) for contest in contests(quick)] + [fenicsx_line()]
     page = PAGE.format(
         machine=f"{os.cpu_count()} cores, {platform.machine()}",
@@ -297,6 +326,8 @@ def main() -> None:
         contests="\n".join(lines),
         growth="\n".join(growth(quick)),
         start="\n".join(start_up()),
+        sweep=two_workers(),
+        honesty=estimates.honesty(40 if quick else 200),
     )
     if quick:
         print(page)
