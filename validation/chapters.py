@@ -256,28 +256,23 @@ _MEASURES = (
 )
 
 
-LONG_LABEL = 18  # letters; a longer label breaks in the width that the numbers leave
+LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
 
 
 def damping_table(group: Group) -> Table:
     """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver."""
-    rows = [
-        (
-            case.label if i == 0 else "",
-            solver,
-            *(_measured(m, case.rows[solver].metrics.get(m.metric), case.scene) for m in _MEASURES),
-        )
-        for case in group.cases
-        for i, solver in enumerate(_finished(case))
-    ]
     long = any(len(case.label) > LONG_LABEL for case in group.cases)
-    columns = [
-        Column("Case", "fill" if long else "text"),
-        Column("Solver"),
-        *(Column(m.title, "decimal", m.over) for m in _MEASURES),
-    ]
-    values = [row.metrics.get(m.metric) for case in group.cases for row in case.rows.values() for m in _MEASURES]
-    return Table(tuple(columns), tuple(rows), notes=word_notes(values))
+    rows: list[tuple[str, ...]] = []
+    for case in group.cases:
+        rows += [(case.label,)] if long else []
+        for i, solver in enumerate(_finished(case)):
+            values = (_measured(m, case.rows[solver].metrics.get(m.metric), case.scene) for m in _MEASURES)
+            rows.append((*(() if long else (case.label if i == 0 else "",)), solver, *values))
+    columns = [Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES)]
+    measured = [row.metrics.get(m.metric) for case in group.cases for row in case.rows.values() for m in _MEASURES]
+    return Table(
+        tuple(columns if long else [Column("Case"), *columns]), tuple(rows), notes=word_notes(measured), ruled=not long
+    )
 
 
 def _finished(case: Case) -> list[str]:

@@ -154,7 +154,9 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
 def wrapped_titles(titles: Sequence[str], columns: int, margins: Margins) -> tuple[list[str], float]:
     """Break titles so that they stay above their panel; return them and the height that they need more [mm]."""
     across = (WIDTH - margins.left - margins.right) / columns - COLUMN_GAP
-    found = [textwrap.fill(title, max(8, int(across / TITLE_LETTER))) for title in titles]
+    # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
+    whole = [", ".join(part.replace(" ", "\u00a0") for part in title.split(", ")) for title in titles]
+    found = [textwrap.fill(title, max(8, int(across / TITLE_LETTER)), break_long_words=False) for title in whole]
     return found, TITLE_LINE * max((title.count("\n") for title in found), default=0)
 
 
