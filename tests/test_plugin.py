@@ -126,3 +126,11 @@ def test_a_broken_solver_fails_by_name() -> None:
     shown = through_the_gates("hangs", "--dda-timeout", "1")
     assert "passed" not in shown and "hangs: no history within 1 s" in shown
     assert "hung in 2 cases already and is not tried again" in shown
+
+
+def test_a_user_is_asked_for_the_two_block_model_alone() -> None:
+    from validation.test_gates import _applies, _gates
+
+    asked = [name for name in _gates() if _applies(name)]
+    assert any(name.startswith("figures-3-4") for name in asked)
+    assert not [name for name in asked if name.startswith(("subblocks", "extremes"))]

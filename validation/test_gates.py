@@ -33,10 +33,19 @@ def _cases(study: str) -> dict[tuple[str, str], Case]:
     return {(case.scene.name, case.solver): case for case in get_study(study).cases()}
 
 
+def _applies(name: str) -> bool:
+    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history."""
+    study, gate = _gates()[name]
+    if gate.pair[0] != JUDGED or gate.cases[0] not in _cases(study):
+        return False
+    case = _cases(study)[gate.cases[0]]
+    return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
+
+
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each gate; with ``--dda-solver`` of those on `dda` only."""
     user = metafunc.config.getoption("--dda-solver", None)
-    names = [name for name, (_, gate) in _gates().items() if user is None or gate.pair[0] == JUDGED]
+    names = [name for name in _gates() if user is None or _applies(name)]
     marks = {name: pytest.mark.xdist_group(_gates()[name][1].scene.partition("[")[0]) for name in names}
     metafunc.parametrize("name", [pytest.param(name, marks=marks[name], id=name) for name in names])
 
