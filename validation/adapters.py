@@ -7,18 +7,18 @@ imported by the adapter that needs them and by no other.
 from __future__ import annotations
 
 import cmath
-import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from validation.history import PRESSURE, History, Mode, Outcome, Run
+from validation.history import Mode, Run
 from validation.record import base_record
 from validation.scene import Scene, SceneError
 from validation.solvers import NotReported, Solver
+from validation.translation import check_columns, named, no_fields, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -26,55 +26,6 @@ if TYPE_CHECKING:
     import fem_reference.model
 
 BAR_COLUMNS = ("displacement", "contact_pressure")
-
-
-def to_run(scene: Scene, result: dda.Result | fem_reference.Result, notes: tuple[str, ...] = ()) -> Run:
-    """Translate a solver's result; the two packages share no class, only the names of the fields."""
-    history = History(result.time, {name: result.columns[name] for name in scene.run.columns})
-    work = {
-        "unknowns": result.unknowns,
-        "nonzeros": result.nonzeros,
-        "factorisations": result.factorisations,
-        "solves": result.solves,
-        "steps": scene.time.steps,
-    }
-    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
-    tension = pulls(history)
-    return Run(
-        Outcome.COMPLETED,
-        history,
-        work,
-        seconds,
-        (*notes, *result.notes, *tension),
-        getattr(result, "estimate", None),
-    )
-
-
-Solve = Callable[[Any, Scene, bool, Path | None], Run]
-
-
-def named(solve: Solve) -> Callable[..., Run]:
-    """Give what a solver package refuses, a ValueError, the name of the scene: a SceneError."""
-
-    @functools.wraps(solve)
-    def wrapped(self: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        try:
-            return solve(self, scene, full, fields)
-        except SceneError:
-            raise
-        except ValueError as error:
-            raise SceneError(f"{scene.name}: {error}") from None
-
-    return wrapped
-
-
-def pulls(history: History) -> tuple[str, ...]:
-    """A locked contact hides tension: say where it pulls."""
-    pressure = history.columns.get(PRESSURE)
-    if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
-        return ()
-    least = int(np.argmin(pressure))
-    return (f"the locked contact pulls: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
 
 
 def check_step(scene: Scene, frequency: float) -> None:
@@ -160,7 +111,7 @@ class DDA(Solver):
         """Run the scene."""
         import dda
 
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         self._check(scene, dda.COLUMNS)
         asked = self.scheme(scene), scene.time.steps, scene.run.columns, full
         system = self.system(scene)
@@ -215,7 +166,7 @@ class Textbook(DDA):
         """Run the scene; there is nothing to save, so `full` changes nothing."""
         import dda
 
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         self._check(scene, dda.COLUMNS)
         model, scheme = self.model(scene), self.scheme(scene)
         return to_run(scene, dda.solve_textbook(model, scheme, scene.time.steps, scene.run.columns))
@@ -346,7 +297,7 @@ class ExactBar(FiniteElements):
     @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         check_columns(scene, BAR_COLUMNS)
         return to_run(scene, self.bar(scene).solve(self.scheme(scene), scene.time.steps, scene.run.columns))
 
@@ -378,7 +329,7 @@ class Continuum(ExactBar):
     @named
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene; there is nothing to save, so `full` changes nothing."""
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         check_columns(scene, BAR_COLUMNS)
         return to_run(scene, self.bar(scene).continuum(self.scheme(scene), scene.time.steps, scene.run.columns))
 
@@ -397,21 +348,3 @@ class Continuum(ExactBar):
 def _modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
     return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
-
-
-def check_columns(scene: Scene, known: tuple[str, ...]) -> None:
-    """Refuse columns that a solver does not have.
-
-    Raises
-    ------
-    SceneError
-        `[run] columns` names an unknown one.
-    """
-    unknown = [name for name in scene.run.columns if name not in known]
-    if unknown:
-        raise SceneError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
-
-
-def _no_fields(name: str, scene: Scene, fields: Path | None) -> None:
-    if fields is not None:
-        raise SceneError(f"{scene.name}: --fields: needs the solver fem, which has a mesh, got {name}")

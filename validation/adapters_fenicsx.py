@@ -18,11 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.adapters import FiniteElements, _no_fields, check_columns, pulls
+from validation.adapters import FiniteElements
 from validation.history import History, Mode, Outcome, Run
 from validation.record import base_record
 from validation.scene import Scene, SceneError
 from validation.solvers import NotReported, Solver
+from validation.translation import check_columns, no_fields, pulls
 from validation.worker import ask
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
@@ -116,7 +117,7 @@ class FEniCSx(Solver):
 
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene on its whole mesh; it has no savings, so `full` changes nothing."""
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         check_columns(scene, COLUMNS)
         FiniteElements().check_stable(scene)
         if missing := self.missing():

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.adapters import DDA, _no_fields, pulls
+from validation.adapters import DDA
 from validation.history import DISPLACEMENT, PRESSURE, Array, History, Mode, Outcome, Run
 from validation.metrics import norm
 from validation.scene import Scene
 from validation.solvers import NotReported, Solver
+from validation.translation import no_fields, pulls
 from validation.worker import WorkerDied, WorkerHangs, ask
 
 LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case, and what sets it
@@ -41,7 +42,7 @@ class UserSolver(Solver):
 
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
         """Run the scene in the solver's own process."""
-        _no_fields(self.name, scene, fields)
+        no_fields(self.name, scene, fields)
         limit = float(os.environ.get(VARIABLE, LIMIT))
         command = [sys.executable, "-m", "validation.user_worker", self.target, os.getcwd(), *filter(None, sys.path)]
         try:

@@ -23,6 +23,7 @@ from validation.solvers import DISTRIBUTED, NotReported, Solver, get_solver
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 JUDGING_SOURCES = (
     "validation.adapters",
+    "validation.translation",
     "validation.cases",
     "validation.metrics",
     "validation.pencil",

@@ -12,10 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.adapters import BAR_COLUMNS, DDA, ExactBar, FiniteElements, check_columns
+from validation.adapters import BAR_COLUMNS, DDA, ExactBar, FiniteElements
 from validation.history import Array, History, Outcome, Run
 from validation.precise_block import Number
 from validation.scene import Scene, SceneError
+from validation.translation import check_columns
 
 LARGEST = float(np.finfo(float).max)
 MOST_UNKNOWNS = 60  # beyond it sixty digits would take minutes
