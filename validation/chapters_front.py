@@ -93,14 +93,16 @@ def failure_table(verdicts: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def verdict_counts(results: Results, studies: Sequence[str]) -> Table:
-    """Return PASS, FAIL and NOT RUN per scene of each study."""
+    """Return PASS, FAIL and NOT RUN per study; per scene of a single study, and of scenes that do not pass."""
     rows = []
     for study in studies:
         per_scene: dict[str, Counter[str]] = {}
         for v in results.verdicts(study):
             per_scene.setdefault(v["scene"].partition("[")[0], Counter())[v["verdict"]] += 1
         total = sum(per_scene.values(), Counter())
-        rows += [(study, "all scenes", *_counts(total))] + [("", name, *_counts(c)) for name, c in per_scene.items()]
+        rows.append((study, "all scenes", *_counts(total)))
+        listed = {name: c for name, c in per_scene.items() if len(studies) == 1 or set(c) - {"PASS"}}
+        rows += [("", name, *_counts(c)) for name, c in listed.items()]
     return Table(
         (Column("Study"), Column("Scene"), *(Column(word, "decimal") for word in reversed(ORDER))), tuple(rows)
     )
