@@ -1,11 +1,14 @@
-"""Shared fixtures: a small scene as text, as a file, and the command line as a process."""
+"""Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from validation.results import Results
 
 SCENE = """\
 title = "A small scene"
@@ -28,6 +31,52 @@ steps = 50
 [fem]
 elements = 4
 """
+
+
+TOGETHER = (  # modules whose tests share what takes long to make
+    "test_chapter_subblocks",
+    "test_ci",
+    "test_claims",
+    "test_compare",
+    "test_confusion",
+    "test_fenicsx",
+    "test_paper_chapter",
+    "test_report",
+    "test_work_precision",
+)
+
+
+def group_of(nodeid: str) -> str:
+    """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself."""
+    path, _, name = nodeid.partition("::")
+    if name.startswith("test_gate["):
+        return re.split(r"[\[:]", name.removeprefix("test_gate["))[0]
+    return path if Path(path).stem in TOGETHER else nodeid
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """Keep groups on one worker, in the order of collection; marks do not reach pytest-xdist from pytest 9.2 on."""
+    if config.getvalue("dist") != "loadgroup":
+        return None
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Groups(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return group_of(nodeid)
+
+    config.option.loadscopereorder = False
+    return Groups(config, log)
+
+
+def beside(finished_cases: Path, directory: Path) -> Results:
+    """Return a results directory of its own studies and verdicts, whose finished cases are those of all tests."""
+    (finished_cases / "histories").mkdir(parents=True, exist_ok=True)
+    (finished_cases / "rows.jsonl").touch()
+    directory.mkdir(exist_ok=True)
+    for name in ("histories", "rows.jsonl"):
+        (directory / name).symlink_to(finished_cases / name)
+    return Results(directory)
 
 
 @pytest.fixture

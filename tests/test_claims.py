@@ -23,8 +23,8 @@ NEEDED = {need for claim in CLAIMS for need in claim.needs}
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Finished:
-    return run(tmp_path_factory.mktemp("claims"))
+def sound(finished_cases: Path) -> Finished:
+    return run(finished_cases)
 
 
 def run(directory: Path) -> Finished:

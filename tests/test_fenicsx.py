@@ -217,8 +217,8 @@ def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
 
 
 @needs_fenicsx
-def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path) -> None:
-    sound = finish(CASES, TWO_CODES, Results(tmp_path / "sound"))
+def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, finished_cases: Path) -> None:
+    sound = finish(CASES, TWO_CODES, Results(finished_cases))
     assert not failed(sound)
     kills: dict[str, set[str]] = {}
     for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):

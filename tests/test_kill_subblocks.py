@@ -62,5 +62,5 @@ GATES = [gate for gate in SUBBLOCKS.gates() if not any(word in gate.scene for wo
 CASES = [case for case in SUBBLOCKS.cases() if case.scene.name in {gate.scene for gate in GATES}]
 
 
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
-    check_kill_matrix(SUBBLOCKS, CASES, GATES, FAULTS, tmp_path)
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(SUBBLOCKS, CASES, GATES, FAULTS, tmp_path, finished_cases)

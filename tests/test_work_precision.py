@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from conftest import beside
 from test_kill_matrix import Fault, check_kill_matrix, swapped, with_scheme
 from typer.testing import CliRunner
 
@@ -24,8 +25,8 @@ COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timin
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    kept = Results(tmp_path_factory.mktemp("work"))
+def results(tmp_path_factory, finished_cases):
+    kept = beside(finished_cases, tmp_path_factory.mktemp("work"))
     verdicts = run_study(COARSE, kept)
     assert [str(v.status) for v in verdicts] == ["PASS"] * len(verdicts)
     return kept
@@ -55,8 +56,8 @@ def softer(problem):
     return replace(problem, young=0.999 * problem.young)
 
 
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path) -> None:
-    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path)
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
 
 
 def test_orders_carry_their_sign():

@@ -6,10 +6,9 @@ It imports nothing heavy, since every pytest of every project that has this pack
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-if TYPE_CHECKING:
-    import pytest
+import pytest
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -36,3 +35,10 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
     if config.getoption("--dda-solver", None):
         os.environ["DDA_VALIDATE_TIMEOUT"] = str(config.getoption("--dda-timeout"))
+
+
+@pytest.fixture(scope="session")
+def finished_cases(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the directory of this run's finished cases, which the workers of pytest-xdist share."""
+    base = tmp_path_factory.getbasetemp()
+    return (base.parent if hasattr(request.config, "workerinput") else base) / "finished-cases"

@@ -8,6 +8,7 @@ gates' verdicts without seconds. Everything that a report needs is here: it cann
 from __future__ import annotations
 
 import errno
+import functools
 import json
 import os
 import zipfile
@@ -57,6 +58,9 @@ class Row:
             return None
 
 
+_parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
+
+
 class Results:
     """A results directory; it is made when the first thing is written."""
 
@@ -81,7 +85,7 @@ class Results:
         if not path.is_file():
             raise SceneError(f"{path}: cannot be read: it is no file; choose another place with --results")
         try:
-            parsed = map(Row.parse, path.read_text(encoding="utf-8", errors="replace").splitlines())
+            parsed = map(_parsed, path.read_text(encoding="utf-8", errors="replace").splitlines())
         except OSError as error:
             raise SceneError(f"{path}: cannot be read: {error.strerror}; choose another place with --results") from None
         return {row.key: row for row in parsed if row is not None}

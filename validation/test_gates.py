@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -16,7 +17,7 @@ from validation.gates import Gate, Status, Verdict
 from validation.history import Outcome
 from validation.metrics import NOT_REPORTED
 from validation.results import Results
-from validation.studies import get_study, judged_studies
+from validation.studies import Derived, Study, get_study, judged_studies
 
 JUDGED = "dda"  # whose place a user's solver takes
 PATIENCE = 2  # cases that may hang before the rest are not tried
@@ -29,8 +30,19 @@ def _gates() -> dict[str, tuple[str, Gate]]:
 
 
 @cache
+def _untimed(study: str) -> Study:
+    """Return a study without the repeats of timings, of which no gate speaks."""
+    return replace(get_study(study), timed=False)
+
+
+@cache
+def _recipes(study: str) -> dict[tuple[str, str], Derived]:
+    return get_study(study).recipes()
+
+
+@cache
 def _cases(study: str) -> dict[tuple[str, str], Case]:
-    return {(case.scene.name, case.solver): case for case in get_study(study).cases()}
+    return {(case.scene.name, case.solver): case for case in _untimed(study).cases()}
 
 
 def _applies(name: str) -> bool:
@@ -51,9 +63,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 @pytest.fixture(scope="session")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+def finished(finished_cases: Path) -> Finished:
     """Return the cases run in this session, filled as gates ask for them."""
-    return Finished({}, Results(tmp_path_factory.mktemp("results")))
+    return Finished({}, Results(finished_cases))
 
 
 @pytest.mark.validation
@@ -65,9 +77,10 @@ def test_gate(name: str, finished: Finished, pytestconfig: pytest.Config) -> Non
     missing = _missing(study, gate, user, finished)
     if missing and sum(row.outcome is Outcome.TIMEOUT for row in finished.rows.values()) >= PATIENCE:
         pytest.fail(f"{gate.id}: {user} hung in {PATIENCE} cases already and is not tried again", pytrace=False)
-    fresh = finish(missing, get_study(study), finished.results)
-    finished.rows.update(fresh.rows)
-    verdict = _verdict(judged, Finished(finished.rows, finished.results, fresh.derived), foreign=user is not None)
+    if missing:
+        finished.rows.update(finish(missing, _untimed(study), finished.results).rows)
+    found = Finished(finished.rows, finished.results, _recipes(study))
+    verdict = _verdict(judged, found, foreign=user is not None)
     if verdict.status is Status.NOT_RUN:
         pytest.skip(f"NOT RUN: {verdict.why}")
     measured = f"{verdict.value} is outside [{gate.low:g}, {gate.high:g}]; the band: {gate.reason}"

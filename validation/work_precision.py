@@ -6,6 +6,7 @@ two is refined alone, large steps for orders in h and smooth blocks for orders i
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -94,6 +95,7 @@ def refined_meshes() -> Iterator[Scene]:
     yield scene("work-h-poisson", "Where no closed form exists: mu = 0.25", values, {"fem.elements": list(MESHES)})
 
 
+@functools.cache
 def scenes() -> tuple[Scene, ...]:
     """Return all scenes."""
     return (*refined_together(), *refined_steps(), *refined_meshes())
@@ -174,6 +176,7 @@ def grid_convergence() -> Derived:
     return Derived(name, "gci", tuple((case.name, "fem") for case in levels), compute)
 
 
+@functools.cache
 def derived() -> tuple[Derived, ...]:
     """Return the rows of orders, of the grid-convergence index and of the comparison with the record."""
     times = [order_in_time(f"work-dt-{scheme}-{start}") for scheme, start in TIME_ORDERS]
@@ -181,6 +184,7 @@ def derived() -> tuple[Derived, ...]:
     return (*times, *meshes, grid_convergence(), work_record.compared(study_cases()))
 
 
+@functools.cache
 def study_cases() -> tuple[tuple[str, str], ...]:
     """Return the (case, solver) pairs whose errors and work the record keeps."""
     return tuple(
