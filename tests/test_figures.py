@@ -163,20 +163,7 @@ def test_ledger_figure_shows_each_number_once():
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]
 
 
-@pytest.mark.parametrize("order", [2.0, 4.0, -1.0])
-def test_error_figure_names_the_order_with_its_sign(order):
-    h = np.array([0.5, 0.25, 0.125, 0.0625])
-    figure = figures.error_figure([figures.Line("fem", h, 3 * h**order)], "h [m]", "error")
-    assert [t.get_text() for t in figure.axes[0].texts] == [f"fem (order {order:.2f})"]
-
-
 def test_line_figure_names_lines_and_levels():
     n = np.array([4.0, 8.0, 16.0])
     figure = figures.line_figure([figures.Line("fem", n, -n, ": steep")], "n", "v [mm]", {"dda": -1.0}, log2_x=True)
     assert {t.get_text() for t in figure.axes[0].texts} == {"fem: steep", "dda"}
-
-
-def test_digits_figure_counts_digits():
-    error = np.array([[1e-3, 0.0], [np.nan, 2.0]])
-    figure = figures.digits_figure(error, ["a", "b"], ["c", "d"], "dt [s]", "p/E")
-    assert [t.get_text() for t in figure.axes[0].texts] == ["3", "16", "0", "0"]

@@ -13,7 +13,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from validation.chapters_curves import (
     COLUMNS,
@@ -317,45 +317,4 @@ def line_figure(
             {line.name: float(line.y[-1]) for line in lines} | dict(levels or {}),
             {line.name: f"{line.name}{line.note}" for line in lines},
         )
-    return figure
-
-
-def error_figure(lines: Sequence[Line], x_label: str, y_label: str) -> Figure:
-    """Draw errors over step or mesh size, both logarithmic; each name carries the fitted order, with its sign."""
-    with house_style():
-        figure, ((axes,),) = axes_grid([(52.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        names, ends = {}, {}
-        for line in lines:
-            good = (line.y > 0) & np.isfinite(line.y)
-            x, y = line.x[good], line.y[good]
-            draw_line(axes, line.name, x, y)
-            axes.plot(x, y, "o", ms=3, color=style_of(line.name).color, zorder=9)
-            order = float(np.polyfit(np.log(x), np.log(y), 1)[0]) if x.size > 1 else math.nan
-            names[line.name], ends[line.name] = f"{line.name} (order {order:.2f})", float(y[np.argmax(x)])
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel(x_label)
-        axes.set_ylabel(y_label)
-        axes.autoscale_view()
-        label_ends(axes, ends, names)
-    return figure
-
-
-def digits_figure(error: Array, rows: Sequence[str], columns: Sequence[str], x_label: str, y_label: str) -> Figure:
-    """Draw a map of correct digits, -log10 of the error cut to 0..16, with the number in every cell."""
-    digits = np.clip(-np.log10(np.clip(np.nan_to_num(error, nan=1.0, posinf=1.0), 1e-16, 1.0)), 0, 16) + 0.0
-    with house_style():
-        figure, ((axes,),) = axes_grid(
-            [(5.0 * len(rows), 0.0)], 1, Margins(24.0, 4.0, 3.0, 11.0), min(WIDTH, 32.0 + 10.0 * len(columns))
-        )
-        axes.imshow(digits, cmap="cividis", vmin=0, vmax=16, aspect="auto")
-        for (i, j), value in np.ndenumerate(digits):
-            axes.text(j, i, f"{value:.0f}", ha="center", va="center", color="black" if value > 8 else "white")
-        axes.set_xticks(range(len(columns)), list(columns))
-        axes.set_yticks(range(len(rows)), list(rows))
-        axes.tick_params(length=0)
-        axes.set_xlabel(x_label)
-        axes.set_ylabel(y_label)
     return figure
