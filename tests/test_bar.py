@@ -5,8 +5,11 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.special import i0e, i1e
 
-from fem_reference.bar import Bar, applicable, cut_off, shares, wave_numbers
+from fem_reference import continuum, damped
+from fem_reference.bar import Bar, applicable
+from fem_reference.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.bar_scheme import applicable as scheme_applicable
 from fem_reference.bar_scheme import first_steps, roots, weighted_response
 from fem_reference.problem import Problem, Scheme
@@ -214,3 +217,62 @@ def test_a_mode_that_stops_at_once_has_no_power():
     for name, values in result.columns.items():
         assert np.all(np.isfinite(values)) and values[2:] == pytest.approx(bar.static()[name], rel=1e-13)
     assert np.isfinite(result.estimate)
+
+
+def damped_by_kernel(column, t, kappa, a):
+    """Damped history at one instant: Bessel kernel on the undamped waves, panels graded towards the fronts."""
+    first, gap = (1.0, 2.0) if column == "contact_pressure" else (0.5, 1.0)
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    total = np.exp(-a * t) * continuum.undamped(column, np.array([t]), kappa)[0, 0]
+    for front in np.arange(first, t, gap):
+        length = min(gap, t - front)
+        edges = np.unique(np.append(length * 2.0 ** -np.arange(0, 40, 0.5), np.linspace(0, length, 60)))
+        half = np.diff(edges)[:, None] / 2
+        u = (front + edges[:-1, None] + half * (1 + nodes)).ravel()
+        z = np.sqrt((t - u) * (t + u))
+        kernel = a * np.exp(-a * u * u / (t + z)) * (i0e(a * z) + t * i1e(a * z) / z)
+        total += ((half * weights).ravel() * kernel) @ continuum.undamped(column, u, kappa)[0]
+    return total
+
+
+@pytest.mark.parametrize("kappa", [2.0, 1e3, 1e9])
+@pytest.mark.parametrize("a", [0.003, 1.0, 7.0, 60.0])
+@pytest.mark.parametrize("step", [0.25, 0.250001, 0.2371])
+def test_damped_bar_against_the_kernel(kappa, a, step):
+    # On the fronts, right behind them and away from them; 2e-11 is the tail beyond the modes at a stiff spring.
+    columns = ("displacement", "contact_pressure")
+    found = continuum.histories(step * np.arange(1, 21), kappa, 2 * a, columns)
+    for column, row in zip(columns, found, strict=True):
+        for i in (5, 11, 18):
+            assert row[i] == pytest.approx(damped_by_kernel(column, step * (i + 1), kappa, a), abs=2e-11)
+
+
+@pytest.mark.parametrize(("gg", "dt"), [(0.98, 1e-2), (0.999999, 1e-6), (0.5, 1e-6), (0.5, 1e-9), (0.01, 1e-3)])
+def test_damped_bar_sums_a_bounded_number_of_modes(gg, dt, monkeypatch):
+    asked, waves = [], []
+    wave_numbers_of, undamped = damped.wave_numbers, continuum.undamped
+    monkeypatch.setattr(damped, "wave_numbers", lambda kappa, n: (asked.append(n), wave_numbers_of(kappa, n))[1])
+    monkeypatch.setattr(continuum, "undamped", lambda c, t, k: (waves.append(t), undamped(c, t, k))[1])
+    result = PAPER.continuum(Scheme(0.5, 1.0, gg, dt), 20000)
+    assert asked and max(asked) <= damped.FRONT_MODES
+    assert sum(((t / 2) ** 2).sum() for t in waves) <= damped.WAVE_WORK
+    if gg == 0.98:
+        for name, column in result.columns.items():
+            assert column[-1] == pytest.approx(PAPER.static()[name], rel=1e-12)
+
+
+def test_late_damped_fronts_are_refused():
+    with pytest.raises(ValueError, match=r"^steps: "):
+        PAPER.continuum(Scheme(0.5, 1.0, 1 - 1e-6, PAPER.travel / 2), 20000)
+
+
+def test_waves_beyond_the_range_of_the_exponential():
+    # exp(-x / 2) is zero in doubles for the first of these waves, and the series still oscillates about one.
+    mp = pytest.importorskip("mpmath").mp
+    x, j = 1800.0, 500
+    waves = continuum._Laguerre(np.full(j + 2, x))
+    for _ in range(j):
+        waves.advance()
+    with mp.workdps(60):
+        first, second = (mp.exp(-x / 2) * mp.laguerre(n, 0, x) for n in (j, j + 1))
+        assert waves.advance()[0] == pytest.approx(float(first - second), abs=1e-12)
