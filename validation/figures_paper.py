@@ -220,6 +220,12 @@ def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
             axes.plot(dt[ends[-1]], y[ends[-1]], "o", ms=2.6, mfc="white", mec=color, mew=0.7, zorder=6)
     if all(np.nanmax(values, initial=0.0) < LEAST_RATIO for values, *_ in _lines(panel.budget).values()):
         axes.text(0.5, 0.5, "no damping", transform=axes.transAxes, ha="center", color=GREY)
+    if floor := panel.budget["floor"]:
+        clear = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        said = f"ω₁ = {floor:.3f} × bar"
+        axes.text(
+            0.97, 0.05, said, transform=axes.transAxes, ha="right", color=GREY, fontsize=5.5, bbox=clear, zorder=5
+        )
     _limit_lines(axes, panel.budget)
     for step in panel.budget["steps"]:
         axes.plot(step, 100 * LEAST_RATIO, "^", ms=3.4, color="black", clip_on=False, zorder=8)
