@@ -1,9 +1,11 @@
 """Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
 
+import io
 import os
 import re
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -96,3 +98,19 @@ def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProc
         cwd=cwd,
         env=os.environ | {"OMP_NUM_THREADS": "1", "COLUMNS": "160"},
     )
+
+
+def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the command line in this process, where not the process is the point: no start-up."""
+    from validation.cli import main
+
+    said, complained, words = io.StringIO(), io.StringIO(), [str(argument) for argument in arguments]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):
+        patch.setattr(sys, "argv", ["dda-validate", *words])
+        patch.setenv("COLUMNS", "160")
+        patch.chdir(cwd or Path.cwd())
+        with pytest.raises(SystemExit) as stopped:
+            main()
+    status = stopped.value.code
+    assert isinstance(status, int)
+    return subprocess.CompletedProcess(words, status, said.getvalue(), complained.getvalue())

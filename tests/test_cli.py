@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, cli
+from conftest import SCENE, cli, typed
 
 from validation.history import read_csv
 
@@ -85,7 +85,7 @@ BAD = [
     ("arguments", "words"), BAD, ids=lambda value: " ".join(value) if isinstance(value, list) else ""
 )
 def test_bad_input_is_one_line_and_status_two(arguments: list[str], words: str, tmp_path: Path) -> None:
-    done = cli(*arguments, cwd=tmp_path)
+    done = typed(*arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert words in done.stderr
     assert "Traceback" not in done.stderr
@@ -108,7 +108,7 @@ def test_words_that_nothing_answers_to_are_refused_before_anything_is_written(
     command: str, table: str, words: str, scene_file: Path
 ) -> None:
     scene_file.write_text(f"{SCENE}\n{table}\n")
-    done = cli(command, scene_file, cwd=scene_file.parent)
+    done = typed(command, scene_file, cwd=scene_file.parent)
     assert done.returncode == 2
     assert words in done.stderr and len(done.stderr.strip().splitlines()) == 1
     assert list(scene_file.parent.iterdir()) == [scene_file]
@@ -116,14 +116,14 @@ def test_words_that_nothing_answers_to_are_refused_before_anything_is_written(
 
 def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene_file: Path) -> None:
     explicit = ["solve", scene_file, "--set", "time.alpha=0", "--set", "time.delta=0.5"]
-    done = cli(*explicit)
+    done = typed(*explicit)
     assert done.returncode == 2
     assert "time.step: must not exceed 0.0015" in done.stderr
 
 
 def test_overflow_is_a_numerical_failure(scene_file: Path) -> None:
     sets = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
-    done = cli("solve", scene_file, *(part for text in sets for part in ("--set", text)))
+    done = typed("solve", scene_file, *(part for text in sets for part in ("--set", text)))
     assert done.returncode == 3
     assert "overflow: The numbers left the range of double precision." in done.stdout
 
@@ -143,6 +143,6 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
 
 def test_help_has_an_example_everywhere() -> None:
     for command in ("", "list", "run", "solve", "report", "figures"):
-        done = cli(*command.split(), "--help")
+        done = typed(*command.split(), "--help")
         assert done.returncode == 0
         assert "Example: " in done.stdout

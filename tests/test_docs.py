@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from conftest import beside
 
 ROOT = Path(__file__).parents[1]
 PAGES = ("theory.md", "judge-your-code.md", "extending.md", "ci.md", "fenicsx.md")
@@ -32,7 +33,9 @@ def run_line(line: str, directory: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_code_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
+        beside(finished_cases, tmp_path / name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     names: dict[str, object] = {}

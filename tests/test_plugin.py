@@ -121,7 +121,7 @@ def test_a_sound_solver_passes_every_gate_that_applies() -> None:
 
 
 def test_a_broken_solver_fails_by_name() -> None:
-    shown = through_the_gates("slack")
+    shown = through_the_gates("slack", "-x")
     assert "failed" in shown and "is outside [" in shown
     shown = through_the_gates("hangs", "--dda-timeout", "1")
     assert "passed" not in shown and "hangs: no history within 1 s" in shown

@@ -116,9 +116,11 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path,
     check_kill_matrix(study, study.cases(), study.gates(), KILLS[name], tmp_path, finished_cases)
 
 
-@pytest.mark.parametrize("name", [name for name in KILLS if name in CHAPTERS])
+@pytest.mark.parametrize("name", KILLS)
 def test_every_gate_passes_and_the_chapter_is_written(name: str, tmp_path: Path, finished_cases: Path) -> None:
     results = beside(finished_cases, tmp_path / "results")
     assert {verdict.status for verdict in run_study(get_study(name), results)} == {Status.PASS}
+    if name not in CHAPTERS:
+        return
     assert build(results, tmp_path / "report.pdf").stat().st_size > 20_000
     assert all(path.exists() for path in figures(name, results, tmp_path / "figures"))
