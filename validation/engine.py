@@ -178,15 +178,17 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool = ProcessPoolExecutor(jobs, initializer=_ignore_interrupt)
+    pool, wait = ProcessPoolExecutor(jobs, initializer=_ignore_interrupt), True
     try:
         yield pool
-    except BaseException:
+    except KeyboardInterrupt:
+        # A worker that ends while it hands over a result leaves the pool's thread waiting for the rest of it.
+        wait = False
         for process in (pool._processes or {}).values():
             process.terminate()
         raise
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        pool.shutdown(wait=wait, cancel_futures=True)
 
 
 def _ignore_interrupt() -> None:
