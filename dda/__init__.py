@@ -5,23 +5,23 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
-from dda import spectral
-from dda.block import Block
-from dda.contact import Contact, contact_stiffness, spring_vectors
-from dda.gap_form import COLUMNS, UNKNOWNS, GapForm
-from dda.joints import FIXED, Joint, shared_edges
-from dda.load import BaseMotion, Load
-from dda.material import Material
-from dda.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
-from dda.natural_modes import ModalForm, modal_form
-from dda.newmark import Scheme
-from dda.polygon import Section
-from dda.solution import Result, solve
-from dda.subdivision import subdivided
-from dda.system import BlockSystem, SurfaceLoad
-from dda.system_solution import highest_frequency, solve_system, static_system, system_modes
-from dda.textbook import solve_textbook, textbook_applicable
-from dda.two_block import TwoBlockModel
+from dda.contact.springs import Contact, contact_stiffness, spring_vectors
+from dda.model.block import Block
+from dda.model.load import BaseMotion, Load
+from dda.model.material import Material
+from dda.model.polygon import Section
+from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
+from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
+from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.solution import Result, solve
+from dda.one_block.textbook import solve_textbook, textbook_applicable
+from dda.one_block.two_block import TwoBlockModel
+from dda.scheme import spectral
+from dda.scheme.newmark import Scheme
+from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
+from dda.system.subdivision import subdivided
+from dda.system.system import BlockSystem, SurfaceLoad
 
 __all__ = [
     "COLUMNS",

@@ -1,6 +1,6 @@
 """Finite-element and exact-bar references for a block on a locked elastic foundation.
 
-The finite-element names load scikit-fem when they are first used; `fem_reference.bar` never does.
+The finite-element names load scikit-fem when they are first used; `fem_reference.exact.bar` never does.
 """
 
 from __future__ import annotations
@@ -8,24 +8,24 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fem_reference.motion import Motion
-from fem_reference.problem import Problem, Scheme
-from fem_reference.result import COLUMNS, Mode, Result
+from fem_reference.problem.motion import Motion
+from fem_reference.problem.problem import Problem, Scheme
+from fem_reference.problem.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
-    from fem_reference.bar import Bar, applicable
-    from fem_reference.eigen import highest_frequency, modes
-    from fem_reference.model import assemble
-    from fem_reference.solver import solve, static
+    from fem_reference.exact.bar import Bar, applicable
+    from fem_reference.history.solver import solve, static
+    from fem_reference.mesh.model import assemble
+    from fem_reference.scheme.eigen import highest_frequency, modes
 
 _HOMES = {
-    "Bar": "bar",
-    "applicable": "bar",
-    "assemble": "model",
-    "highest_frequency": "eigen",
-    "modes": "eigen",
-    "solve": "solver",
-    "static": "solver",
+    "Bar": "exact.bar",
+    "applicable": "exact.bar",
+    "assemble": "mesh.model",
+    "highest_frequency": "scheme.eigen",
+    "modes": "scheme.eigen",
+    "solve": "history.solver",
+    "static": "history.solver",
 }
 
 __all__ = [

@@ -159,9 +159,9 @@ def contests(quick: bool) -> list[Contest]:
 def fenicsx_line() -> str:
     """Return the line of FEniCSx, whose seconds are its own, without starting its interpreter."""
     from validation import load_scene, solve
-    from validation.cases import attempt
-    from validation.history import Outcome
-    from validation.solvers import get_solver
+    from validation.engine.measure import attempt
+    from validation.runs.run import Outcome
+    from validation.solvers.registry import get_solver
 
     values = {"block.poisson": 0.25, "fem.elements": 64, "fem.degree": 1, "time.steps": 1000, "time.step": 1e-3}
     scene = load_scene("figures-3-4").with_values(values)
@@ -221,9 +221,9 @@ def sweep_seconds(count: int) -> float:
     import tempfile
 
     from validation import load_scene
-    from validation.engine import run_study
-    from validation.results import Results
-    from validation.studies import Study
+    from validation.engine.run import run_study
+    from validation.engine.study import Study
+    from validation.runs.results import Results
 
     steps = [1e-3 * (1 + i / count) for i in range(count)]
     scene = load_scene("figures-3-4").with_values({"time.step": steps[0]}).model_copy(update={"sweep": {}})
@@ -239,9 +239,9 @@ def two_workers() -> str:
     import tempfile
 
     from validation import load_scene
-    from validation.engine import run_study
-    from validation.results import Results
-    from validation.studies import Study
+    from validation.engine.run import run_study
+    from validation.engine.study import Study
+    from validation.runs.results import Results
 
     scene = load_scene("poisson").with_values({"fem.elements": 48, "fem.degree": 1}).model_copy(update={"sweep": {}})
     steps = [1e-3 * (1 + i / 16) for i in range(16)]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.results import Results
+from validation.runs.results import Results
 
 SCENE = """\
 title = "A small scene"
@@ -102,7 +102,7 @@ def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProc
 
 def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, where not the process is the point: no start-up."""
-    from validation.cli import main
+    from validation.cli.main import main
 
     said, complained, words = io.StringIO(), io.StringIO(), [str(argument) for argument in arguments]
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):

@@ -15,9 +15,9 @@ import numpy as np
 from shi_dda import History, Program, run
 
 from validation import load_scene
-from validation.causes import CAUSES
-from validation.compare import Answer, compare
-from validation.foreign import Foreign
+from validation.compare.causes import CAUSES
+from validation.compare.diagnosis import Answer, compare
+from validation.compare.reading import Foreign
 
 PAGE = Path(__file__).parents[1] / "docs" / "compare.md"
 BEGIN, END = "<!-- confusion matrix: made by tests/confusion.py -->\n", "<!-- end -->\n"

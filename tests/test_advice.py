@@ -9,9 +9,9 @@ from conftest import cli
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dda import spectral
-from validation import Scene, SceneError, advise, damping, load_scene
-from validation.advice import expected_errors
+from dda.scheme import spectral
+from validation import InputError, Scene, advise, damping, load_scene
+from validation.advice.advice import expected_errors
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
@@ -124,7 +124,8 @@ def test_two_steps_solve_it_where_gg_is_below_one() -> None:
 
 @pytest.mark.parametrize(("target", "steps"), [(0.05, 457), (0.2, None)])
 def test_settling_is_that_of_the_history(target: float, steps: int | None) -> None:
-    from validation.cases import Case, execute
+    from validation.engine.case import Case
+    from validation.engine.measure import execute
 
     solution = advise(BASE, damping=target).solutions[0]
     case = BASE.with_values(solution.settings | {"time.steps": 2000})
@@ -135,7 +136,7 @@ def test_settling_is_that_of_the_history(target: float, steps: int | None) -> No
 
 
 def test_a_long_settling_is_the_envelope_of_the_history() -> None:
-    from validation import advice
+    from validation.advice.advice import advice
 
     case = BASE.with_values({"time.step": 1e-4, "time.gg_rate": 10.0})
     exact, source = advice._settling(case)
@@ -174,7 +175,7 @@ def test_no_damping_wanted_of_a_scheme_that_has_none() -> None:
 
 def test_errors_at_the_answer_are_those_of_the_solvers() -> None:
     from validation import solve
-    from validation.metrics import relative_l2
+    from validation.metrics.pairs import relative_l2
 
     solution = advise(BASE, damping=0.1).solutions[0]
     errors = expected_errors(BASE, solution)
@@ -190,9 +191,9 @@ def test_errors_at_the_answer_are_those_of_the_solvers() -> None:
 
 @pytest.mark.parametrize(("wanted", "solve_for"), [(-0.1, "dt"), (math.nan, "dt"), (0.1, "p")])
 def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
-    with pytest.raises(SceneError, match=r"damping: must be|solve_for: must be one of"):
+    with pytest.raises(InputError, match=r"damping: must be|solve_for: must be one of"):
         advise(BASE, damping=wanted, solve_for=solve_for)
-    with pytest.raises(SceneError, match="one value must be picked"):
+    with pytest.raises(InputError, match="one value must be picked"):
         damping(load_scene("figures-3-4"))
 
 

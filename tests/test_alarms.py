@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from conftest import cli
 
-from validation.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
-from validation.engine import finish, run_study
-from validation.results import Results
-from validation.scene import Scene, load_scene
-from validation.studies import Study, scene_study
+from validation.advice.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
+from validation.runs.results import Results
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.catalogue import scene_study
 
 STIFFNESS = load_scene("figures-5-6")
 STEPS = load_scene("model-form")

@@ -10,11 +10,13 @@ from conftest import SCENE, cli
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from validation import load_scene, memory, solve
-from validation.cases import attempt, check
-from validation.history import Outcome
-from validation.scene import Scene, SceneError, parse_scene
-from validation.solvers import get_solver
+from validation import load_scene, solve
+from validation.engine.measure import attempt, check
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers import memory
+from validation.solvers.registry import get_solver
 
 DATA = tomllib.loads(SCENE)
 FIELDS = [(section, key) for section, table in DATA.items() if isinstance(table, dict) for key in table]
@@ -39,7 +41,7 @@ values = st.recursive(
 QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 
-def one_line(error: SceneError) -> None:
+def one_line(error: InputError) -> None:
     text = str(error)
     assert "\n" not in text and len(text) < 2000
 
@@ -55,7 +57,7 @@ def test_any_value_anywhere_gives_a_scene_or_one_line(changes):
     try:
         scene = parse_scene(data, "x.toml")
         cases = scene.expand() if scene.sweep else (scene,)
-    except SceneError as error:
+    except InputError as error:
         one_line(error)
         return
     assert all(isinstance(case, Scene) for case in cases)
@@ -107,7 +109,7 @@ BROKEN = {
 @pytest.mark.parametrize("name", BROKEN)
 def test_broken_files_are_refused_in_one_line(name, tmp_path):
     (tmp_path / "x.toml").write_bytes(BROKEN[name])
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(InputError) as caught:
         load_scene(tmp_path / "x.toml").expand()
     one_line(caught.value)
 
@@ -115,7 +117,7 @@ def test_broken_files_are_refused_in_one_line(name, tmp_path):
 def test_a_directory_and_a_missing_file_are_refused(tmp_path):
     (tmp_path / "d.toml").mkdir()
     for name in ("d.toml", "gone.toml", "a\0b.toml", "x" * 300 + ".toml"):
-        with pytest.raises(SceneError) as caught:
+        with pytest.raises(InputError) as caught:
             load_scene(tmp_path / name)
         one_line(caught.value)
 
@@ -139,7 +141,7 @@ LARGE = [
 @pytest.mark.parametrize(("solver", "values", "words"), LARGE)
 def test_what_cannot_fit_is_refused_with_the_estimate(solver, values, words):
     scene = parse_scene(DATA, "x.toml").with_values(values)
-    with pytest.raises(SceneError, match="GB are there, got") as caught:
+    with pytest.raises(InputError, match="GB are there, got") as caught:
         solve(scene, solver)
     assert words in str(caught.value)
     assert attempt(get_solver(solver), scene, False).outcome is Outcome.REFUSED

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.special import i0e, i1e
 
-from fem_reference import continuum, damped
-from fem_reference.bar import Bar, applicable
-from fem_reference.bar_modes import cut_off, shares, wave_numbers
-from fem_reference.bar_scheme import applicable as scheme_applicable
-from fem_reference.bar_scheme import first_steps, roots, weighted_response
-from fem_reference.problem import Problem, Scheme
+from fem_reference.exact import continuum, damped
+from fem_reference.exact.bar import Bar, applicable
+from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.problem.problem import Problem, Scheme
+from fem_reference.scheme.modal import applicable as scheme_applicable
+from fem_reference.scheme.modal import first_steps, roots, weighted_response
 
 PAPER = Bar(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6)
 OTHER = Bar(3.1, 1.7, 1900.0, 4.2e9, 7.7e10, 3.3e5)
@@ -206,7 +206,7 @@ def test_where_the_bar_is_exact():
 
 
 def test_bar_does_not_load_the_finite_elements():
-    code = "import sys, fem_reference.bar; sys.exit('skfem' in sys.modules or 'meshio' in sys.modules)"
+    code = "import sys, fem_reference.exact.bar; sys.exit('skfem' in sys.modules or 'meshio' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from validation.chapters_subblocks import chapter
-from validation.engine import run_study
-from validation.report import FigureBlock, Heading, Paragraph, Table
-from validation.results import Results
-from validation.scene import Scene, load_scene
-from validation.studies import Study
+from validation.engine.run import run_study
+from validation.engine.study import Study
+from validation.report.blocks import FigureBlock, Heading, Paragraph, Table
+from validation.report.chapters.subblocks import chapter
+from validation.runs.results import Results
+from validation.scenes.scene import Scene, load_scene
 
 SMALL = {
     "subblocks-column": {"block.subdivide": [[1, 1], [1, 4]], "fem.elements": [1, 4]},

@@ -12,11 +12,12 @@ import pytest
 from conftest import SCENE, cli
 
 from validation import solve
-from validation.history import read_csv
-from validation.metrics import pair
-from validation.pack import write_pack
-from validation.scene import SceneError, load_scene
-from validation.verdicts import changes, markdown, read_verdicts
+from validation.errors import InputError
+from validation.gates.changes import changes, markdown, read_verdicts
+from validation.metrics.pairs import pair
+from validation.runs.files import read_csv
+from validation.scenes.scene import load_scene
+from validation.studies.pack import write_pack
 
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 
@@ -104,7 +105,7 @@ def test_other_studies_of_a_baseline_do_not_count_as_lost() -> None:
 
 def test_unreadable_verdicts_are_named(tmp_path: Path) -> None:
     (tmp_path / "verdicts.json").write_text("[")
-    with pytest.raises(SceneError, match="must be JSON"):
+    with pytest.raises(InputError, match="must be JSON"):
         read_verdicts(tmp_path)
 
 

@@ -8,14 +8,16 @@ import pytest
 from conftest import cli
 from test_kill_matrix import soft_springs, with_scheme
 
-import dda.block
-import dda.gap_form
-import dda.newmark
-from validation.claims import REGISTER, Band, Claim, Evidence, Finding, page
-from validation.engine import Finished, evaluate, finish
-from validation.gates import Status
-from validation.paper import CLAIMS, NUMBERS, PAPER
-from validation.results import Results
+import dda.model.block
+import dda.one_block.gap_form
+import dda.scheme.newmark
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.gates.gate import Status
+from validation.runs.results import Results
+from validation.studies.paper.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.paper.study import CLAIMS, NUMBERS, PAPER
 
 ROOT = Path(__file__).parents[1]
 pytestmark = pytest.mark.xdist_group("claims")
@@ -63,21 +65,21 @@ def damped(delta: float) -> float:
 
 FAULTS = {  # patched line of code -> claims that it turns over
     "velocity with another delta": (
-        dda.newmark,
+        dda.scheme.newmark,
         "velocity_corrector",
         with_scheme(0, delta=damped),
         {"C9", "C12", "S13"},
     ),
-    "springs half as stiff": (dda.gap_form, "_stiffness", soft_springs(0.5), {"C1"}),
-    "load reversed": (dda.block.Block, "segment_load", lambda sound: lambda *a: -sound(*a), {"S29"}),
+    "springs half as stiff": (dda.one_block.gap_form, "_stiffness", soft_springs(0.5), {"C1"}),
+    "load reversed": (dda.model.block.Block, "segment_load", lambda sound: lambda *a: -sound(*a), {"S29"}),
     "average acceleration everywhere": (
-        dda.newmark,
+        dda.scheme.newmark,
         "velocity_corrector",
         with_scheme(0, delta=lambda delta: 0.5),
         {"C1", "C6", "C7", "C10"},
     ),
-    "gg 0.1 % low": (dda.newmark, "velocity_corrector", with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
-    "gg missing": (dda.newmark, "predictor", with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
+    "gg 0.1 % low": (dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
+    "gg missing": (dda.scheme.newmark, "predictor", with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
 }
 
 
@@ -112,7 +114,7 @@ def test_numbers_go_with_claims() -> None:
 
 
 def test_the_page_in_docs_is_what_a_fresh_run_writes(sound: Finished) -> None:
-    from validation.engine import _derived_record
+    from validation.engine.run import _derived_record
 
     rows = [_derived_record(sound, REGISTER, claim.id) for claim in CLAIMS]
     assert (ROOT / "docs" / "claims.md").read_text(encoding="utf-8") == page(CLAIMS, rows)

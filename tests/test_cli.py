@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import SCENE, cli, typed
 
-from validation.history import read_csv
+from validation.runs.files import read_csv
 
 
 def test_solve_writes_a_history(scene_file: Path, tmp_path: Path) -> None:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from validation import cluster
-from validation.cli import app
-from validation.engine import run_study
-from validation.results import Results
-from validation.scene import SceneError, load_scene
-from validation.studies import Study
+from validation.cli.app import app
+from validation.engine import cluster
+from validation.engine.run import run_study
+from validation.engine.study import Study
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.scenes.scene import load_scene
 
 STUDY = Study(
     "sweep",
@@ -55,7 +56,7 @@ def test_without_a_scheduler_there_is_no_executor():
 
 def test_an_absent_package_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with pytest.raises(SceneError, match=r"^--scheduler: needs .*\[cluster\]"), cluster.executor("tcp://127.0.0.1:1"):
+    with pytest.raises(InputError, match=r"^--scheduler: needs .*\[cluster\]"), cluster.executor("tcp://127.0.0.1:1"):
         pass
 
 
@@ -95,5 +96,5 @@ def test_a_lost_worker_costs_its_row_only(tmp_path):
 def test_nobody_at_the_address_is_said(monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "PATIENCE", "1s")
-    with pytest.raises(SceneError, match=r"^--scheduler: .*running"), cluster.executor("tcp://127.0.0.1:1"):
+    with pytest.raises(InputError, match=r"^--scheduler: .*running"), cluster.executor("tcp://127.0.0.1:1"):
         pass

@@ -11,14 +11,15 @@ import pytest
 from conftest import cli
 from shi_dda import Program, run, write_measured_point
 
+from dda.one_block.variants import Variant, histories
 from validation import load_scene, solve
-from validation.causes import contact_force
-from validation.compare import compare
-from validation.foreign import Foreign, read
-from validation.identify import Target, fit, intervals, untold
-from validation.open_close import Variant, histories, rectangle_of
-from validation.scene import Scene
-from validation.wording import span
+from validation.compare.causes import contact_force
+from validation.compare.diagnosis import compare
+from validation.compare.fit import Target, fit, intervals, untold
+from validation.compare.reading import Foreign, read
+from validation.compare.rectangle import rectangle_of
+from validation.compare.sentences import span
+from validation.scenes.scene import Scene
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "ntdda"
 
@@ -56,7 +57,7 @@ def test_a_locked_variant_is_the_suites_own_dda(changes: dict[str, object]) -> N
 
 
 def _static(s: Scene) -> float:
-    from validation.solvers import get_solver
+    from validation.solvers.registry import get_solver
 
     return float(get_solver("dda").static(s)["displacement"])
 

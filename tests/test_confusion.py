@@ -7,9 +7,10 @@ from collections.abc import Callable
 import confusion
 import pytest
 
-from validation import causes, compare
-from validation.causes import CAUSES
-from validation.open_close import Variant
+from dda.one_block.variants import Variant
+from validation.compare import causes
+from validation.compare.causes import CAUSES
+from validation.compare.diagnosis import diagnosis as compare
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
 

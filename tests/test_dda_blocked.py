@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
-from dda import blocked as blocks
-from dda.exact import Exact
-from dda.newmark import stepped_modes
-from dda.solution import modal_histories
+from dda.one_block.solution import modal_histories
+from dda.scheme import blocked as blocks
+from dda.scheme.exact import Exact
+from dda.scheme.newmark import stepped_modes
 
 SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
 COLUMNS = ("displacement", "contact_pressure")

@@ -4,7 +4,9 @@ import mp_reference
 import numpy as np
 import pytest
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, modes, solve, spectral
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve
+from dda.one_block import modes
+from dda.scheme import spectral
 
 STEPS = 300
 # The bounds that the package promises; worst of some 2000 random rectangles: 4e-12 and 6e-12.

@@ -6,19 +6,8 @@ import sys
 import numpy as np
 import pytest
 
-from dda import (
-    COLUMNS,
-    Block,
-    Contact,
-    Material,
-    Scheme,
-    TwoBlockModel,
-    modal_form,
-    newmark,
-    one_step_operator,
-    solve,
-    spectral,
-)
+from dda import COLUMNS, Block, Contact, Material, Scheme, TwoBlockModel, modal_form, one_step_operator, solve
+from dda.scheme import newmark, spectral
 
 SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6)]
 

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes, one_step_operator, spectral
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, one_step_operator
+from dda.one_block import modes
+from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 SCHEMES = [CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5), (0.4, 0.3)]

@@ -5,9 +5,9 @@ import pytest
 
 import dda
 import fem_reference
-from dda.system import BlockSystem
+from dda.system.system import BlockSystem
 from validation import load_scene, solve
-from validation.scene import SceneError
+from validation.errors import InputError
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
@@ -56,7 +56,7 @@ def test_a_pentagon_on_a_fixed_block_is_the_two_block_model():
     assert [(j.first, j.second) for j in joints] == [(0, 1)]
     edge = block.edge(2)
     load = dda.SurfaceLoad(0, tuple(edge[0]), tuple(edge[1]), (0.0, -5e6))
-    _, normal, a = dda.contact.base_directions(block, 0)
+    _, normal, a = dda.contact.springs.base_directions(block, 0)
     system = BlockSystem(
         [block, ground],
         joints,
@@ -317,5 +317,5 @@ def test_a_scene_is_cut(scene_file):
     dda_run, fem_run = (solve(scene, name) for name in ("dda", "fem"))
     scale = np.abs(fem_run.displacement).max()
     np.testing.assert_allclose(dda_run.displacement, fem_run.displacement, rtol=0, atol=1e-9 * scale)
-    with pytest.raises(SceneError, match="cut into sub-blocks"):
+    with pytest.raises(InputError, match="cut into sub-blocks"):
         solve(scene, "dda-textbook")

@@ -11,15 +11,22 @@ import numpy as np
 import pytest
 from conftest import SCENE
 
-from validation import engine, solvers
-from validation.cases import Case, attempt, check, execute
-from validation.engine import Finished, evaluate, finish, run_study
-from validation.gates import Gate, Status, judge, rounded
-from validation.history import History, Outcome, Run, read_csv, write_csv
-from validation.results import Results, Row
-from validation.scene import Scene, SceneError, load_scene
-from validation.solvers import Solver
-from validation.studies import Study, scene_study
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import ORDER, _ordered, evaluate
+from validation.engine.measure import attempt, check, execute
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
+from validation.errors import InputError
+from validation.gates.gate import Gate, Status, judge, rounded
+from validation.runs.files import read_csv, write_csv
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.contract import Solver
+from validation.solvers.registry import solver_names
+from validation.studies.catalogue import scene_study
 
 
 @pytest.fixture
@@ -124,7 +131,7 @@ class Broken(Solver):
         if self.way == "raise":
             raise ZeroDivisionError("division by zero")
         if self.way == "refuse":
-            raise SceneError("small: time.step: no")
+            raise InputError("small: time.step: no")
         values = np.zeros(n - 1 if self.way == "short" else n)
         values[3:] = {"nan": np.nan, "inf": np.inf}.get(self.way, 1.0)
         columns: Mapping[str, np.ndarray] = dict.fromkeys(scene.run.columns, values)
@@ -276,14 +283,14 @@ def test_own_gates_of_a_scene_file(tmp_path: Path) -> None:
         ('pair = ["dda", "bar"]', 'pair = ["dda"]', "must name a solver and a reference"),
     ):
         path.write_text(SCENE + gate.replace(old, new))
-        with pytest.raises(SceneError, match=words):
+        with pytest.raises(InputError, match=words):
             scene_study(str(path))
 
 
 def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references() -> None:
     names = {"dda", "fem", "bar", "continuum"}
-    assert list(engine._ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]
-    assert set(solvers.solver_names()) <= set(engine.ORDER)
+    assert list(_ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]
+    assert set(solver_names()) <= set(ORDER)
 
 
 def test_a_row_survives_its_line() -> None:

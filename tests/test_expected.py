@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from validation import expected
-from validation.core import CORE
-from validation.scene import Scene, load_scene
+from validation.gates import closed_forms
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.core import CORE
 
 BASE = load_scene("poisson-statics").with_values({"contact.stiffness": 1e9})
 DATA = [
@@ -30,15 +30,15 @@ def scene(values: dict[str, object]) -> Scene:
 @pytest.mark.parametrize("values", DATA)
 def test_static_displacement_balances_the_three_equations(values: dict[str, object]) -> None:
     s = scene(values)
-    E, mu = expected.moduli(s)
-    w, h = expected.size(s)
+    E, mu = closed_forms.moduli(s)
+    w, h = closed_forms.size(s)
     p, ps, q = s.contact.stiffness, s.contact.shear, s.load.pressure
     plate = w * h * E / (1 - mu * mu)
     K = np.array(
         [[2 * p, 0, -p * h], [0, plate + ps * w * w / 2, mu * plate], [-p * h, mu * plate, plate + p * h * h / 2]]
     )
     assert np.linalg.solve(K, [-w * q, 0, -w * h * q / 2])[0] == pytest.approx(
-        expected.static_displacement(s), rel=1e-12
+        closed_forms.static_displacement(s), rel=1e-12
     )
 
 
@@ -47,35 +47,35 @@ def test_static_displacement_is_the_printed_formula_corrected(p: float) -> None:
     s = BASE.with_values({"contact.stiffness": p})
     a, E, mu, q = 2.0, 1e9, 0.3, 5e6
     printed = -(a * q / 2 / p) * (2 * E * E + 3 * E * p + (1 - mu * mu) * p * p) / (E * (2 * E + p))
-    assert expected.static_displacement(s) == pytest.approx(printed, rel=1e-14)
+    assert closed_forms.static_displacement(s) == pytest.approx(printed, rel=1e-14)
 
 
 @pytest.mark.parametrize("values", DATA[:2])
 def test_frequencies_satisfy_their_equations(values: dict[str, object]) -> None:
     s = scene(values | {"block.poisson": 0.0})
-    E, (w, h) = s.block.young, expected.size(s)
-    p, m, f = s.contact.stiffness, s.block.density * w * h, expected.dda_frequency(s)
+    E, (w, h) = s.block.young, closed_forms.size(s)
+    p, m, f = s.contact.stiffness, s.block.density * w * h, closed_forms.dda_frequency(s)
     K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
     assert np.linalg.det(K / m - f * f * np.diag([1, h * h / 12])) == pytest.approx(0, abs=1e-9 * np.linalg.det(K / m))
-    b = expected.bar_frequency(s) * h / math.sqrt(E / s.block.density)
+    b = closed_forms.bar_frequency(s) * h / math.sqrt(E / s.block.density)
     assert b * math.tan(b) == pytest.approx(2 * p * h / (E * w), rel=1e-12)
 
 
 def test_numbers_of_the_independent_computation() -> None:
     cases = load_scene("figures-5-6").expand()
-    assert [round(expected.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
-    assert [round(expected.bar_frequency(c), 3) for c in cases] == [327.682, 455.258, 475.600]
-    ratios = [expected.dda_frequency(c) / expected.bar_frequency(c) for c in cases]
+    assert [round(closed_forms.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
+    assert [round(closed_forms.bar_frequency(c), 3) for c in cases] == [327.682, 455.258, 475.600]
+    ratios = [closed_forms.dda_frequency(c) / closed_forms.bar_frequency(c) for c in cases]
     assert [round(r, 4) for r in ratios] == [1.0515, 1.0957, 1.1020]
     stiff = cases[0].with_values({"contact.stiffness": 1e18})
-    assert expected.dda_frequency(stiff) / expected.bar_frequency(stiff) == pytest.approx(
+    assert closed_forms.dda_frequency(stiff) / closed_forms.bar_frequency(stiff) == pytest.approx(
         math.sqrt(3) / (math.pi / 2), rel=1e-8
     )
     light = load_scene("figure-9").expand()[1]
     values = [(2e-3, 0.0152), (1e-3, 0.0296), (1e-4, 0.293)]
     for dt, xi in values:
-        assert expected.damping_ratio(
-            light.with_values({"time.step": dt}), expected.dda_frequency(light)
+        assert closed_forms.damping_ratio(
+            light.with_values({"time.step": dt}), closed_forms.dda_frequency(light)
         ) == pytest.approx(xi, rel=5e-3)
 
 

@@ -8,7 +8,7 @@ import pytest
 from test_fem_matrices import INCLINED, make
 
 from fem_reference import Bar, Scheme, highest_frequency, modes, solve
-from fem_reference.model import build
+from fem_reference.mesh.model import build
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
@@ -91,7 +91,7 @@ def test_first_axial_mode():
 def test_sparse_and_dense_modes_agree(monkeypatch):
     problem = make(poisson=0.45, p=2e10, elements=8)
     dense = modes(problem, CONSTANT)
-    monkeypatch.setattr("fem_reference.eigen.DENSE", 10)
+    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", 10)
     sparse = modes(problem, CONSTANT)
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from skfem import MeshQuad, MeshTri
 
-from fem_reference import elasticity
-from fem_reference.eigen import highest_frequency
-from fem_reference.mesh import structured
-from fem_reference.model import assemble, build
-from fem_reference.problem import Problem
-from fem_reference.solver import static
+from fem_reference.history.solver import static
+from fem_reference.mesh import elasticity
+from fem_reference.mesh.mesh import structured
+from fem_reference.mesh.model import assemble, build
+from fem_reference.problem.problem import Problem
+from fem_reference.scheme.eigen import highest_frequency
 
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 # A trapezoid on an inclined base, away from the origin, its base not the first edge.

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from test_fem_matrices import make
 
-from fem_reference import Scheme, reduced, solve
-from fem_reference.krylov import KrylovSpace
-from fem_reference.model import build
-from fem_reference.newmark import Stepper
-from fem_reference.reduced import Reduced
-from fem_reference.solver import run
+from fem_reference import Scheme, solve
+from fem_reference.history import reduced
+from fem_reference.history.krylov import KrylovSpace
+from fem_reference.history.reduced import Reduced
+from fem_reference.history.solver import run
+from fem_reference.mesh.model import build
+from fem_reference.scheme.newmark import Stepper
 
 COLUMNS = ("displacement", "contact_pressure")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)

@@ -10,19 +10,25 @@ from conftest import SCENE, cli
 from test_fem_matrices import INCLINED
 from test_kill_matrix import FEM, Fault, Overlay, late, no_discount, times, with_scheme
 
-import dda.gap_form
-import fem_reference.elasticity
-import fem_reference.solver
-from validation import adapters_fenicsx, solve, worker
-from validation.adapters_fenicsx import VARIABLE, interpreter, launcher
-from validation.cases import Case, execute
-from validation.engine import Finished, evaluate, finish
-from validation.gates import Status
-from validation.history import Outcome
-from validation.results import Results
-from validation.scene import Scene, SceneError, load_scene
-from validation.solvers import get_solver
-from validation.two_codes import SAME, TWO_CODES
+import dda.one_block.gap_form
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+from validation import solve
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.measure import execute
+from validation.engine.run import finish
+from validation.errors import InputError
+from validation.gates.gate import Status
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import fenicsx as adapters_fenicsx
+from validation.solvers import worker
+from validation.solvers.fenicsx import VARIABLE, interpreter, launcher
+from validation.solvers.registry import get_solver
+from validation.studies.second_fem_code import SAME, TWO_CODES
 
 PYTHON = interpreter()
 needs_fenicsx = pytest.mark.skipif(PYTHON is None, reason=adapters_fenicsx.NEEDED)
@@ -68,7 +74,7 @@ def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, mon
 
 @pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])
 def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
-    with pytest.raises(SceneError, match=r"^solver: "):
+    with pytest.raises(InputError, match=r"^solver: "):
         get_solver(name)
 
 
@@ -161,9 +167,9 @@ def test_what_it_does_not_do_is_said(scene: Scene) -> None:
     assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
     within = solve(scene.with_values({"load.eccentricity": 0.31}), "fenicsx")
     assert within.outcome is Outcome.NOT_APPLICABLE and "the pressed part ends inside" in within.notes[0]
-    with pytest.raises(SceneError, match=r"time.step: must not exceed"):
+    with pytest.raises(InputError, match=r"time.step: must not exceed"):
         solve(scene.with_values({"time.alpha": 0.0, "time.delta": 0.5}), "fenicsx")
-    with pytest.raises(SceneError, match=r"run\.columns"):
+    with pytest.raises(InputError, match=r"run\.columns"):
         solve(scene.with_values({"run.columns": ["rotation"]}), "fenicsx")
 
 
@@ -191,11 +197,11 @@ OTHER_FAULTS = [
     Fault("fem: gg missing in the predictor", ("fem:full",), FEM, "predictor", no_discount(1)),
     Fault("fem: gg missing in the velocity", ("fem:full",), FEM, "velocity", no_discount(2)),
     Fault("fem: delta 1e-6 high", ("fem:full",), FEM, "velocity", with_scheme(2, delta=lambda d: d * (1 + 1e-6))),
-    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.elasticity, "_carried", times(1 + 1e-6)),
-    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.elasticity, "mass", times(1 + 1e-6)),
-    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.elasticity, "load", times(1 + 2e-10)),
-    Fault("dda: load 2e-10 high", ("dda",), dda.gap_form, "_load", times(1 + 2e-10)),
-    Fault("fem: one step late", ("fem:full",), fem_reference.solver, "run", late),
+    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.mesh.elasticity, "_carried", times(1 + 1e-6)),
+    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.mesh.elasticity, "mass", times(1 + 1e-6)),
+    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.mesh.elasticity, "load", times(1 + 2e-10)),
+    Fault("dda: load 2e-10 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-10)),
+    Fault("fem: one step late", ("fem:full",), fem_reference.history.solver, "run", late),
 ]
 GATES = TWO_CODES.gates()
 CASES = TWO_CODES.cases()

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from validation import chapters_curves as curves
-from validation import figures
-from validation.history import History
+from validation.report.figures import curves
+from validation.report.figures import histories as figures
+from validation.runs.history import History
 
 SOLVERS = ("dda", "dda-textbook", "fem", "bar", "continuum", "somebody's own")
 

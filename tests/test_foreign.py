@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from shi_dda import Program, run, write_measured_point
 
-from validation.foreign import Foreign, parse_columns, parse_scale, read, steppings
-from validation.scene import SceneError
+from validation.compare.reading import Foreign, parse_columns, parse_scale, read, steppings
+from validation.errors import InputError
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "ntdda" / "ntdda-p1E-dt2ms_meas.m"
 
@@ -49,7 +49,7 @@ def test_a_point_is_picked_by_name(tmp_path: Path) -> None:
     both = tmp_path / "both.m"
     both.write_text(text + text.replace("measpoint1", "measpoint2").replace("1.839377e-03", "1.839900e-03"))
     assert read(both, {"displacement": "measpoint2"}).displacement[0] == -1.8399e-3
-    with pytest.raises(SceneError, match="no measured point 'measpoint3'; it has measpoint1, measpoint2"):
+    with pytest.raises(InputError, match="no measured point 'measpoint3'; it has measpoint1, measpoint2"):
         read(both, {"displacement": "measpoint3"})
 
 
@@ -84,7 +84,7 @@ def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str)
     ],
 )
 def test_a_file_that_is_no_history(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(SceneError, match=r"h\.csv") as error:
+    with pytest.raises(InputError, match=r"h\.csv") as error:
         read(written(tmp_path, text))
     assert said in str(error.value)
     assert "\n" not in str(error.value)
@@ -92,7 +92,7 @@ def test_a_file_that_is_no_history(tmp_path: Path, text: str, said: str) -> None
 
 @pytest.mark.parametrize("text", ["uy", "displacement=", "force=f", "displacement=nan", "displacement=0"])
 def test_options_that_say_nothing(text: str) -> None:
-    with pytest.raises(SceneError, match="--"):
+    with pytest.raises(InputError, match="--"):
         (parse_scale if "=n" in text or "=0" in text else parse_columns)(text)
 
 

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from conftest import SCENE, cli
 
-from validation.history import History, Outcome
-from validation.results import Results, Row
-from validation.scene import SceneError
+from validation.errors import InputError
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.runs.run import Outcome
 
 SWEEP = '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
 
@@ -78,7 +79,7 @@ def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
 
 def test_verdicts_of_two_studies_written_at_once_are_both_kept(tmp_path):
     code = (
-        "import sys; from validation.results import Results\n"
+        "import sys; from validation.runs.results import Results\n"
         "for i in range(40): Results(sys.argv[1]).write_verdicts(sys.argv[2], [{'study': sys.argv[2], 'id': str(i)}])"
     )
     many = [subprocess.Popen([sys.executable, "-c", code, str(tmp_path), name]) for name in ("a", "b", "c")]
@@ -94,7 +95,7 @@ def test_a_write_that_fails_is_reported_and_costs_no_finished_row(tmp_path, monk
     results = Results(tmp_path)
     results.append(*finished("first"))
     monkeypatch.setattr(os, "write", lambda handle, data: 5)  # a disk that is full takes the beginning
-    with pytest.raises(SceneError, match=r"rows.jsonl: cannot be written: .* finished rows are kept"):
+    with pytest.raises(InputError, match=r"rows.jsonl: cannot be written: .* finished rows are kept"):
         results.append(*finished("second"))
     monkeypatch.undo()
     results.append(*finished("third"))

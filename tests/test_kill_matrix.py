@@ -13,23 +13,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import dda.gap_form
-import dda.newmark
-import dda.solution
-import dda.textbook
-import fem_reference.bar
-import fem_reference.bar_scheme
-import fem_reference.elasticity
-import fem_reference.model
-import fem_reference.newmark
-import fem_reference.solver
-from validation.cases import Case
-from validation.core import CORE
-from validation.engine import Finished, evaluate, finish
-from validation.gates import Gate, Status
-from validation.history import History
-from validation.results import Results
-from validation.studies import Study
+import dda.one_block.gap_form
+import dda.one_block.solution
+import dda.one_block.textbook
+import dda.scheme.newmark
+import fem_reference.exact.bar
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+import fem_reference.mesh.model
+import fem_reference.scheme.modal
+import fem_reference.scheme.newmark
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.engine.study import Study
+from validation.gates.gate import Gate, Status
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.studies.core import CORE
 
 SLOW = ("figure-7",)  # 20,000 steps: a few of the faults, enough to bite its gates
 FEW = (
@@ -123,51 +125,55 @@ def swapped(start: str) -> str:
     return "zero" if start == "consistent" else "consistent"
 
 
-DDA = dda.newmark
-FEM = fem_reference.newmark
+DDA = dda.scheme.newmark
+FEM = fem_reference.scheme.newmark
 FAULTS = [
     Fault("dda: gg missing in the predictor", ("dda",), DDA, "predictor", no_discount(0)),
     Fault("dda: gg missing in the velocity", ("dda",), DDA, "velocity_corrector", no_discount(0)),
     Fault("dda: delta 0.1 % high", ("dda",), DDA, "velocity_corrector", with_scheme(0, delta=thousandth)),
     Fault("dda: delta forgotten", ("dda",), DDA, "velocity_corrector", with_scheme(0, delta=lambda d: 0.6)),
     Fault("dda: other start", ("dda",), DDA, "initial_acceleration", with_scheme(0, start=swapped)),
-    Fault("dda: springs p/2", ("dda",), dda.gap_form, "_stiffness", soft_springs(0.5)),
-    Fault("dda: springs 1e-9 stiff", ("dda",), dda.gap_form, "_stiffness", soft_springs(1 + 1e-9)),
-    Fault("dda: one step late", ("dda",), dda.solution, "modal_histories", late),
-    Fault("dda: load reversed", ("dda",), dda.gap_form, "_load", times(-1.0)),
-    Fault("dda: load 0.2 % high", ("dda",), dda.gap_form, "_load", times(1.002)),
+    Fault("dda: springs p/2", ("dda",), dda.one_block.gap_form, "_stiffness", soft_springs(0.5)),
+    Fault("dda: springs 1e-9 stiff", ("dda",), dda.one_block.gap_form, "_stiffness", soft_springs(1 + 1e-9)),
+    Fault("dda: one step late", ("dda",), dda.one_block.solution, "modal_histories", late),
+    Fault("dda: load reversed", ("dda",), dda.one_block.gap_form, "_load", times(-1.0)),
+    Fault("dda: load 0.2 % high", ("dda",), dda.one_block.gap_form, "_load", times(1.002)),
     Fault(
         "dda: histories with another delta",
         ("dda",),
-        dda.solution,
+        dda.one_block.solution,
         "modal_histories",
         with_scheme(0, delta=lambda d: d + 1e-3),
     ),
     Fault(
         "fem: histories with another delta",
         ("fem",),
-        fem_reference.solver,
+        fem_reference.history.solver,
         "Stepper",
         with_scheme(3, delta=lambda d: d + 1e-3),
     ),
     Fault("fem: gg missing in the predictor", ("fem",), FEM, "predictor", no_discount(1)),
     Fault("fem: gg missing in the velocity", ("fem",), FEM, "velocity", no_discount(2)),
     Fault("fem: delta 0.1 % high", ("fem",), FEM, "velocity", with_scheme(2, delta=thousandth)),
-    Fault("fem: foundation k/2", ("fem",), fem_reference.elasticity, "_carried", times(0.5)),
-    Fault("fem: foundation 0.1 % stiff", ("fem",), fem_reference.elasticity, "_carried", times(1.001)),
-    Fault("fem: column's spring 1e-6 stiff", ("fem",), fem_reference.model, "column", stiff_problem(1 + 1e-6)),
-    Fault("fem: one step late", ("fem",), fem_reference.solver, "bounded", late),
-    Fault("fem: mass 0.1 % heavy", ("fem", "fem:full"), fem_reference.elasticity, "mass", times(1.001)),
-    Fault("bar: base spring k/2", ("bar",), fem_reference.bar, "wave_numbers", first_times(0.5)),
-    Fault("bar: base spring 0.1 % stiff", ("bar",), fem_reference.bar, "wave_numbers", first_times(1.001)),
-    Fault("bar: gg missing in the trace", ("bar",), fem_reference.bar_scheme, "trace", no_discount(1)),
-    Fault("bar: gg missing in the roots", ("bar",), fem_reference.bar_scheme, "spectrum", no_discount(1)),
-    Fault("bar: gg missing in the start", ("bar",), fem_reference.bar_scheme, "first_steps", no_discount(1)),
+    Fault("fem: foundation k/2", ("fem",), fem_reference.mesh.elasticity, "_carried", times(0.5)),
+    Fault("fem: foundation 0.1 % stiff", ("fem",), fem_reference.mesh.elasticity, "_carried", times(1.001)),
+    Fault("fem: column's spring 1e-6 stiff", ("fem",), fem_reference.mesh.model, "column", stiff_problem(1 + 1e-6)),
+    Fault("fem: one step late", ("fem",), fem_reference.history.solver, "bounded", late),
+    Fault("fem: mass 0.1 % heavy", ("fem", "fem:full"), fem_reference.mesh.elasticity, "mass", times(1.001)),
+    Fault("bar: base spring k/2", ("bar",), fem_reference.exact.bar, "wave_numbers", first_times(0.5)),
+    Fault("bar: base spring 0.1 % stiff", ("bar",), fem_reference.exact.bar, "wave_numbers", first_times(1.001)),
+    Fault("bar: gg missing in the trace", ("bar",), fem_reference.scheme.modal, "trace", no_discount(1)),
+    Fault("bar: gg missing in the roots", ("bar",), fem_reference.scheme.modal, "spectrum", no_discount(1)),
+    Fault("bar: gg missing in the start", ("bar",), fem_reference.scheme.modal, "first_steps", no_discount(1)),
     Fault(
-        "bar: delta missing in the roots", ("bar",), fem_reference.bar_scheme, "_pair", with_scheme(1, delta=no_damping)
+        "bar: delta missing in the roots",
+        ("bar",),
+        fem_reference.scheme.modal,
+        "_pair",
+        with_scheme(1, delta=no_damping),
     ),
-    Fault("bar: other start", ("bar",), fem_reference.bar_scheme, "first_steps", with_scheme(1, start=swapped)),
-    Fault("bar: delta 0.1 % high", ("bar",), fem_reference.bar_scheme, "spectrum", with_scheme(1, delta=thousandth)),
+    Fault("bar: other start", ("bar",), fem_reference.scheme.modal, "first_steps", with_scheme(1, start=swapped)),
+    Fault("bar: delta 0.1 % high", ("bar",), fem_reference.scheme.modal, "spectrum", with_scheme(1, delta=thousandth)),
 ]
 
 

@@ -9,10 +9,10 @@ from conftest import SCENE
 
 import dda
 import fem_reference
-from fem_reference.elasticity import translation
-from fem_reference.model import assemble, build
+from fem_reference.mesh.elasticity import translation
+from fem_reference.mesh.model import assemble, build
 from validation import load_scene, solve
-from validation.scene import SceneError
+from validation.errors import InputError
 
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
 TRAPEZIUM = ((0.3, 0.1), (2.3, 0.4), (1.9, 1.6), (0.5, 1.4))
@@ -23,7 +23,7 @@ RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-
 def textbook_newmark(model, scheme, steps):
     """Return the columns by plain Newmark on absolute accelerations in D, the springs' base ends moving."""
     M, K, F = model.mass, model.stiffness, model.load
-    tangent, normal, a = dda.contact.base_directions(model.block, model.base)
+    tangent, normal, a = dda.contact.springs.base_directions(model.block, model.base)
     n_rows, t_rows = dda.spring_vectors(model.block, model.base)
     p, ps = model.contact.normal, model.contact.shear
     alpha, delta, gg, dt = scheme.alpha, scheme.delta, scheme.gg, scheme.step
@@ -204,13 +204,13 @@ def test_a_scene_hands_every_load_to_the_solver_and_their_effects_add_up(tmp_pat
 )
 def test_records_are_checked(tmp_path, record, words):
     scene = load_scene(scene_with(tmp_path, 'base_motion = "quake.csv"', record))
-    with pytest.raises(SceneError, match=words):
+    with pytest.raises(InputError, match=words):
         solve(scene, "dda")
 
 
 def test_the_exact_bar_says_why_it_does_not_apply(tmp_path):
     scene = load_scene(scene_with(tmp_path, "traction = 1e5"))
-    with pytest.raises(SceneError, match="centred pressure alone"):
+    with pytest.raises(InputError, match="centred pressure alone"):
         solve(scene, "bar")
-    with pytest.raises(SceneError, match="centred pressure alone"):
+    with pytest.raises(InputError, match="centred pressure alone"):
         solve(scene, "dda-textbook")

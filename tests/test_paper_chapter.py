@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation import budget
-from validation.chapters_paper import claims_table, conclusion
-from validation.engine import run_study
-from validation.paper import PAPER
-from validation.report import FigureBlock, Table, chapter_of
-from validation.results import Results
-from validation.scene import load_scene
-from validation.studies import Study, scene_study
+from validation.advice.advice import budget
+from validation.engine.run import run_study
+from validation.engine.study import Study
+from validation.report.blocks import FigureBlock, Table
+from validation.report.book import chapter_of
+from validation.report.chapters.paper import claims_table, conclusion
+from validation.runs.results import Results
+from validation.scenes.scene import load_scene
+from validation.studies.catalogue import scene_study
+from validation.studies.paper.study import PAPER
 
 pytestmark = pytest.mark.xdist_group("paper-chapter")
 
@@ -33,7 +35,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
 def test_every_figure_is_written_as_svg_and_png_and_no_solver_is_loaded(results: Results, tmp_path: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from validation.report import figures; "
-        "from validation.results import Results; "
+        "from validation.runs.results import Results; "
         f"figures('paper', Results({str(results.directory)!r}), Path({str(tmp_path)!r})); "
         "print([m for m in ('dda', 'fem_reference', 'skfem', 'validation.adapters') if m in sys.modules])"
     )

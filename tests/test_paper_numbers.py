@@ -12,15 +12,15 @@ import pytest
 from scipy.linalg import eigh
 from test_fem_matrices import make
 
-from dda import spectral
+from dda.scheme import spectral
 from fem_reference import Scheme as FemScheme
-from fem_reference.model import Model, build
-from fem_reference.newmark import State, Stepper
+from fem_reference.mesh.model import Model, build
+from fem_reference.scheme.newmark import State, Stepper
 from validation import Scene, load_scene, solve
-from validation.metrics import settling_step
-from validation.pencil import poles
-from validation.solvers import get_solver
-from validation.spectra import damping
+from validation.advice.spectra import damping
+from validation.metrics.columns import settling_step
+from validation.metrics.poles import poles
+from validation.solvers.registry import get_solver
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 SCHEMES = [CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]

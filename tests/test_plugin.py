@@ -8,13 +8,15 @@ from pathlib import Path
 import pytest
 from conftest import SCENE, cli
 
-from validation.adapters_user import VARIABLE, UserSolver
-from validation.cases import Case, attempt, check, execute
-from validation.history import Outcome
-from validation.results import Results
-from validation.scene import Scene, SceneError, load_scene
-from validation.solvers import get_solver, is_solver
-from validation.studies import scene_study
+from validation.engine.case import Case
+from validation.engine.measure import attempt, check, execute
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver, is_solver
+from validation.solvers.user import VARIABLE, UserSolver
+from validation.studies.catalogue import scene_study
 
 GATES = "--pyargs validation -m validation -q -rs -p no:cacheprovider -k figures-3-4"
 HERE = Path(__file__).parent / "user_solvers"
@@ -76,12 +78,12 @@ def test_what_is_not_reported_is_not_made_up(scene: Scene) -> None:
 def test_names(scene: Scene) -> None:
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
-    with pytest.raises(SceneError, match=r"must be one of dda, .* or module:attribute, got 'femm:2'"):
+    with pytest.raises(InputError, match=r"must be one of dda, .* or module:attribute, got 'femm:2'"):
         get_solver("femm:2")
 
 
 def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
-    from validation.engine import run_study
+    from validation.engine.run import run_study
 
     path = tmp_path / "own.toml"
     path.write_text(SCENE + '[run]\nsolvers = ["my_solver:solve", "dda"]\n')

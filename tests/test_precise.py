@@ -6,10 +6,14 @@ import pytest
 from conftest import SCENE
 from mpmath import mp, mpf
 
-from validation import load_scene, precise_bar, precise_block, precise_matrices, solve
-from validation.history import Outcome
-from validation.scene import Scene, SceneError
-from validation.solvers import get_solver
+from validation import load_scene, solve
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
+from validation.solvers.sixty_digits import bar as precise_bar
+from validation.solvers.sixty_digits import block as precise_block
+from validation.solvers.sixty_digits import matrices as precise_matrices
 
 COLUMNS = ("displacement", "contact_pressure")
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
@@ -112,7 +116,7 @@ def test_a_large_mesh_is_refused_in_words(scene):
     assert "sixty-digit arithmetic take minutes" in get_solver("fem-60").applicable(large)
     whole = scene.with_values({"fem.elements": 6})  # one column of elements is small, the whole block is not
     assert get_solver("fem-60").applicable(whole) is None
-    with pytest.raises(SceneError, match="sixty-digit arithmetic take minutes"):
+    with pytest.raises(InputError, match="sixty-digit arithmetic take minutes"):
         solve(whole, "fem-60", full=True)
 
 

@@ -12,11 +12,31 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation import chapters, chapters_data, chapters_front, chapters_ledger, chapters_text, report
-from validation.gates import Gate, Status, Verdict, judge
-from validation.history import History, Outcome
-from validation.results import Results, Row
-from validation.scene import SceneError, load_scene, parse_scene
+from validation.errors import InputError
+from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.report import typesetting
+from validation.report.blocks import Callout, Column, FigureBlock, Heading, Math, PageBreak, Paragraph, Table
+from validation.report.book import build, figures, ordered_studies
+from validation.report.chapters import (
+    data as chapters_data,
+)
+from validation.report.chapters import (
+    front as chapters_front,
+)
+from validation.report.chapters import (
+    ledger as chapters_ledger,
+)
+from validation.report.chapters import (
+    scene as chapters,
+)
+from validation.report.chapters import (
+    text as chapters_text,
+)
+from validation.report.typesetting import _typeset
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene, parse_scene
 
 CORE = ("figures-3-4", "figure-7", "figure-8", "poisson", "corner-springs")
 FREQUENCY = {"dda": 344.561, "dda-textbook": 344.561, "fem": 327.682, "bar": 327.682, "continuum": 327.682}
@@ -180,7 +200,7 @@ def all_text(blocks):
 
 def test_build_writes_one_pdf_and_nothing_else(results, tmp_path):
     before = sorted(p.name for p in results.directory.rglob("*"))
-    out = report.build(results, tmp_path / "report.pdf")
+    out = build(results, tmp_path / "report.pdf")
     assert out.read_bytes().startswith(b"%PDF-")
     assert [p.name for p in tmp_path.iterdir()] == ["report.pdf"]
     assert sorted(p.name for p in results.directory.rglob("*")) == before
@@ -193,36 +213,37 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch):
     def fail(*args, **kwargs):
         raise RuntimeError("typesetting failed")
 
-    monkeypatch.setattr(report.typst, "compile", fail)
+    monkeypatch.setattr(typesetting.typst, "compile", fail)
     with pytest.raises(RuntimeError, match="typesetting failed"):
-        report.build(small, out)
+        build(small, out)
     assert out.read_bytes() == b"old"
 
 
 def test_the_report_imports_no_solver(small, tmp_path):
     code = (
-        "import sys; from pathlib import Path; from validation import report; from validation.results import Results\n"
-        "report.build(Results(sys.argv[1]), Path(sys.argv[2]))\n"
+        "import sys; from pathlib import Path; from validation.report.book import build\n"
+        "from validation.runs.results import Results\n"
+        "build(Results(sys.argv[1]), Path(sys.argv[2]))\n"
         "print([m for m in ('dda', 'fem_reference', 'skfem', 'dolfinx', 'validation.adapters') if m in sys.modules])"
     )
     command = [sys.executable, "-c", code, str(small.directory), str(tmp_path / "r.pdf")]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(report.__file__).parents[1])
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).parents[1])
     assert done.stdout.strip() == "[]"
 
 
 def test_a_title_is_text_and_never_evaluated(small, tmp_path):
-    assert report.build(small, tmp_path / "r.pdf").stat().st_size > 10_000  # a page with figures, not an empty one
+    assert build(small, tmp_path / "r.pdf").stat().st_size > 10_000  # a page with figures, not an empty one
 
 
 def test_front_page_counts_and_names_failures_first(results, tmp_path):
     blocks = chapters_front.front_matter(results, ["core"], tmp_path)
     assert blocks[0].text.startswith("1 of 3 gates fails and 1 did not run:")
-    assert blocks[1] == report.Callout("One gate fails.", "fail")
+    assert blocks[1] == Callout("One gate fails.", "fail")
     rows = [row for row in blocks[2].rows if len(row) > 1]
     assert [row[0] for row in rows] == ["FAIL", "NOT RUN"]
     assert rows[0][1] == FAILS.gate.id
     assert ("fenicsx: dolfinx is not installed",) in blocks[2].rows
-    counts = next(b for b in blocks if isinstance(b, report.Table) and b.columns[0].title == "Study")
+    counts = next(b for b in blocks if isinstance(b, Table) and b.columns[0].title == "Study")
     assert counts.rows[0] == ("core", "all scenes", "1", "1", "1")
 
 
@@ -391,7 +412,7 @@ def test_labels_that_would_read_alike_keep_their_steps():
 
 
 def test_figures_are_written_as_svg_and_png(small, tmp_path):
-    paths = report.figures("mine", small, tmp_path / "new" / "out")
+    paths = figures("mine", small, tmp_path / "new" / "out")
     assert sorted(p.name for p in paths) == [
         "my-scene-1-contact-pressure.png",
         "my-scene-1-contact-pressure.svg",
@@ -402,14 +423,14 @@ def test_figures_are_written_as_svg_and_png(small, tmp_path):
 
 
 def test_bad_requests_name_what_is_wrong(small, tmp_path):
-    with pytest.raises(SceneError, match=r"study: must be one of .*mine.*got 'core'"):
-        report.figures("core", small, tmp_path)
-    with pytest.raises(SceneError, match="no study's results here"):
-        report.build(Results(tmp_path / "nowhere"), tmp_path / "r.pdf")
-    with pytest.raises(SceneError, match="is no directory"):
-        report.build(small, tmp_path / "absent" / "r.pdf")
+    with pytest.raises(InputError, match=r"study: must be one of .*mine.*got 'core'"):
+        figures("core", small, tmp_path)
+    with pytest.raises(InputError, match="no study's results here"):
+        build(Results(tmp_path / "nowhere"), tmp_path / "r.pdf")
+    with pytest.raises(InputError, match="is no directory"):
+        build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
-        report.Table((report.Column("a"), report.Column("b")), (("1", "2", "3"),))
+        Table((Column("a"), Column("b")), (("1", "2", "3"),))
 
 
 def test_provenance_says_versions_and_cost(results):
@@ -426,21 +447,21 @@ def test_provenance_says_versions_and_cost(results):
 
 def test_every_kind_of_block_is_set(tmp_path):
     blocks = [
-        report.Heading("One"),
-        report.Paragraph("text", "lead"),
-        report.Math("a^2 / b"),
-        report.Callout("careful", "warn"),
-        report.PageBreak(),
-        report.Table((report.Column("x", "decimal"), report.Column("id", "id")), (("1.5", "a:b[c=d]"),)),
+        Heading("One"),
+        Paragraph("text", "lead"),
+        Math("a^2 / b"),
+        Callout("careful", "warn"),
+        PageBreak(),
+        Table((Column("x", "decimal"), Column("id", "id")), (("1.5", "a:b[c=d]"),)),
     ]
-    assert report._typeset(tmp_path, blocks).startswith(b"%PDF-")
+    assert _typeset(tmp_path, blocks).startswith(b"%PDF-")
 
 
 def test_the_core_study_comes_first(tmp_path):
     directory = Results(tmp_path)
     for study in ("zeta", "alpha", "core"):
         directory.write_json(f"studies/{study}.json", {"study": study})
-    assert report.ordered_studies(directory) == ["core", "alpha", "zeta"]
+    assert ordered_studies(directory) == ["core", "alpha", "zeta"]
 
 
 def test_the_longest_window_of_a_pair_counts_in_either_order(results):
@@ -469,8 +490,8 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     directory.write_json("studies/mine.json", manifest)
     page = chapters.scene_chapter(directory, manifest, tmp_path)
     front = chapters_front.front_matter(directory, ["mine"], tmp_path)
-    assert not [b for b in (*page, *front) if isinstance(b, report.FigureBlock)]
-    said = [b.text for b in page if isinstance(b, report.Callout)]
+    assert not [b for b in (*page, *front) if isinstance(b, FigureBlock)]
+    said = [b.text for b in page if isinstance(b, Callout)]
     assert said[0] == f"dda: overflow. {Outcome.OVERFLOW.sentence} step 7; too long"
     assert said[1].startswith("bar: refused.")
     assert chapters_front.headline([], []) == "No gate was judged; DDA was not compared with the exact bar."

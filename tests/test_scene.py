@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from conftest import SCENE
 
-from validation.cases import Case
-from validation.scene import Scene, SceneError, load_scene, parse_assignment, parse_scene, scene_names
+from validation.engine.case import Case
+from validation.errors import InputError
+from validation.scenes.scene import Scene, load_scene, parse_assignment, parse_scene, scene_names
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
 
@@ -94,7 +95,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
 def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], words: str) -> None:
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(InputError) as caught:
         parse(**changes)
     text = str(caught.value)
     assert text.startswith("x.toml: ")
@@ -116,14 +117,14 @@ POLYGONS = [
 def test_polygons_that_are_refused(vertices: list[list[float]], words: str) -> None:
     data = changed(block__vertices=vertices)
     del data["block"]["side"]
-    with pytest.raises(SceneError, match=words):
+    with pytest.raises(InputError, match=words):
         parse_scene(data, "x.toml")
 
 
 def test_edges_of_a_polygon_are_checked() -> None:
     data = changed(block__vertices=SQUARE, block__top=4)
     del data["block"]["side"]
-    with pytest.raises(SceneError, match="top must be an edge index from 0 to 3, got 4"):
+    with pytest.raises(InputError, match="top must be an edge index from 0 to 3, got 4"):
         parse_scene(data, "x.toml")
 
 
@@ -131,7 +132,7 @@ def test_a_missing_key_is_named() -> None:
     data = changed()
     del data["load"]["pressure"]
     with pytest.raises(
-        SceneError, match=r"x.toml: load: one of pressure, traction, gravity or base_motion is required"
+        InputError, match=r"x.toml: load: one of pressure, traction, gravity or base_motion is required"
     ):
         parse_scene(data, "x.toml")
 
@@ -145,9 +146,9 @@ def test_sweep_is_a_product_or_a_zip() -> None:
 
 
 def test_a_swept_value_is_checked_like_any_other() -> None:
-    with pytest.raises(SceneError, match=r"time.step: must be greater than 0, got -1"):
+    with pytest.raises(InputError, match=r"time.step: must be greater than 0, got -1"):
         parse(sweep={"time.step": [0.1, -1]}).expand()
-    with pytest.raises(SceneError, match="unknown key"):
+    with pytest.raises(InputError, match="unknown key"):
         parse(sweep={"time.stop": [0.1]}).expand()
 
 
@@ -155,15 +156,15 @@ def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_
     close = parse(sweep={"time.step": [0.1, 0.1 + 1e-9]}).expand()
     assert [case.name for case in close] == ["scene[time.step=0.1]", "scene[time.step=0.100000001]"]
     for repeated in ([0.1, 0.1], [1, 1.0]):
-        with pytest.raises(SceneError, match="sweep: must not repeat a case"):
+        with pytest.raises(InputError, match="sweep: must not repeat a case"):
             parse(sweep={"time.step": repeated}).expand()
 
 
 def test_keys_that_exclude_each_other_are_not_set_or_swept_together() -> None:
     for values in ({"time.gg": 0.9, "time.gg_rate": 3.0}, {"block.side": 1.0, "block.width": 2.0, "block.height": 1.0}):
-        with pytest.raises(SceneError, match="exclude each other, got both"):
+        with pytest.raises(InputError, match="exclude each other, got both"):
             parse().with_values(values)
-    with pytest.raises(SceneError, match="exclude each other, got both"):
+    with pytest.raises(InputError, match="exclude each other, got both"):
         parse(sweep={"time.gg": [0.9, 1.0], "time.gg_rate": [3.0]}).expand()
     rate = parse(time__gg=0.9, sweep={"time.gg_rate": [3.0, 4.0]}).expand()
     assert [(case.time.gg, case.time.gg_rate) for case in rate] == [(None, 3.0), (None, 4.0)]
@@ -173,7 +174,7 @@ def test_keys_that_exclude_each_other_are_not_set_or_swept_together() -> None:
 
 @pytest.mark.parametrize("field", ["name", "sweep", "gate", 'sweep."time.step"', "gate.0.band"])
 def test_what_is_no_value_of_a_scene_is_not_set(field: str) -> None:
-    with pytest.raises(SceneError, match="must be a key as in"):
+    with pytest.raises(InputError, match="must be a key as in"):
         parse().with_values({field: [0.1]})
 
 
@@ -197,7 +198,7 @@ def test_assignments_are_toml_or_words() -> None:
     assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
     assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
-    with pytest.raises(SceneError, match="must be key=value"):
+    with pytest.raises(InputError, match="must be key=value"):
         parse_assignment("time.step")
 
 

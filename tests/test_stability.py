@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 from conftest import SCENE
 
-from validation import load_scene, stability
-from validation.cases import Case, execute
-from validation.history import History, Outcome, Run
-from validation.scene import Scene, SceneError
-from validation.solvers import Solver, get_solver
-from validation.stability import Stability
+from validation import load_scene
+from validation.engine.case import Case
+from validation.engine.measure import execute
+from validation.errors import InputError
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers import stability
+from validation.solvers.contract import Solver
+from validation.solvers.registry import get_solver
+from validation.solvers.stability import Stability
 
 EXPLICIT, LINEAR = {"time.alpha": 0.0, "time.delta": 0.5}, {"time.alpha": 1 / 6, "time.delta": 0.5}
 
@@ -131,7 +136,7 @@ def test_histories_grow_beyond_the_limit_and_not_below(scene, solver, values, om
 @pytest.mark.parametrize("solver", ["dda", "fem"])
 def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene, solver):
     case = scene.with_values(EXPLICIT | {"time.allow_unstable": False, "time.step": 0.01})
-    with pytest.raises(SceneError, match=r"must not exceed .* s, the stability limit of alpha = 0"):
+    with pytest.raises(InputError, match=r"must not exceed .* s, the stability limit of alpha = 0"):
         get_solver(solver).solve(case)
 
 

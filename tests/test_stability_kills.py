@@ -9,18 +9,18 @@ from conftest import beside
 from test_kill_matrix import Fault, check_kill_matrix, late, thousandth, times, with_scheme
 
 import dda
-import dda.gap_form
-import dda.newmark
-import dda.solution
-import fem_reference.bar
-import fem_reference.elasticity
-import fem_reference.newmark
-import fem_reference.solver
-from dda.natural_modes import ModalForm
-from validation.engine import run_study
-from validation.gates import Status
-from validation.report import CHAPTERS, build, figures
-from validation.studies import get_study
+import dda.one_block.gap_form
+import dda.one_block.solution
+import dda.scheme.newmark
+import fem_reference.exact.bar
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+import fem_reference.scheme.newmark
+from dda.one_block.natural_modes import ModalForm
+from validation.engine.run import run_study
+from validation.gates.gate import Status
+from validation.report.book import CHAPTERS, build, figures
+from validation.studies.catalogue import get_study
 
 
 def printed_recursion(sound):
@@ -51,15 +51,15 @@ def offset(sound):
     return faulty
 
 
-class AccelerationFirst(fem_reference.newmark.Stepper):
+class AccelerationFirst(fem_reference.scheme.newmark.Stepper):
     """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
 
     def advance(self, state):
         s = self.scheme
-        ahead = fem_reference.newmark.predictor(state, s)
+        ahead = fem_reference.scheme.newmark.predictor(state, s)
         A = self._solve(self.F - self.K @ ahead)
         D = ahead + s.alpha * s.step**2 * A
-        return fem_reference.newmark.State(D, fem_reference.newmark.velocity(state, A, s), A)
+        return fem_reference.scheme.newmark.State(D, fem_reference.scheme.newmark.velocity(state, A, s), A)
 
 
 def begun(sound):
@@ -74,22 +74,28 @@ def begun(sound):
 
 FAULTS = [
     Fault("dda: the printed recursion", ("dda",), dda, "solve", printed_recursion),
-    Fault("dda: modes by a general solver", ("dda",), dda.solution, "modal_form", unscaled_modes),
-    Fault("dda: load 2e-9 high", ("dda",), dda.gap_form, "_load", times(1 + 2e-9)),
-    Fault("dda: delta 0.1 % high", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)),
-    Fault("dda: an offset", ("dda",), dda.solution, "bound_overflow", offset),
+    Fault("dda: modes by a general solver", ("dda",), dda.one_block.solution, "modal_form", unscaled_modes),
+    Fault("dda: load 2e-9 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-9)),
+    Fault(
+        "dda: delta 0.1 % high", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)
+    ),
+    Fault("dda: an offset", ("dda",), dda.one_block.solution, "bound_overflow", offset),
     Fault("dda-textbook: the robust form", ("dda-textbook",), dda, "solve_textbook", robust_form),
-    Fault("fem: accelerations first", ("fem",), fem_reference.solver, "Stepper", lambda sound: AccelerationFirst),
-    Fault("fem: history 2e-9 high", ("fem",), fem_reference.solver, "bounded", times(1 + 2e-9)),
-    Fault("bar: shares 2e-9 high", ("bar",), fem_reference.bar, "shares", times(1 + 2e-9)),
-    Fault("bar: begun before the wave", ("bar",), fem_reference.bar.Bar, "_sum", begun),
+    Fault(
+        "fem: accelerations first", ("fem",), fem_reference.history.solver, "Stepper", lambda sound: AccelerationFirst
+    ),
+    Fault("fem: history 2e-9 high", ("fem",), fem_reference.history.solver, "bounded", times(1 + 2e-9)),
+    Fault("bar: shares 2e-9 high", ("bar",), fem_reference.exact.bar, "shares", times(1 + 2e-9)),
+    Fault("bar: begun before the wave", ("bar",), fem_reference.exact.bar.Bar, "_sum", begun),
 ]
 
 
 CONTACT_FAULTS = [
-    Fault("dda: delta 0.1 % high", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)),
-    Fault("dda: one step late", ("dda",), dda.solution, "modal_histories", late),
-    Fault("dda: an offset", ("dda",), dda.solution, "bound_overflow", offset),
+    Fault(
+        "dda: delta 0.1 % high", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)
+    ),
+    Fault("dda: one step late", ("dda",), dda.one_block.solution, "modal_histories", late),
+    Fault("dda: an offset", ("dda",), dda.one_block.solution, "bound_overflow", offset),
 ]
 
 
@@ -100,10 +106,14 @@ def of_degree(degree):
 
 LIMIT_FAULTS = [
     Fault(
-        "dda: delta 1e-6 high", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=lambda d: d + 1e-6)
+        "dda: delta 1e-6 high",
+        ("dda",),
+        dda.scheme.newmark,
+        "velocity_corrector",
+        with_scheme(0, delta=lambda d: d + 1e-6),
     ),
-    Fault("fem: always linear", ("fem",), fem_reference.elasticity, "vector_basis", of_degree(1)),
-    Fault("fem: always quadratic", ("fem",), fem_reference.elasticity, "vector_basis", of_degree(2)),
+    Fault("fem: always linear", ("fem",), fem_reference.mesh.elasticity, "vector_basis", of_degree(1)),
+    Fault("fem: always quadratic", ("fem",), fem_reference.mesh.elasticity, "vector_basis", of_degree(2)),
 ]
 
 

@@ -87,7 +87,7 @@ def test_a_scene_of_dda_alone_imports_no_finite_elements() -> None:
 
 
 def test_the_bar_needs_no_finite_elements() -> None:
-    assert not loaded("import fem_reference.bar") & {"skfem", "meshio", "matplotlib"}
+    assert not loaded("import fem_reference.exact.bar") & {"skfem", "meshio", "matplotlib"}
 
 
 def test_the_command_line_and_the_plugin_start_light() -> None:

@@ -10,16 +10,16 @@ from conftest import beside
 from test_kill_matrix import Fault, check_kill_matrix, swapped, with_scheme
 from typer.testing import CliRunner
 
-import dda.newmark
-import fem_reference.elasticity
-import fem_reference.solver
-from validation import work_record
-from validation.cli import app
-from validation.engine import finish, run_study
-from validation.results import Results
-from validation.scene import SceneError
-from validation.work_points import cheapest, floor, front, points
-from validation.work_precision import WORK_PRECISION, order, study_cases
+import dda.scheme.newmark
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+from validation.cli.app import app
+from validation.engine.run import finish, run_study
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.studies.work import record as work_record
+from validation.studies.work.points import cheapest, floor, front, points
+from validation.studies.work.study import WORK_PRECISION, order, study_cases
 
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
 
@@ -43,12 +43,16 @@ def kept_velocity(gg):
 
 
 FAULTS = [
-    Fault("dda: a discount", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, gg=kept_velocity)),
-    Fault("dda: other start", ("dda",), dda.newmark, "initial_acceleration", with_scheme(0, start=swapped)),
-    Fault("dda: delta 1/2", ("dda",), dda.newmark, "velocity_corrector", with_scheme(0, delta=lambda d: 0.5)),
-    Fault("fem: column 0.1 % soft", ("fem",), fem_reference.model, "column", lambda sound: lambda p: sound(softer(p))),
-    Fault("fem: mass of first order", ("fem",), fem_reference.elasticity, "mass", heavier_on_coarse_meshes),
-    Fault("fem: stepped", ("fem",), fem_reference.solver, "_in_small_space", lambda sound: lambda *a: "a fault"),
+    Fault("dda: a discount", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=kept_velocity)),
+    Fault("dda: other start", ("dda",), dda.scheme.newmark, "initial_acceleration", with_scheme(0, start=swapped)),
+    Fault("dda: delta 1/2", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=lambda d: 0.5)),
+    Fault(
+        "fem: column 0.1 % soft", ("fem",), fem_reference.mesh.model, "column", lambda sound: lambda p: sound(softer(p))
+    ),
+    Fault("fem: mass of first order", ("fem",), fem_reference.mesh.elasticity, "mass", heavier_on_coarse_meshes),
+    Fault(
+        "fem: stepped", ("fem",), fem_reference.history.solver, "_in_small_space", lambda sound: lambda *a: "a fault"
+    ),
 ]
 
 
@@ -90,8 +94,8 @@ def test_rows_and_any_pair_of_columns(results, tmp_path):
     assert CliRunner().invoke(app, ["plot", "work-precision", *pair, *where]).exit_code == 0
     assert (tmp_path / "a.svg").stat().st_size > 1000
     wrong = CliRunner().invoke(app, ["plot", "work-precision", "--x", "nothing", *where])
-    assert isinstance(wrong.exception, SceneError) and "must be columns" in str(wrong.exception)
-    assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, SceneError)
+    assert isinstance(wrong.exception, InputError) and "must be columns" in str(wrong.exception)
+    assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
 
 
 def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_path, monkeypatch):
@@ -107,7 +111,7 @@ def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_pat
     found = work_record.ratios(now, worse)
     assert found["errors"] == pytest.approx(1.1, rel=0.03) and found["work"] > 1.15
     monkeypatch.setattr(work_record, "PATH", tmp_path / "record.json")
-    with pytest.raises(SceneError, match=r"^--reason: "):
+    with pytest.raises(InputError, match=r"^--reason: "):
         work_record.update(finished, study_cases(), " ")
     work_record.update(finished, study_cases(), "a test")
     assert work_record.load()["reasons"] == ["a test"]

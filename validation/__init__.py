@@ -9,18 +9,19 @@ import importlib
 from typing import Any
 
 _NAMES = {
-    "History": "history",
-    "Mode": "history",
-    "Outcome": "history",
-    "Run": "history",
-    "Scene": "scene",
-    "SceneError": "scene",
-    "advise": "advice",
-    "damping": "spectra",
-    "load_scene": "scene",
-    "solve": "solvers",
-    "Solver": "solvers",
-    "get_solver": "solvers",
+    "History": "runs.history",
+    "InputError": "errors",
+    "Mode": "runs.modes",
+    "Outcome": "runs.run",
+    "Run": "runs.run",
+    "Scene": "scenes.scene",
+    "SceneError": "errors",  # the name of InputError in version 0.1
+    "Solver": "solvers.contract",
+    "advise": "advice.advice",
+    "damping": "advice.spectra",
+    "get_solver": "solvers.registry",
+    "load_scene": "scenes.scene",
+    "solve": "solvers.registry",
 }
 __all__ = sorted(_NAMES)
 

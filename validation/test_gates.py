@@ -11,13 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from validation.cases import Case
-from validation.engine import Finished, evaluate, finish
-from validation.gates import Gate, Status, Verdict
-from validation.history import Outcome
-from validation.metrics import NOT_REPORTED
-from validation.results import Results
-from validation.studies import Derived, Study, get_study, judged_studies
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.engine.study import Derived, Study
+from validation.gates.gate import Gate, Status, Verdict
+from validation.metrics.values import NOT_REPORTED
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.studies.catalogue import get_study, judged_studies
 
 JUDGED = "dda"  # whose place a user's solver takes
 PATIENCE = 2  # cases that may hang before the rest are not tried

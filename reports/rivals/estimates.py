@@ -6,10 +6,10 @@ import numpy as np
 def honesty(count: int) -> str:
     """Return what random scenes say of the estimate of the small space: true error over estimated, at worst."""
     from fem_reference import Problem, Scheme
-    from fem_reference.model import build
-    from fem_reference.newmark import Stepper
-    from fem_reference.reduced import Reduced, reduced
-    from fem_reference.solver import run
+    from fem_reference.history.reduced import Reduced, reduced
+    from fem_reference.history.solver import run
+    from fem_reference.mesh.model import build
+    from fem_reference.scheme.newmark import Stepper
 
     rng, worst, largest, spaces = np.random.default_rng(1), 0.0, 0.0, 0
     corners, columns = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)), ("displacement", "contact_pressure")

@@ -1,0 +1,4 @@
+"""Contact between a block and its base.
+
+Springs and their directions.
+"""

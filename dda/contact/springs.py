@@ -1,0 +1,71 @@
+"""Locked contact springs between an edge of a block and a fixed base."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.model.block import Block
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Locked corner springs: they neither open nor slide.
+
+    Raises
+    ------
+    ValueError
+        If a stiffness is not finite and positive.
+    """
+
+    stiffness: float  # p, of each normal spring [N/m]
+    shear_stiffness: float | None = None  # of each shear spring [N/m]; p if absent
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        for field in ("stiffness", "shear_stiffness"):
+            value = getattr(self, field)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+
+    @property
+    def normal(self) -> float:
+        """Stiffness p_n of each normal spring [N/m]."""
+        return self.stiffness
+
+    @property
+    def shear(self) -> float:
+        """Stiffness p_s of each shear spring [N/m]."""
+        return self.stiffness if self.shear_stiffness is None else self.shear_stiffness
+
+
+def base_directions(block: Block, base: int) -> tuple[Array, Array, float]:
+    """Return unit tangent, unit inward normal and length [m] of an edge."""
+    start, end = block.edge(base)
+    length = float(np.hypot(*(end - start)))
+    tangent = (end - start) / length
+    return tangent, np.array([-tangent[1], tangent[0]]), length
+
+
+def spring_vectors(block: Block, base: int) -> tuple[Array, Array]:
+    """Return the spring vectors of eq. (24) and (26) for any base edge.
+
+    Returns
+    -------
+    normal, shear : (2, 6) arrays
+        Rows for the edge's first end M and second end N; a row times D is the spring's stretch [m].
+    """
+    tangent, normal, _ = base_directions(block, base)
+    T = [block.T(float(x), float(y)) for x, y in block.edge(base)]
+    return np.array([normal @ t for t in T]), np.array([tangent @ t for t in T])
+
+
+def contact_stiffness(block: Block, contact: Contact, base: int) -> Array:
+    """Return the 6 x 6 spring stiffness, eq. (27), for any base edge."""
+    normal, shear = spring_vectors(block, base)
+    return contact.normal * normal.T @ normal + contact.shear * shear.T @ shear

@@ -1,0 +1,4 @@
+"""Blocks, materials, outlines and loads.
+
+No contact and no time come in.
+"""

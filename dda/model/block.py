@@ -1,0 +1,101 @@
+"""One block of discontinuous deformation analysis: a polygon with six unknowns.
+
+The unknowns are D = (u, v, r, ex, ey, gxy) about the centroid (x0, y0), eq. (1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dda.model.material import Material
+from dda.model.polygon import Section, checked_polygon, section
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A homogeneous polygonal block of unit thickness.
+
+    Raises
+    ------
+    ValueError
+        If the corners do not form a simple counter-clockwise polygon.
+    """
+
+    vertices: ArrayLike  # (n, 2) corners, counter-clockwise [m]
+    material: Material
+
+    def __post_init__(self) -> None:
+        """Check the polygon and freeze its corners."""
+        object.__setattr__(self, "vertices", checked_polygon(self.vertices))
+
+    @classmethod
+    def rectangle(cls, width: float, height: float, material: Material) -> Block:
+        """Return the upright rectangle with its lower left corner at the origin (sides in m)."""
+        return cls([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]], material)
+
+    @property
+    def corners(self) -> Array:
+        """The corners as a read-only (n, 2) array [m]."""
+        return np.asarray(self.vertices)
+
+    @cached_property
+    def section(self) -> Section:
+        """Area, centroid and central moments."""
+        return section(self.corners)
+
+    def edge(self, index: int) -> tuple[Array, Array]:
+        """Return the two ends of edge `index`, from corner `index` to the next one [m].
+
+        Raises
+        ------
+        ValueError
+            If there is no such edge.
+        """
+        n = len(self.corners)
+        if not 0 <= index < n:
+            raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
+        return self.corners[index], self.corners[(index + 1) % n]
+
+    def T(self, x: float, y: float) -> Array:
+        """Return the 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""
+        X, Y = x - self.section.centroid[0], y - self.section.centroid[1]
+        return np.array([[1.0, 0.0, -Y, X, 0.0, Y / 2], [0.0, 1.0, X, 0.0, Y, X / 2]])
+
+    def mass(self) -> Array:
+        """Return the 6 x 6 inertia matrix, eq. (15), (16) with (3,6) and (6,6) corrected.
+
+        Entry (3,6) is rho (s1 - s2)/2 and (6,6) is rho (s1 + s2)/4.
+        """
+        s, s1, s2, s3 = self.section.area, self.section.s1, self.section.s2, self.section.s3
+        M = np.zeros((6, 6))
+        M[0, 0] = M[1, 1] = s
+        M[2:, 2:] = [
+            [s1 + s2, -s3, s3, (s1 - s2) / 2],
+            [-s3, s1, 0.0, s3 / 2],
+            [s3, 0.0, s2, s3 / 2],
+            [(s1 - s2) / 2, s3 / 2, s3 / 2, (s1 + s2) / 4],
+        ]
+        return self.material.density * M
+
+    def elastic(self) -> Array:
+        """Return the 6 x 6 elastic matrix s E, eq. (21) with its missing modulus [N/m, N, N m]."""
+        K = np.zeros((6, 6))
+        K[3:, 3:] = self.section.area * self.material.elasticity()
+        return K
+
+    def edge_load(self, edge: int, traction: tuple[float, float]) -> Array:
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] on an edge, eq. (29)."""
+        return self.segment_load(*self.edge(edge), traction)
+
+    def segment_load(self, start: Array, end: Array, traction: tuple[float, float]) -> Array:
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m]."""
+        x, y = start + (end - start) / 2
+        force = float(np.hypot(*(end - start))) * np.array(traction)
+        load: Array = self.T(float(x), float(y)).T @ force
+        return load

@@ -1,0 +1,4 @@
+"""One block of one strain on contact springs.
+
+Its equations, modes and histories.
+"""

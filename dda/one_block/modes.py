@@ -1,0 +1,110 @@
+"""Natural modes of the two-block model and the one-step operator of the assembled scheme."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.one_block.gap_form import GapForm
+from dda.one_block.natural_modes import modal_form
+from dda.one_block.two_block import TwoBlockModel
+from dda.scheme import spectral
+from dda.scheme.newmark import Scheme, assembled_step, effective_matrix, modal_step
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A natural mode and what one step of the scheme does to it."""
+
+    frequency: float  # w [rad/s], undamped natural
+    share: float  # of the static response, (phi'F)^2 / (w^2 F'D_static) [-]
+    eigenvalues: tuple[complex, complex]  # of the mode's own one-step operator, larger modulus first
+    contact_share: float  # static contact pressure that the mode carries, over the applied pressure [-]
+
+
+@dataclass(frozen=True)
+class Diagnostics:
+    """Conditioning and stability of the assembled step."""
+
+    condition_number: float  # of S = M + alpha dt^2 K in D, unscaled [-]
+    scaled_condition_number: float  # of the scaled S that is factored [-]
+    scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
+    spectral_radius: float  # largest |lambda| seen: the step applied to unit states of the reached modes [-]
+    predicted_radius: float  # the same from trace and determinant in closed form [-]
+    largest_omega: float  # largest w dt over the reached modes [-]
+
+
+def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
+    """Return the modes that the load can reach, the largest static share first."""
+    form = model.gap_form.reduced()
+    modal = modal_form(form)
+    pushed = modal.load if np.any(form.F) else np.sum(modal.translation, axis=1)
+    shares = (pushed / modal.frequencies) ** 2
+    shares /= np.sum(shares)
+    carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2
+    return tuple(
+        Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w), float(carried[i]))
+        for i in np.argsort(-shares)
+        for w in [float(modal.frequencies[i])]
+    )
+
+
+def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:
+    """Return the two non-zero eigenvalues of one step of a mode, the larger modulus first.
+
+    The step is applied to the unit states of (D, dt V) with the acceleration that equilibrium
+    gives them, A = -w^2 D, which every step but the first starts from.
+    """
+    k = (frequency * scheme.step) ** 2
+    S = effective_matrix(scheme, 1.0, k)
+    a, c, _ = modal_step(scheme, S, k, 0.0, (1.0, 0.0, -k))
+    b, d, _ = modal_step(scheme, S, k, 0.0, (0.0, 1.0, 0.0))
+    root = np.sqrt(complex(((a - d) / 2) ** 2 + b * c))
+    pair = sorted(((a + d) / 2 + root, (a + d) / 2 - root), key=abs, reverse=True)
+    return complex(pair[0]), complex(pair[1])
+
+
+def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) -> Array:
+    """Return the (3n, 3n) matrix of one unloaded step on (D, dt V, dt^2 A).
+
+    D holds the reduced unknowns (all six if `full`), each scaled by a power of two; the matrix
+    is similar to the one on (D, V, A) and has the same eigenvalues.
+    """
+    form = model.gap_form if full else model.gap_form.reduced()
+    M, k, _ = _scaled(form, scheme)
+    n = len(k)
+    D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
+    D1, P1, f1 = assembled_step(scheme, M, k, D, M @ V, M @ A)
+    return np.vstack([D1, np.linalg.solve(M, P1), np.linalg.solve(M, f1)])
+
+
+def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
+    """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
+    k, F = scheme.step**2 * form.K, scheme.step**2 * form.F
+    diagonal = effective_matrix(scheme, np.diag(form.M), k)
+    scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
+    return scale[:, None] * form.M * scale, scale * k * scale, scale * F
+
+
+def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
+    """Return conditioning, residual and spectral radius of the assembled step."""
+    form = model.gap_form.reduced()
+    M, k, F = _scaled(form, scheme)
+    S = effective_matrix(scheme, M, np.diag(k))
+    x = np.linalg.solve(S, F)
+    residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
+    unscaled = effective_matrix(scheme, model.mass, scheme.step**2 * model.stiffness)
+    reached = modes(model, scheme)
+    omegas = np.array([mode.frequency * scheme.step for mode in reached])
+    return Diagnostics(
+        condition_number=float(np.linalg.cond(unscaled)),
+        scaled_condition_number=float(np.linalg.cond(S)),
+        scaled_residual=float(np.max(residual)),
+        spectral_radius=max(abs(mode.eigenvalues[0]) for mode in reached),
+        predicted_radius=float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg))),
+        largest_omega=float(np.max(omegas)),
+    )

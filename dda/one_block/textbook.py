@@ -1,0 +1,133 @@
+"""The printed recursion, eq. (6)-(9), (31), (32), for upright rectangles.
+
+It is kept as printed, to show what it costs: unknowns are the increments of (v, ex, ey), stress
+and spring stretch are accumulated, f2 of eq. (32) lacks the shear springs' stretch, and with stiff
+springs the contact force is a small difference of large numbers. Only the printed square is
+generalised to a width and a height, and the shear springs may have their own stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.one_block.solution import Result, bound_overflow, check_request, step_times
+from dda.one_block.two_block import TwoBlockModel
+from dda.scheme.newmark import Scheme
+
+Array = NDArray[np.float64]
+
+_STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3}
+
+
+def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
+    """Return why the printed recursion does not apply, or None if it does."""
+    if scheme.alpha * scheme.step**2 == 0:
+        return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
+    if model.traction or model.gravity or model.eccentricity or model.motion is not None:
+        return "eq. (31), (32) are written for a centred pressure alone"
+    corners = np.roll(model.block.corners, -model.base, axis=0)
+    x, y = corners.T
+    upright = len(x) == 4 and y[0] == y[1] and x[1] == x[2] and y[2] == y[3] and x[3] == x[0]
+    if not (upright and x[1] > x[0]):
+        return "eq. (31) is written for an upright rectangle on its lower edge"
+    if model.top != (model.base + 2) % 4:
+        return "eq. (31) is written for a load on the edge opposite the base"
+    return None
+
+
+def solve_textbook(
+    model: TwoBlockModel,
+    scheme: Scheme,
+    steps: int,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+) -> Result:
+    """Step the printed recursion from rest and return the asked columns.
+
+    Raises
+    ------
+    ValueError
+        If it does not apply (`textbook_applicable` says why), or a request is out of range.
+    """
+    check_request(steps, columns)
+    reason = textbook_applicable(model, scheme)
+    if reason is not None:
+        raise ValueError(f"model: the printed recursion does not apply: {reason}")
+    began = perf_counter()
+    with np.errstate(all="ignore"):
+        recursion = _Recursion(model, scheme)
+        ready = perf_counter()
+        states = recursion.run(steps)
+    still = np.zeros(steps)
+    observed = np.array([states[:, _STATE[name]] if name in _STATE else still for name in columns])
+    notes = bound_overflow(observed, model.pressure)
+    return Result(
+        time=step_times(scheme, steps),
+        columns=dict(zip(columns, observed, strict=True)),
+        unknowns=3,
+        nonzeros=int(np.count_nonzero(recursion.K)),
+        factorisations=1,
+        solves=steps,
+        notes=notes,
+        setup_seconds=ready - began,
+        stepping_seconds=perf_counter() - ready,
+    )
+
+
+class _Recursion:
+    """Eq. (31), (32) in (dv, dex, dey)."""
+
+    def __init__(self, model: TwoBlockModel, scheme: Scheme) -> None:
+        """Form the matrix of eq. (31) and its inverse."""
+        self.scheme = scheme
+        self.q, self.p = model.pressure, model.contact.normal
+        extent = np.ptp(model.block.corners, axis=0)
+        self.width, self.height = float(extent[0]), float(extent[1])
+        self.area = self.width * self.height
+        self.C = model.block.material.elasticity()[:2, :2]
+        mass = model.block.material.density * self.area
+        self.M = mass * np.array([1.0, self.width**2 / 12, self.height**2 / 12])
+        self.K = self._matrix(model.contact.shear)
+        self.inverse = np.linalg.inv(self.K)
+
+    def _matrix(self, shear: float) -> Array:
+        """Return the matrix of eq. (31)."""
+        p, b, h = self.p, self.width, self.height
+        K = np.diag(self.M / (self.scheme.alpha * self.scheme.step**2))
+        K += np.array([[2 * p, 0.0, -p * h], [0.0, shear * b * b / 2, 0.0], [-p * h, 0.0, p * h * h / 2]])
+        K[1:, 1:] += self.area * self.C
+        return K
+
+    def _force(self, stretch: float, stress: Array) -> Array:
+        """Return load, spring and initial-stress parts of eq. (32); stretch is v_M + v_N [m]."""
+        force = np.array([-self.width * self.q, 0.0, -self.area * self.q / 2])
+        force += self.p * stretch * np.array([-1.0, 0.0, self.height / 2])
+        force[1:] -= self.area * stress
+        return force
+
+    def run(self, steps: int) -> Array:
+        """Return v, ex, ey and the contact pressure of every step, (steps, 4)."""
+        alpha, dt = self.scheme.alpha, self.scheme.step
+        stretch, stress = 0.0, np.zeros(2)
+        D, V, A = np.zeros((3, 3))
+        if self.scheme.start == "consistent":
+            A = self._force(0.0, stress) / self.M
+        states = np.empty((steps, 4))
+        for n in range(steps):
+            inertia = self.scheme.gg * V / (alpha * dt) + (1 / (2 * alpha) - 1) * A
+            dD = self.inverse @ (self._force(stretch, stress) + self.M * inertia)
+            V, A = self._velocity(dD, V, A), dD / (alpha * dt**2) - inertia
+            D = D + dD
+            stress = stress + self.C @ dD[1:]
+            stretch += 2 * dD[0] - self.height * dD[2]
+            states[n, :3] = D
+            states[n, 3] = -self.p * stretch / self.width
+        return states
+
+    def _velocity(self, dD: Array, V: Array, A: Array) -> Array:
+        """Return the velocity at the end of the step, eq. (7)."""
+        alpha, delta, gg, dt = self.scheme.alpha, self.scheme.delta, self.scheme.gg, self.scheme.step
+        return delta / (alpha * dt) * dD + gg * (1 - delta / alpha) * V + (1 - delta / (2 * alpha)) * dt * A

@@ -1,0 +1,111 @@
+"""The two-block model: one block on locked springs above a fixed base, pressed from above."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dda.contact.springs import Contact, contact_stiffness
+from dda.model.block import Block
+from dda.model.load import BaseMotion, Load, pressed_part
+from dda.one_block.gap_form import GapForm, gap_form
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TwoBlockModel:
+    """Block A on block B: springs at both ends of the base edge, loads on the top edge and on the mass.
+
+    Edge i runs from corner i to corner i + 1. The pressure acts vertically downwards
+    (global -y) whatever the direction of the top edge. The model is linear,
+    M D'' + K D = F, in D = (u, v, r, ex, ey, gxy).
+
+    Raises
+    ------
+    ValueError
+        If a load is not finite, the eccentricity leaves nothing of the top edge, or base and top
+        are not two edges of the block.
+    """
+
+    block: Block
+    contact: Contact
+    pressure: float  # q [Pa]
+    base: int = 0  # edge on the springs
+    top: int = 2  # edge under pressure
+    eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
+    traction: float = 0.0  # towards +x, on the whole top edge [Pa]
+    gravity: float = 0.0  # downwards, switched on at t = 0 [m/s^2]
+    motion: BaseMotion | None = None  # of the springs' base ends
+
+    def __post_init__(self) -> None:
+        """Check the load and the edges."""
+        n = len(self.block.corners)
+        for field in ("base", "top"):
+            value = getattr(self, field)
+            if not 0 <= value < n:
+                raise ValueError(f"{field}: must be an edge between 0 and {n - 1}, got {value!r}")
+        if self.base == self.top:
+            raise ValueError(f"top: must differ from base, got {self.top!r}")
+        pressed_part(*self.block.edge(self.top), self.applied.eccentricity)
+
+    @cached_property
+    def applied(self) -> Load:
+        """All loads."""
+        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion)
+
+    @cached_property
+    def load_size(self) -> float:
+        """Largest of the constant loads as a stress, gravity as rho g sqrt(area) [Pa]."""
+        return self.applied.size(self.block.material.density * math.sqrt(self.block.section.area))
+
+    @cached_property
+    def mass(self) -> Array:
+        """Inertia matrix M in D, 6 x 6, eq. (16) corrected."""
+        return self.block.mass()
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Stiffness matrix K in D, 6 x 6: elastic (21) corrected plus springs (27)."""
+        return self.block.elastic() + contact_stiffness(self.block, self.contact, self.base)
+
+    @cached_property
+    def load(self) -> Array:
+        """Constant load F in D, 6 entries: eq. (29) with (0, -q), the traction and the weight."""
+        pressed = pressed_part(*self.block.edge(self.top), self.eccentricity)
+        weight = np.zeros(6)
+        weight[1] = -self.block.material.density * self.block.section.area * self.gravity
+        traction = self.block.edge_load(self.top, (self.traction, 0.0))
+        return self.block.segment_load(*pressed, (0.0, -self.pressure)) + traction + weight
+
+    @cached_property
+    def gap_form(self) -> GapForm:
+        """The same model in contact-gap coordinates, all six unknowns, under the load over `load_size`.
+
+        Without a load it is the form under a pressure of 1 Pa.
+        """
+        unit = Load(1.0, self.eccentricity, motion=self.motion)
+        if size := self.load_size:
+            constant = (self.pressure / size, self.eccentricity, self.traction / size, self.gravity / size)
+            unit = Load(*constant, self.motion)
+        return gap_form(self.block, self.contact, self.base, self.top, unit)
+
+    def static(self) -> dict[str, float]:
+        """Return the value of every column at rest under the constant loads, on the base's last position."""
+        form = self.gap_form
+        x = form.F / form.K
+        static = {name: float(row @ x) * self.load_size + 0.0 for name, row in form.observers.items()}
+        last = carried(self.motion, [math.inf])
+        return {name: value + float(last[name][0]) if name in last else value for name, value in static.items()}
+
+
+def carried(motion: BaseMotion | None, instants: ArrayLike) -> dict[str, Array]:
+    """Return what a moving base adds to the columns: its own displacement [m]."""
+    if motion is None:
+        return {}
+    moved = motion.at(instants)
+    return {"horizontal_displacement": moved[:, 0], "displacement": moved[:, 1]}

@@ -1,0 +1,160 @@
+r"""Whole histories as matrix products over blocks of steps.
+
+From step 1 on, M A + K D = F, so that a mode's state is (u, p): the displacement over its static
+value and, in the same measure, the momentum dt V. A step of the scheme is an affine map of (u, p),
+and step jB + i of a history is the product of a row of i steps and a column of jB steps: the whole
+history is one matrix product for each column. Rows and columns are doubled, from 1, 2, 4, ... steps
+on; the maps of 1, 2, 4, ... steps are squared with all digits. An error therefore grows with the
+logarithm of the number of steps, not with their number, and nothing is subtracted: a motion that has
+hardly begun keeps its digits as it does when it is stepped.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.scheme import newmark
+from dda.scheme.exact import PLACES, Exact
+from dda.scheme.newmark import Scheme
+
+Array = NDArray[np.float64]
+
+BLOCK = 1024  # most steps in a row: its products stay in the cache
+_RANGE = 1e15  # of w dt: its square has full digits as an `Exact`
+_ONE = 1 << PLACES
+
+Map = tuple[int, int, int, int, int, int]
+"""(a, b, c, d, e, g), times 2^PLACES, of (u, p) -> (a u + b p + e, c u + d p + g)."""
+
+
+def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
+    """Return why a history must be stepped, in words; None if it can be blocked.
+
+    A power of a growing map overflows before the history does.
+    """
+    omegas = [scheme.step * w for w in frequencies.tolist()]
+    if not all(1 / _RANGE < omega < _RANGE for omega in omegas):
+        return f"w dt leaves {1 / _RANGE:g} to {_RANGE:g}"
+    return "the scheme grows" if any(_grows(scheme, omega) for omega in omegas) else None
+
+
+def _grows(scheme: Scheme, omega: float) -> bool:
+    """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
+    alpha, delta, gg, k = scheme.alpha, scheme.delta, scheme.gg, omega * omega
+    at_minus_one = 2 * (1 + gg) - k * (0.5 + gg * (2 * delta - 0.5) - 2 * alpha * (1 + gg))
+    determinant = gg * (1 + (0.5 - delta) * k / (1 + alpha * k))
+    return not (at_minus_one > 0 and abs(determinant) <= 1 and k * (delta / 2 - alpha) < 1)
+
+
+def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -> Array:
+    """Return the observed columns of every step from rest, (columns, steps).
+
+    Parameters
+    ----------
+    frequencies : (n,) array
+        w of every mode [rad/s].
+    rows : (columns, n) array
+        What a mode adds to a column at its static displacement.
+    steps : int
+        Number of steps.
+    """
+    levels = (steps - 1).bit_length()
+    split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
+    maps, first = _powers(scheme, frequencies, levels)
+    observers = np.zeros((len(rows), len(first)))
+    observers[:, :-1:2] = rows
+    inner = _doubled(observers, maps[:split]).reshape(-1, *observers.shape)
+    blocks = _doubled(first[None], maps[split:].transpose(0, 2, 1))[: -(-steps >> split)]
+    history = np.empty((len(rows), len(blocks), 1 << split))
+    for index, out in enumerate(history):
+        np.matmul(blocks, inner[:, index].T, out=out)
+    return history.reshape(len(rows), -1)[:, :steps]
+
+
+def _doubled(start: Array, maps: Array) -> Array:
+    """Return the rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
+    have = len(start)
+    made = np.empty((have << len(maps), start.shape[1]))
+    made[:have] = start
+    for power in maps:
+        np.matmul(made[:have], power, out=made[have : 2 * have])
+        have *= 2
+    return made
+
+
+def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Array]:
+    """Return the maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
+
+    The state holds u and the scaled p of every mode and a constant 1, so that the maps are linear.
+    """
+    n = 2 * len(frequencies)
+    maps = np.zeros((levels, n + 1, n + 1))
+    maps[:, n, n] = 1.0
+    first = np.ones(n + 1)
+    exact = _with_all_digits(scheme)
+    for i, w in enumerate(frequencies.tolist()):
+        at = slice(2 * i, 2 * i + 2)
+        table, first[at] = _mode(exact, w, levels)
+        maps[:, at, at], maps[:, at, n] = table[:, :4].reshape(-1, 2, 2), table[:, 4:]
+    return maps, first
+
+
+def _with_all_digits(scheme: Scheme) -> Scheme:
+    """Return the scheme in numbers that `modal_step` takes in place of doubles."""
+    fields: dict[str, Any] = {name: Exact.of(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
+    return replace(scheme, **fields)
+
+
+def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
+    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
+
+    The momentum is measured in the power of two that makes the off-diagonal entries about equal.
+    """
+    step, (u, p) = _one_step(exact, w)
+    b, c = step[1].bit_length(), step[2].bit_length()
+    unit = math.ldexp(1.0, (c - b) // 2) if b and c else 1.0
+    scales = np.array([1.0, unit, 1 / unit, 1.0, 1.0, 1 / unit]) / _ONE
+    entries = [list(map(float, power)) for power in _squared(step, levels)]
+    return np.array(entries).reshape(-1, 6) * scales, (u / _ONE, p / _ONE / unit)
+
+
+def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
+    """Return the map of one step, and (u, p) at step 1, from the scheme's own step.
+
+    Under the load F = k the static displacement is 1, so that D is u and P is p.
+    """
+    omega, zero, one = Exact.of(w) * exact.step, Exact(0), Exact(_ONE)
+    k = omega * omega
+    S = newmark.effective_matrix(exact, one, k)
+
+    def step(D: Exact, P: Exact, f: Exact) -> tuple[int, int]:
+        D, P, _ = newmark.modal_step(exact, S, k, k, (D, P, f))
+        return D.scaled, P.scaled
+
+    unstrained = newmark.acceleration_corrector(k, k, zero)
+    e, g = step(zero, zero, unstrained)
+    a, c = step(one, zero, newmark.acceleration_corrector(k, k, one))
+    b, d = step(zero, one, unstrained)
+    return (a - e, b - e, c - g, d - g, e, g), step(zero, zero, newmark.initial_acceleration(exact, k))
+
+
+def _squared(power: Map, levels: int) -> Iterator[Map]:
+    """Yield the maps of 1, 2, 4, ... steps."""
+    for _ in range(levels):
+        yield power
+        a, b, c, d, e, g = power
+        t, bc = a + d, b * c
+        power = (
+            a * a + bc >> PLACES,
+            b * t >> PLACES,
+            c * t >> PLACES,
+            d * d + bc >> PLACES,
+            (a + _ONE) * e + b * g >> PLACES,
+            c * e + (d + _ONE) * g >> PLACES,
+        )

@@ -1,0 +1,179 @@
+r"""The Newmark scheme with kinetic damping, eq. (6) and (7), in a form that keeps its digits.
+
+The scheme is carried in the displacement D, the momentum P = dt M V and the inertia force
+f = dt^2 M A, with k = dt^2 K and F standing for dt^2 F:
+
+    S (D1 - D) = gg P + (1/2 - alpha) f + alpha (F - k D),     S = M + alpha k
+    f1 = F - k D1
+    P1 = gg P + (1 - delta) f + delta f1
+
+which is (6), (7) and M A1 + K D1 = F, rearranged. Nothing is divided by alpha or dt, M is
+never inverted, and with a diagonal k every force is one product: an error of one rounding in
+a displacement is an error of one rounding in its force, however stiff the spring.
+
+Histories are made mode by mode (M = 1, k = (w dt)^2), because the rounding of a large slow
+motion must not reach a stiff contact mode, whose roots near -1 would let it grow; `dda.scheme.blocked`
+does so without a loop over the steps, from the same lines.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import Literal, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.scheme.exact import Exact
+
+Array = NDArray[np.float64]
+Start = Literal["zero", "consistent"]
+Real = TypeVar("Real", float, Array, Exact)  # one mode, all unknowns at once, one mode with all digits
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Newmark parameters.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range, or the start is unknown.
+    """
+
+    alpha: float  # [-]
+    delta: float  # [-]
+    gg: float  # share of the velocity that a step starts with [-]
+    step: float  # dt [s]
+    start: Start = "zero"  # initial acceleration: "zero", or "consistent" with M A0 = F
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        for field in ("alpha", "delta"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value >= 0):
+                raise ValueError(f"{field}: must be finite and not negative, got {value!r}")
+        if not 0 <= self.gg <= 1:
+            raise ValueError(f"gg: must be between 0 and 1, got {self.gg!r}")
+        if not (math.isfinite(self.step) and self.step > 0):
+            raise ValueError(f"step: must be finite and positive, got {self.step!r}")
+        if self.start not in ("zero", "consistent"):
+            raise ValueError(f'start: must be "zero" or "consistent", got {self.start!r}')
+
+
+def effective_matrix(scheme: Scheme, M: Real, k: Real) -> Real:
+    """Return S = M + alpha dt^2 K, which is alpha dt^2 times the matrix of eq. (9)."""
+    return M + scheme.alpha * k
+
+
+def initial_acceleration(scheme: Scheme, F: Real) -> Real:
+    """Return the inertia force dt^2 M A0 at rest: dt^2 F if consistent, else zero."""
+    return F if scheme.start == "consistent" else 0 * F
+
+
+def predictor(scheme: Scheme, P: Real, f: Real) -> Real:
+    """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9)."""
+    return scheme.gg * P + (0.5 - scheme.alpha) * f
+
+
+def acceleration_corrector(F: Real, k: Real, D: Real) -> Real:
+    """Return the inertia force dt^2 M A = dt^2 (F - K D), eq. (4) and (6)."""
+    return F - k * D
+
+
+def velocity_corrector(scheme: Scheme, P: Real, f: Real, f1: Real) -> Real:
+    """Return dt M V1 = gg dt M V + dt^2 M ((1 - delta) A + delta A1), eq. (7)."""
+    return scheme.gg * P + (1 - scheme.delta) * f + scheme.delta * f1
+
+
+def momentum_balance(scheme: Scheme, F: Real, k: Real, D: Real, P: Real, f: Real) -> Real:
+    """Return S (D1 - D) = M (D* - D) + alpha dt^2 (F - K D), eq. (8) in the robust form."""
+    return predictor(scheme, P, f) + scheme.alpha * acceleration_corrector(F, k, D)
+
+
+def modal_step(scheme: Scheme, S: Real, k: Real, F: Real, state: tuple[Real, Real, Real]) -> tuple[Real, Real, Real]:
+    """Return (D, P, f) of one mode one step later."""
+    D, P, f = state
+    D = D + momentum_balance(scheme, F, k, D, P, f) / S
+    f1 = acceleration_corrector(F, k, D)
+    return D, velocity_corrector(scheme, P, f, f1), f1
+
+
+def modal_displacements(scheme: Scheme, omega: float, F: float) -> Iterator[float]:
+    """Yield D of step 1, 2, ... of one mode from rest under a constant load.
+
+    Parameters
+    ----------
+    omega : float
+        w dt [-].
+    F : float
+        dt^2 times the modal load.
+    """
+    k = omega * omega
+    S = effective_matrix(scheme, 1.0, k)
+    state = (0.0, 0.0, initial_acceleration(scheme, F))
+    while True:
+        state = modal_step(scheme, S, k, F, state)
+        yield state[0]
+
+
+def stepped_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int) -> Array:
+    """Return D of every mode and step, (n, steps), from rest under a constant modal load."""
+    dt = scheme.step
+    histories = np.empty((len(load), steps))
+    for row, w, F in zip(histories, frequencies.tolist(), load.tolist(), strict=True):
+        row[:] = np.fromiter(islice(modal_displacements(scheme, dt * w, dt * dt * F), steps), float, steps)
+    return histories
+
+
+def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, moved: Array) -> Array:
+    """Return D of every step and mode, (steps, n), measured from a moving base, without other loads.
+
+    With x = D + R y the spring forces are those of D alone, and the scheme for x becomes
+
+        S (D1 - D) = gg P + (1/2 - alpha) f - alpha k D - R (y1 - y),
+
+    with the momentum P and the inertia force f of x; no spring force is a difference of
+    large numbers.
+
+    Parameters
+    ----------
+    translation : (n, 2) array
+        Modal R of unit displacements of the base.
+    moved : (steps + 1, 2) array
+        Displacement y of the base at t = 0, dt, ... [m]; the block starts undisplaced.
+    """
+    k = (scheme.step * frequencies) ** 2
+    S = effective_matrix(scheme, np.ones_like(k), k)
+    pushes = np.diff(moved, axis=0) @ translation.T
+    D, P = -(translation @ moved[0]), np.zeros_like(k)
+    f = initial_acceleration(scheme, -k * D)
+    histories = np.empty((len(pushes), len(k)))
+    for row, push in zip(histories, pushes, strict=True):
+        D = D + (momentum_balance(scheme, 0.0 * k, k, D, P, f) - push) / S
+        f1 = acceleration_corrector(0.0 * k, k, D)
+        P, f = velocity_corrector(scheme, P, f, f1), f1
+        row[:] = D
+    return histories
+
+
+def assembled_step(scheme: Scheme, M: Array, k: Array, D: Array, P: Array, f: Array) -> tuple[Array, Array, Array]:
+    """Return (D, P, f) of all unknowns one step later without load.
+
+    Parameters
+    ----------
+    M : (n, n) array
+        Inertia.
+    k : (n,) array
+        Diagonal of dt^2 K.
+    D, P, f : (n, m) arrays
+        As many states as there are columns.
+    """
+    column, zero = k[:, None], np.zeros_like(D)
+    S = effective_matrix(scheme, M, np.diag(k))
+    D = D + np.linalg.solve(S, momentum_balance(scheme, zero, column, D, P, f))
+    f1 = acceleration_corrector(zero, column, D)
+    return D, velocity_corrector(scheme, P, f, f1), f1

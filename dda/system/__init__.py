@@ -1,0 +1,4 @@
+"""Systems of glued blocks.
+
+Joint forces are unknowns of their own.
+"""

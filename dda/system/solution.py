@@ -1,0 +1,236 @@
+r"""Histories, statics and modes of a system of blocks.
+
+One step solves for the increments of the displacements D and of the joint forces, with
+mu = dt^2 lambda, k = dt^2 Ke, C' = C / dt^2 and S = M + alpha k, which is a matrix of 6 x 6 blocks:
+
+    S dD + alpha B' dmu = gg P + (1/2 - alpha) f + alpha (F - k D - B' mu) = r
+    B dD - C' dmu = G dy
+
+by (C' + alpha B S^-1 B') dmu = B S^-1 r - G dy, whose matrix is sparse, positive definite and
+factorised once. Then f1 = F - k D1 - B' mu1 and P1 = gg P + (1 - delta) f + delta f1, as for one block.
+The force of a joint is never its stiffness times a difference of displacements.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.one_block.modes import Mode, scalar_eigenvalues
+from dda.one_block.solution import Result, bound_overflow, check_request, step_times
+from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
+from dda.system.joint_solver import factor
+from dda.system.system import BlockSystem, Equations, _inverse
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+Array = NDArray[np.float64]
+_STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
+_DENSE = 300  # unknowns up to which all modes are found by a dense solver
+
+
+def joint_flexibility(scheme: Scheme, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
+    """Return C' + alpha B S^-1 B', the matrix of the joint forces' increments."""
+    return C + scheme.alpha * (B @ inverse @ B.T)
+
+
+class _Stepper:
+    """The scheme on a system; everything is multiplied by dt^2 where the module says so."""
+
+    def __init__(self, equations: Equations, scheme: Scheme) -> None:
+        """Form the matrices and factorise the one of the joint forces."""
+        self.equations, self.scheme = equations, scheme
+        k, B = scheme.step**2 * equations.elastic, equations.B
+        S = effective_matrix(scheme, equations.mass, k)
+        self.k, self.B, self.Bt = equations.blockwise(k), B, B.T.tocsr()
+        self.inverse = equations.blockwise(_inverse(S))
+        self.BS = (B @ self.inverse).tocsr()
+        self.BSt = self.BS.T.tocsr()
+        self.S, self.C = equations.blockwise(S), equations.C / scheme.step**2
+        self.factor = factor(joint_flexibility(scheme, self.C, B, self.inverse))
+        stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
+        self.corrections = sum(stiff > limit for limit in _STIFF)
+
+    def _increments(self, r: Array, push: Array) -> tuple[Array, Array]:
+        """Return dD and dmu of S dD + alpha B' dmu = r, B dD - C' dmu = G dy.
+
+        Where a block's stiffness outweighs its inertia in S, its rigid motion is a small difference
+        of joint forces: each correction takes the digits back that this costs.
+        """
+        dD, dmu = self._solve(r, push)
+        for _ in range(self.corrections):
+            left = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
+            correction = self._solve(left, push - self.B @ dD + self.C @ dmu)
+            dD, dmu = dD + correction[0], dmu + correction[1]
+        return dD, dmu
+
+    def _solve(self, r: Array, push: Array) -> tuple[Array, Array]:
+        dmu = self.factor.solve(self.BS @ r - push)
+        return self.inverse @ r - self.scheme.alpha * (self.BSt @ dmu), dmu
+
+    def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
+        """Return the observed rows of D and lambda at every step, (rows, steps)."""
+        e, s = self.equations, self.scheme
+        F, pushes = s.step**2 * e.F, np.diff(moved, axis=0) @ e.G.T
+        by_D, by_mu = rows[0], rows[1] / s.step**2
+        D, P = np.zeros_like(F), np.zeros_like(F)
+        mu = -(s.step**2 * (e.kappa @ (e.G @ moved[0])))
+        held = self.Bt @ mu
+        f = F - held if s.start == "consistent" else 0 * F
+        observed = np.empty((len(by_D), steps))
+        for n in range(steps):
+            dD, dmu = self._increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
+            D, mu = D + dD, mu + dmu
+            held = self.k @ D + self.Bt @ mu
+            f1 = F - held
+            P, f = velocity_corrector(s, P, f, f1), f1
+            observed[:, n] = by_D @ D + by_mu @ mu
+        return observed
+
+
+def solve_system(
+    system: BlockSystem,
+    scheme: Scheme,
+    steps: int,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    full: bool = False,
+) -> Result:
+    """Step a system of blocks from rest and return the asked columns.
+
+    Parameters
+    ----------
+    steps : int
+        Number of steps.
+    columns : sequence of str
+        Any of `dda.COLUMNS`, at the system's observed point.
+    full : bool
+        Keep all unknowns, also those that no load can reach.
+
+    Raises
+    ------
+    ValueError
+        If the number of steps is not positive or a column is unknown.
+    """
+    import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
+
+    check_request(steps, columns)
+    began = perf_counter()
+    equations = system.equations if full else system.reached
+    stepper = _Stepper(equations, scheme)
+    ready = perf_counter()
+    with np.errstate(all="ignore"):
+        observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))
+        observed *= system.load_size
+    ended = perf_counter()
+    return Result(
+        time=step_times(scheme, steps),
+        columns=dict(zip(columns, observed + 0.0, strict=True)),
+        unknowns=len(equations.F),
+        nonzeros=stepper.factor.nonzeros,
+        factorisations=1,
+        solves=steps * (1 + stepper.corrections),
+        notes=_savings(system, equations) + bound_overflow(observed, system.load_size),
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
+    )
+
+
+def _moved(system: BlockSystem, instants: Array) -> Array:
+    """Return the displacement of what is fixed over the size of the loads, (instants, 2)."""
+    return np.zeros((len(instants), 2)) if system.motion is None else system.motion.at(instants) / system.load_size
+
+
+def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:
+    """Say how many unknowns were kept if not all of them."""
+    total = len(system.equations.F)
+    kept = len(equations.F)
+    return () if kept == total else (f"{kept} of {total} unknowns kept",)
+
+
+def static_system(system: BlockSystem) -> dict[str, float]:
+    """Return the value of every column at rest under the constant loads, on the base's last position."""
+    equations = system.reached
+    names = (*equations.observers, "contact_pressure")
+    by_D, by_force = equations.rows(names)
+    last = _moved(system, np.array([math.inf]))[0]
+    D, force = equations.at_rest(equations.F, equations.G @ last)
+    values = (by_D @ D + by_force @ force) * system.load_size + 0.0
+    return dict(zip(names, values.tolist(), strict=True))
+
+
+def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: bool = False) -> tuple[Mode, ...]:
+    """Return modes of a system, the largest static share first.
+
+    Parameters
+    ----------
+    count : int
+        Number of lowest modes; doubled until the mode of the largest share is among them.
+    full : bool
+        Count the modes that no load can reach as well.
+    """
+    equations = system.equations if full else system.reached
+    solve = equations.at_rest
+    F = equations.F if np.any(equations.F) else equations.B.T @ (equations.kappa @ equations.G.sum(axis=1))
+    D, _ = solve(F, np.zeros(len(equations.pressure)))
+    while True:
+        squares, shapes, forces = _lowest(equations, solve, count)
+        shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
+        if len(squares) < count or np.max(shares) > 1 - np.sum(shares):
+            break
+        count *= 2
+    carried = (equations.pressure @ forces) * (shapes.T @ F) / squares
+    frequencies = np.sqrt(squares).tolist()
+    return tuple(
+        Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), float(carried[i]))
+        for i in np.argsort(-shares, kind="stable")
+    )
+
+
+def _lowest(
+    equations: Equations, solve: Callable[[Array, Array], tuple[Array, Array]], count: int
+) -> tuple[Array, Array, Array]:
+    """Return the lowest w^2, their mass-normalised shapes and the joint forces of the shapes.
+
+    K^-1 is applied by the saddle-point solver, so that stiff joints cost no digits.
+    """
+    from scipy.linalg import eigh
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    M, n = equations.blockwise(equations.mass), len(equations.F)
+    still = np.zeros(len(equations.pressure))
+
+    def flexibility(right: Array) -> Array:
+        return solve(np.ravel(right), still)[0]
+
+    if n <= _DENSE or count >= n - 1:
+        root = np.linalg.cholesky(M.toarray())
+        values, vectors = eigh(root.T @ np.array([flexibility(column) for column in root.T]).T)
+        order = np.argsort(-values)[:count]
+        squares, shapes = 1 / values[order], np.linalg.solve(root.T, vectors[:, order])
+    else:
+        inverse = LinearOperator((n, n), matvec=flexibility, dtype=float)
+        start = np.random.default_rng(0).standard_normal(n)
+        squares, shapes = eigsh(M, count, M, sigma=0.0, OPinv=inverse, v0=start)
+    forces = [solve(w2 * (M @ phi), still)[1] for w2, phi in zip(squares, shapes.T, strict=True)]
+    return squares, shapes, np.array(forces).T
+
+
+def highest_frequency(system: BlockSystem) -> float:
+    """Return the largest natural frequency [rad/s], which limits a conditionally stable scheme."""
+    from scipy.linalg import eigh
+    from scipy.sparse.linalg import eigsh
+
+    e = system.reached
+    M = e.blockwise(e.mass)
+    K = e.blockwise(e.elastic) + e.B.T @ e.kappa @ e.B
+    if len(e.F) <= _DENSE:
+        return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
+    start = np.random.default_rng(0).standard_normal(len(e.F))
+    found = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
+    return float(np.sqrt(found[0]))

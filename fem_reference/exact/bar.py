@@ -1,0 +1,208 @@
+"""The block as a bar on a spring: exact in space, Newmark or exact in time.
+
+With mu = 0, a vertical load and a distributed foundation every vertical line of an upright rectangle
+moves alike: a bar of length h and stiffness EA = E W per unit thickness on a base spring k = 2 p, with
+the force q W switched on at its top. With kappa = k h / (E W) its modes are::
+
+    b tan b = kappa,   w = (b / h) sqrt(E / rho),   shape cos(b (1 - y / h)), y from the base
+
+A mode of index n lies at b = n pi + atan(kappa / b), so that cos b = (-1)^n b / sqrt(b^2 + kappa^2)
+keeps its relative digits for soft and stiff springs alike. Each history is::
+
+    static value * (1 - sum over modes of share * x(w, t)),   sum over modes of share = 1
+
+with x = cos w t for the continuum and the scheme's own response for Newmark. The shares alternate in
+sign and are smooth in n up to a slow rotation, so that the sum is cut off smoothly: its error falls
+faster than any power of the number of modes, also for the modes far beyond the time step.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.exact import continuum
+from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import Mode, Result, check_request
+from fem_reference.scheme import modal as bar_scheme
+
+FIRST = 256
+"""Modes of the first attempt."""
+LAST = 2**16
+"""Modes of the last attempt."""
+BEGUN = 1e-3
+"""Part of the wave's own effect, min(1, kappa) of the static value, below which a history has not begun."""
+TARGET = 1e-11
+"""Estimated truncation error over the maximum at which no more modes are added."""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """An elastic bar on a spring under a step of pressure on its top.
+
+    Raises
+    ------
+    ValueError
+        If a dimension, the density, the modulus or the stiffness is not positive and finite.
+    """
+
+    height: float
+    """Length h of the bar [m]."""
+    width: float
+    """Width W [m], unit thickness."""
+    density: float
+    """Mass density rho [kg/m3]."""
+    young: float
+    """Axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]."""
+    base_stiffness: float
+    """Stiffness k = 2 p of the base spring [N/m]."""
+    pressure: float
+    """Pressure q on the top [Pa], downwards; the load is q W."""
+
+    def __post_init__(self) -> None:
+        for name in ("height", "width", "density", "young", "base_stiffness"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name}: must be positive and finite, got {value!r}")
+        if not np.isfinite(self.pressure):
+            raise ValueError(f"pressure: must be a finite number, got {self.pressure!r}")
+
+    @classmethod
+    def of(cls, problem: Problem) -> Bar:
+        """The bar that a problem reduces to.
+
+        Raises
+        ------
+        ValueError
+            If the bar is not exact for the problem.
+        """
+        reason = applicable(problem)
+        if reason is not None or problem.rectangle is None:
+            raise ValueError(f"problem: must reduce to a bar, but {reason}")
+        width, height = problem.rectangle
+        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, problem.pressure)
+
+    @property
+    def kappa(self) -> float:
+        """Stiffness of the spring over that of the bar, k h / (E W) [-]."""
+        return self.base_stiffness / self.young * (self.height / self.width)
+
+    @property
+    def travel(self) -> float:
+        """Time h / c of the wave from top to base [s], c = sqrt(E / rho)."""
+        return self.height / float(np.sqrt(self.young / self.density))
+
+    def static(self) -> dict[str, float]:
+        """Static value of each column: -(q W / k + q h / (2 E)), q and zero."""
+        unit = self.pressure * self.height / self.young
+        return {
+            "displacement": -unit * (1 / self.kappa + 0.5),
+            "contact_pressure": self.pressure,
+            "horizontal_displacement": 0.0,
+        }
+
+    def frequencies(self, count: int) -> Array:
+        """The lowest natural frequencies w = b c / h [rad/s], shape (count,)."""
+        return wave_numbers(self.kappa, count) / self.travel
+
+    def shares(self, column: str, count: int) -> Array:
+        """Shares of the modes in a column's static value, shape (count,)."""
+        b = wave_numbers(self.kappa, count)
+        return shares(column, b, self.kappa)
+
+    def modes(self, scheme: Scheme, count: int = 3) -> tuple[Mode, ...]:
+        """The lowest modes, with the eigenvalues of the scheme's step from trace and determinant."""
+        b = wave_numbers(self.kappa, count)
+        weight = shares("load", b, self.kappa)
+        found = []
+        for i, w in enumerate(b / self.travel):
+            pair = bar_scheme.roots(float(w) * scheme.step, scheme)
+            pair = pair[np.argsort(-np.abs(pair), kind="stable")]
+            found.append(Mode(float(w), float(weight[i]), np.append(pair, 0.0)))
+        return tuple(found)
+
+    def solve(
+        self, scheme: Scheme, steps: int, columns: tuple[str, ...] = ("displacement", "contact_pressure")
+    ) -> Result:
+        """History under the Newmark scheme; row 0 is step 1.
+
+        Raises
+        ------
+        ValueError
+            If the scheme is not stable for every frequency, or `steps` or `columns` cannot be served.
+        """
+        check_request(steps, tuple(columns))
+        reason = bar_scheme.applicable(scheme)
+        if reason is not None:
+            raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
+        began = time.perf_counter()
+        count = FIRST
+        while True:
+            history, estimate = self._sum(scheme, steps, tuple(columns), count)
+            if estimate <= TARGET or count >= LAST:
+                break
+            count *= 2
+        return self._result(scheme.step, history, count, tuple(columns), estimate, began)
+
+    def _sum(self, scheme: Scheme, steps: int, columns: tuple[str, ...], count: int) -> tuple[Array, float]:
+        """Histories over their static values and the truncation error over the maximum."""
+        b = wave_numbers(self.kappa, count)
+        weights = np.array([shares(name, b, self.kappa) for name in columns])
+        cut = np.vstack([weights * cut_off(count, count), weights * cut_off(count, count // 2)])
+        history = bar_scheme.weighted_response(b / self.travel * scheme.step, cut, scheme, steps)
+        fine, coarse = history[: len(columns)], history[len(columns) :]
+        error = np.abs(fine - coarse).max(axis=1, initial=0.0)
+        scale = np.maximum(np.abs(fine).max(axis=1, initial=0.0), BEGUN * min(1.0, self.kappa))
+        return fine, float((error / scale).max(initial=0.0))
+
+    def continuum(
+        self, scheme: Scheme, steps: int, columns: tuple[str, ...] = ("displacement", "contact_pressure")
+    ) -> Result:
+        """Exact history at the scheme's instants; its gg becomes the damping rate c = -ln(gg) / dt.
+
+        Raises
+        ------
+        ValueError
+            If gg is zero, or `steps` or `columns` cannot be served.
+        """
+        check_request(steps, tuple(columns))
+        if scheme.gg == 0:
+            raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
+        began = time.perf_counter()
+        s: Array = scheme.step * np.arange(1.0, steps + 1) / self.travel
+        rate = -float(np.log(scheme.gg)) / scheme.step * self.travel
+        history = continuum.histories(s, self.kappa, rate, tuple(columns))
+        return self._result(scheme.step, history, 0, tuple(columns), None, began)
+
+    def _result(
+        self, step: float, history: Array, count: int, columns: tuple[str, ...], estimate: float | None, began: float
+    ) -> Result:
+        static = self.static()
+        return Result(
+            time=step * np.arange(1, history.shape[1] + 1),
+            columns={name: static[name] * row for name, row in zip(columns, history, strict=True)},
+            unknowns=count,
+            nonzeros=count,
+            factorisations=0,
+            solves=0,
+            notes=("exact in space: a bar on a spring",),
+            setup_seconds=0.0,
+            stepping_seconds=time.perf_counter() - began,
+            estimate=estimate,
+        )
+
+
+def applicable(problem: Problem) -> str | None:
+    """Why the bar is not exact for a problem, in words; None if it is."""
+    if not problem.vertical or problem.gravity != 0 or problem.motion is not None:
+        return "the bar is written for a centred pressure alone"
+    if problem.rectangle is None:
+        return "the block is not an upright rectangle loaded opposite its base"
+    if problem.poisson != 0:
+        return f"Poisson's ratio is {problem.poisson!r}, and the block contracts sideways unless it is 0"
+    if problem.foundation != "distributed":
+        return f"the foundation is {problem.foundation!r}, and the base moves as one only if it is 'distributed'"
+    return None

@@ -1,0 +1,218 @@
+r"""Histories of the block in a small space, a few matrix products instead of a loop over the steps.
+
+In the basis of a `KrylovSpace` the step's matrix S is 1 and the inertia T; turned to the eigenvectors
+of T the reduced block falls into single modes with inertia tau, stiffness kappa = 1 - tau (times
+alpha dt^2) and S = 1 again. A step is an affine map of (D, dt V, dt^2 A), made by applying the scheme's
+own step to unit states; the maps of 1, 2, 4, ... steps are squared in extended precision. Step
+jB + i is the product of a row of i steps and a column of jB steps.
+
+The space is enlarged until the history no longer changes; the last change is the estimate of the error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh_tridiagonal
+
+from fem_reference.history.krylov import KrylovSpace
+from fem_reference.problem.problem import Array, Scheme
+from fem_reference.scheme.modal import applicable, determinant
+from fem_reference.scheme.newmark import State, Stepper, advance, initial_acceleration
+
+Extended = NDArray[np.longdouble]
+
+TOLERANCE = 3e-11
+"""Change of the history, over its maximum, at which a space is large enough."""
+HALFWAY = 1e-2
+"""Change that half of the greatest space must have reached; the convergence is faster than linear from there."""
+FLOOR = 2e-13
+"""Rounding of a history, over its maximum: no estimate is below."""
+LIGHTEST = 1e-6
+"""Least inertia of a mode, as a share of S, that a consistent start may divide the load by: it holds rounding / tau."""
+CANCELLED = 1e-11
+"""Rounding of a column, over its maximum, beyond which it must be stepped."""
+FEWEST, LARGEST = 8, 400
+"""Least and greatest number of vectors."""
+SLOW = 0.1
+"""kappa below which 1 - tau is formed again where digits count."""
+PAID = 4
+"""Steps that a vector must save: it costs about a step and a half."""
+BLOCK = 256
+"""Greatest number of steps in a row."""
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """A history from a small space."""
+
+    history: Array
+    """Columns of every step, shape (columns, steps)."""
+    vectors: int
+    """Number of vectors of the space [-]."""
+    estimate: float
+    """Estimated error over the maximum value [-]."""
+
+
+def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
+    """History in the smallest sufficient space, or why there is none, in words.
+
+    Parameters
+    ----------
+    stepper
+        The block under a constant load.
+    rows
+        Rows of the columns, shape (columns, unknowns).
+    steps
+        Number of steps.
+    """
+    if reason := applicable(stepper.scheme):
+        return reason
+    capacity = min(LARGEST, len(stepper.F), steps // PAID)
+    if capacity < min(FEWEST, len(stepper.F)):
+        return "few steps"
+    space = KrylovSpace(stepper.M, stepper.S, stepper.F, stepper.solve, capacity)
+    duals = np.sqrt([row @ stepper.solve(row) for row in rows])
+    found: list[Array] = []
+    changes: list[float] = []
+    size = 0
+    while size < capacity:
+        size = min(capacity, size + max(FEWEST, size // 8))
+        space.grow(size)
+        modes = modes_of(space, stepper, rows, steps)
+        if stepper.scheme.start == "consistent" and np.min(modes.inertia) < LIGHTEST:
+            return "a consistent start needs digits of the inertia that long steps leave to no small space"
+        found = [*found[-1:], history(modes, stepper.scheme, steps)]
+        changes += [_change(*found)] if len(found) == 2 else []
+        held = len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding
+        if (space.closed or held) and _cancelled(modes, found[-1], duals, stepper.scheme) > CANCELLED:
+            return "the modes of a small space cancel in a column that has hardly begun, or under a stiff spring"
+        if space.closed or held:
+            return Reduced(found[-1], len(space), modes.rounding + (0.0 if space.closed else changes[-1]))
+        if capacity < len(stepper.F) and 2 * size >= capacity and min(changes, default=1.0) > HALFWAY:
+            break
+    return f"{len(space)} Krylov vectors do not hold the history"
+
+
+def _change(before: Array, after: Array) -> float:
+    """Greatest change of a column over its maximum; columns that stay at rest do not count."""
+    largest = np.max(np.abs(after), axis=1)
+    moving = largest > 0
+    return float(np.max(np.max(np.abs(after - before), axis=1)[moving] / largest[moving], initial=0.0))
+
+
+def _cancelled(modes: Modes, history: Array, duals: Array, scheme: Scheme) -> float:
+    """Rounding of the modes' shapes in a column over its maximum.
+
+    A shape is right to one rounding of its own size in the norm of S; a row sees that times its dual norm
+    (row' S^-1 row)^1/2, and the motion is about as large as the static one.
+    """
+    size = np.linalg.norm(modes.load * scheme.alpha / modes.stiffness)
+    largest = np.max(np.abs(history), axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nanmax(np.finfo(float).eps * duals * size / largest, initial=0.0))
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of the reduced block, S = 1."""
+
+    inertia: Array
+    """tau [-], shape (modes,)."""
+    stiffness: Array
+    """kappa = 1 - tau, alpha dt^2 times the stiffness [-]."""
+    load: Array
+    """dt^2 times the load."""
+    observed: Array
+    """What each mode adds to each column, shape (columns, modes)."""
+    rounding: float
+    """Rounding of a history, over its maximum [-]."""
+
+
+def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> Modes:
+    """Modes of a space; `rows` observe the columns."""
+    size, scheme = len(space), stepper.scheme
+    tau, turn = eigh_tridiagonal(space.diagonal, space.beside[: size - 1])
+    tau, kappa = np.maximum(tau, np.finfo(float).tiny), 1 - tau
+    vectors = space.vectors[:size]
+    # The largest tau is that of the slowest mode, whose stiffness 1 - tau has lost most.
+    loss = _phase_error(float(kappa[-1]), float(_stiffness(stepper, turn[:, -1:].T @ vectors)[0]), scheme, steps)
+    if loss > TOLERANCE:
+        slow = kappa < SLOW
+        kappa[slow] = _stiffness(stepper, turn.T[slow] @ vectors)
+        tau[slow] = 1 - kappa[slow]
+    return Modes(tau, kappa, scheme.step**2 * space.load * turn[0], (rows @ vectors.T) @ turn, FLOOR + 10 * loss)
+
+
+def _phase_error(kappa: float, exact: float, scheme: Scheme, steps: int) -> float:
+    """Phase that a mode loses before it is damped because its stiffness has lost digits, as plain steps lose them."""
+    digits = max(abs(kappa - exact) / exact, np.finfo(float).eps / exact)
+    modulus = float(np.sqrt(determinant(np.array(exact / scheme.alpha), scheme)))
+    lasting = min(steps, 1 / (1 - modulus)) if modulus < 1 else steps
+    return float(digits * np.sqrt(exact / scheme.alpha) / 2 * lasting)
+
+
+def _stiffness(stepper: Stepper, shapes: Array) -> Array:
+    """Alpha dt^2 x' K x of shapes x, one a row, in extended precision."""
+    extended = shapes.astype(np.longdouble)
+    forces = (stepper.K.astype(np.longdouble) @ extended.T).T
+    scale = stepper.scheme.alpha * stepper.scheme.step**2
+    kappa: Array = (scale * np.sum(extended * forces, axis=1)).astype(float)
+    return kappa
+
+
+def history(modes: Modes, scheme: Scheme, steps: int) -> Array:
+    """Columns of every step from rest, shape (columns, steps)."""
+    levels = (steps - 1).bit_length()
+    split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
+    one, start = _one_step(modes, replace(scheme, step=1.0))
+    maps = _squared(one, levels)
+    inner = _doubled(one[:, :1, :].astype(float), maps[:split])
+    outer = _doubled(start[:, None, :], [power.transpose(0, 2, 1) for power in maps[split:]])
+    columns = outer[:, : -(-steps >> split)].transpose(1, 0, 2).reshape(-1, 4 * len(one))
+    found = []
+    for weight in modes.observed * modes.load:
+        row = (weight[:, None, None] * inner).transpose(0, 2, 1).reshape(columns.shape[1], -1)
+        found.append((columns @ row).ravel()[:steps])
+    return np.array(found)
+
+
+def _one_step(modes: Modes, scheme: Scheme) -> tuple[Any, Array]:
+    """Map of one step of (D, V, A, 1) for unit loads, (modes, 4, 4), and the state at t = 0, (modes, 4)."""
+    tau: Any = modes.inertia.astype(np.longdouble)  # any: the step is typed for doubles
+    kappa: Any = modes.stiffness.astype(np.longdouble)
+    zero: Any = np.zeros_like(tau)
+    one: Any = np.ones_like(tau)
+    K = kappa / scheme.alpha
+    images = []
+    for unit in np.eye(4)[:, :3]:
+        state = State(*(x * one for x in unit))
+        new = advance(state, one, scheme, lambda x: tau * x, lambda x: K * x, lambda x: x)
+        images.append(np.array([new.D, new.V, new.A]))
+    step: Any = np.zeros((len(tau), 4, 4), np.longdouble)
+    step[:, 3, 3] = 1
+    step[:, :3, 3] = images[3].T
+    for i in range(3):
+        step[:, :3, i] = (images[i] - images[3]).T
+    A0 = initial_acceleration(one, (lambda F: F / tau) if scheme.start == "consistent" else None)
+    return step, np.array([zero, zero, A0, one], float).T
+
+
+def _squared(one: Extended, levels: int) -> list[Array]:
+    """Maps of 1, 2, 4, ... steps, rounded to doubles."""
+    maps = []
+    for _ in range(levels):
+        maps.append(one.astype(float))
+        one = one @ one
+    return maps
+
+
+def _doubled(start: Array, maps: list[Array]) -> Array:
+    """The start and its products with all maps made of those of 1, 2, 4, ... steps, along the second axis."""
+    made = start
+    for power in maps:
+        made = np.concatenate([made, made @ power], axis=1)
+    return made

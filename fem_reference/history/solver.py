@@ -1,0 +1,130 @@
+"""Histories and static values of the finite-element model."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from fem_reference.history.reduced import Reduced, reduced
+from fem_reference.mesh.fields import FieldWriter
+from fem_reference.mesh.model import Model, build
+from fem_reference.problem.digits import bounded, front
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import COLUMNS, Result, check_request
+from fem_reference.scheme.newmark import Stepper, Work
+
+
+def solve(
+    problem: Problem,
+    scheme: Scheme,
+    steps: int,
+    columns: tuple[str, ...] = ("displacement", "contact_pressure"),
+    full: bool = False,
+    fields: str | Path | None = None,
+) -> Result:
+    """Integrate the block from rest under its loads.
+
+    Parameters
+    ----------
+    problem, scheme
+        What is solved and how it is integrated.
+    steps
+        Number of steps, at least 1.
+    columns
+        Columns of the history, among `fem_reference.problem.result.COLUMNS`.
+    full
+        Solve the whole block step by step, without any saving.
+    fields
+        Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed, or `steps`, `columns` or `fields` cannot be served.
+    """
+    check_request(steps, tuple(columns))
+    began = time.perf_counter()
+    model = build(problem, full)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
+    ready = time.perf_counter()
+    small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
+    if isinstance(small, str):
+        moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
+        history = run(stepper, model, steps, tuple(columns), writer, moved)
+        note, estimate = f"stepped: {small}", None
+    else:
+        history, estimate = small.history, small.estimate
+        note = f"blocked in {small.vectors} Krylov vectors"
+    history = bounded(history, problem.load_size)
+    ended = time.perf_counter()
+    return Result(
+        time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
+        columns=dict(zip(columns, history, strict=True)),
+        unknowns=len(model.F),
+        nonzeros=stepper.work.nonzeros,
+        factorisations=stepper.work.factorisations,
+        solves=stepper.work.solves,
+        notes=(*model.notes, *front(problem, scheme.step), note),
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
+        estimate=estimate,
+    )
+
+
+def _in_small_space(
+    problem: Problem, model: Model, stepper: Stepper, steps: int, columns: tuple[str, ...], writer: FieldWriter | None
+) -> Reduced | str:
+    """The history in a Krylov space, or why it must be stepped."""
+    if problem.motion is not None:
+        return "the base moves"
+    if writer is not None:
+        return "fields are written"
+    return reduced(stepper, _rows(model, columns), steps)
+
+
+def _rows(model: Model, columns: tuple[str, ...]) -> Array:
+    """Rows that observe the columns, shape (columns, unknowns)."""
+    return np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
+
+
+def run(
+    stepper: Stepper,
+    model: Model,
+    steps: int,
+    columns: tuple[str, ...],
+    writer: FieldWriter | None,
+    moved: Array | None = None,
+) -> Array:
+    """Observe every step for a load of unit size; shape (columns, steps).
+
+    `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed.
+    """
+    rows = _rows(model, columns)
+    history = np.empty((len(columns), steps))
+    forces = None if moved is None else model.F + moved @ model.base_force.T
+    # A scheme beyond its limit grows until it overflows; that is the caller's to name.
+    with np.errstate(over="ignore", invalid="ignore"):
+        state = stepper.start(None if forces is None else forces[0])
+        for n in range(steps):
+            state = stepper.advance(state, None if forces is None else forces[n + 1])
+            history[:, n] = rows @ state.D
+            if writer is not None:
+                writer.record(n + 1, state.D)
+    if writer is not None:
+        writer.close()
+    if moved is not None and "contact_pressure" in columns:
+        history[columns.index("contact_pressure")] += moved[1:] @ model.base_pressure
+    return history
+
+
+def static(problem: Problem, full: bool = False) -> dict[str, float]:
+    """Value of every column at rest under the constant loads, on the base's last position: K^-1 F observed."""
+    model = build(problem, full)
+    moved = np.zeros(2) if problem.motion is None else problem.motion(np.array([np.inf]))[0]
+    D = Work().factor(model.K)(model.F + model.base_force @ moved)
+    values = {name: float(problem.load_size * (model.observers[name] @ D)) for name in COLUMNS}
+    values["contact_pressure"] += float(model.base_pressure @ moved)
+    return values

@@ -1,0 +1,4 @@
+"""Meshes, matrices and fields by scikit-fem and meshio.
+
+No time comes in.
+"""

@@ -1,0 +1,295 @@
+"""Weak forms of plane elasticity, and functions of the displacement along an edge or at a point.
+
+With the Lame parameter lam of the plane problem and the shear modulus G::
+
+    mass       rho (u, v)
+    stiffness  lam (div u, div v) + 2 G (eps(u), eps(v))
+    springs    sum of weight_n (n.u)(n.v) + weight_t (t.u)(t.v) over the points of a rule on the base
+    load       -q (1, v_y) + tau (1, v_x) on the top, -rho g (1, v_y) in the block
+
+The foundation, distributed, over patches or at the corners, is a quadrature rule on the base; its
+intervals end where a patch ends, so that it is integrated exactly on any mesh.
+"""
+
+from __future__ import annotations
+
+import functools
+import operator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, diags_array
+from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
+from skfem.helpers import ddot, div, dot, sym_grad
+
+from fem_reference.problem.problem import Array, Problem
+
+ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4, 2): ElementQuad2}
+"""Scalar element by (corners of a cell, degree)."""
+
+
+@BilinearForm
+def mass_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(u, v)."""
+    return dot(u, v)
+
+
+@BilinearForm
+def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(div u, div v)."""
+    return div(u) * div(v)
+
+
+@BilinearForm
+def strain_form(u, v, w):  # type: ignore[no-untyped-def]
+    """2 (eps(u), eps(v))."""
+    return 2 * ddot(sym_grad(u), sym_grad(v))
+
+
+class Rule(NamedTuple):
+    """Points on facets with weights."""
+
+    points: Array
+    """Reference coordinates in the cell, shape (2, count)."""
+    cells: NDArray[np.int64]
+    """Cell of each point, shape (count,)."""
+    weights: Array
+    """Weights [m], shape (count,)."""
+
+
+def vector_basis(mesh: Mesh, degree: int) -> Basis:
+    """Displacement basis of the given degree on a mesh of triangles or quadrilaterals."""
+    element = ElementVector(ELEMENTS[mesh.t.shape[0], degree]())
+    # One order beyond 2 * degree per direction integrates the Jacobian of a bilinear cell exactly.
+    return Basis(mesh, element, intorder=2 * degree + 1)
+
+
+def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
+    """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
+
+    Where all cells are translates of the first one its element matrix is that of all.
+    """
+    terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
+    if not congruent:
+        parts = [coefficient * csr_array(form.assemble(basis)) for coefficient, form in terms]
+        return functools.reduce(operator.add, parts)
+    first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
+    local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
+    dofs = basis.element_dofs.T.astype(np.int32)
+    rows, columns = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+    data = np.tile(local.ravel(), len(dofs))
+    return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
+
+
+def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
+    """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
+    return assembled([(density, mass_form)], basis, congruent)
+
+
+def stiffness(basis: Basis, problem: Problem, congruent: bool = False) -> csr_array:
+    """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
+    return assembled([(problem.shear_modulus, strain_form), (problem.lame, dilatation_form)], basis, congruent)
+
+
+def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:
+    """Matrices that give u and v at points of cells, each of shape (count, unknowns).
+
+    Parameters
+    ----------
+    basis
+        The displacement basis.
+    points
+        Reference coordinates, shape (2, count).
+    cells
+        Cell of each point, shape (count,).
+    """
+    phi = np.array(
+        [basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0] for k in range(basis.Nbfun)]
+    )
+    rows = np.tile(np.arange(len(cells)), basis.Nbfun)
+    columns = basis.element_dofs[:, cells].ravel()
+    shape = (len(cells), basis.N)
+    u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
+    return u, v
+
+
+def edge_rule(
+    mesh: Mesh,
+    facets: NDArray[np.int64],
+    origin: Array,
+    tangent: Array,
+    intervals: list[tuple[float, float]],
+    order: int,
+) -> Rule:
+    """Gauss rule over the part of a straight edge that lies in intervals of its arc length.
+
+    Parameters
+    ----------
+    mesh, facets
+        Facets of the edge.
+    origin, tangent
+        Start and unit direction of the edge, shape (2,).
+    intervals
+        Disjoint intervals of arc length [m].
+    order
+        Number of Gauss points per piece, exact to degree 2 order - 1.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    reference, cells, w = [], [], []
+    for facet in facets:
+        cell = mesh.f2t[0, facet]
+        ends = mesh.facets[:, facet]
+        s0, s1 = tangent @ (mesh.p[:, ends] - origin[:, None])
+        local = mesh.elem.refdom.p[:, [int(np.flatnonzero(mesh.t[:, cell] == e)[0]) for e in ends]]
+        for low, high in intervals:
+            a, b = max(low, min(s0, s1)), min(high, max(s0, s1))
+            if b > a:
+                fraction = ((a + b) / 2 + nodes * (b - a) / 2 - s0) / (s1 - s0)
+                reference.append(local[:, :1] + fraction * (local[:, 1:] - local[:, :1]))
+                cells.append(np.full(order, cell))
+                w.append(weights * (b - a) / 2)
+    return Rule(np.hstack(reference), np.concatenate(cells), np.concatenate(w))
+
+
+def vertex_rule(mesh: Mesh, facets: NDArray[np.int64], points: Array) -> Rule:
+    """Unit weights at mesh nodes of an edge; `points` has shape (2, count)."""
+    ends = mesh.facets[:, facets]
+    reference, cells = [], []
+    for point in points.T:
+        distance = np.hypot(*(mesh.p[:, ends] - point[:, None, None]))
+        i, k = np.unravel_index(np.argmin(distance), distance.shape)
+        cell = mesh.f2t[0, facets[k]]
+        local = int(np.flatnonzero(mesh.t[:, cell] == ends[i, k])[0])
+        reference.append(mesh.elem.refdom.p[:, local])
+        cells.append(cell)
+    return Rule(np.array(reference, float).T, np.array(cells), np.ones(points.shape[1]))
+
+
+def node_rule(mesh: Mesh, facets: NDArray[np.int64]) -> Rule:
+    """Half a facet's length at each of its two ends."""
+    ends = mesh.facets[:, facets]
+    cells = np.tile(mesh.f2t[0, facets], 2)
+    local = np.argmax(mesh.t[:, cells] == ends.ravel(), axis=0)
+    length = np.hypot(*(mesh.p[:, ends[1]] - mesh.p[:, ends[0]]))
+    return Rule(mesh.elem.refdom.p[:, local].astype(float), cells, np.tile(length / 2, 2))
+
+
+def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
+    """Spring stiffness [N/m] and the row that gives the contact pressure [Pa/m].
+
+    The weights of `rule` sum to its length (or to the number of points); the whole foundation carries
+    2 p normally and 2 p_s tangentially.
+    """
+    u, v = values(basis, rule.points, rule.cells)
+    n, t = problem.normal, problem.tangent
+    normal, tangential = n[0] * u + n[1] * v, t[0] * u + t[1] * v
+    share = 2 * rule.weights / _carried(problem)
+    k_n, k_t = problem.stiffness * share, problem.shear_stiffness * share
+    K = normal.T @ diags_array(k_n) @ normal + tangential.T @ diags_array(k_t) @ tangential
+    return csr_array(K), -(normal.T @ k_n) / problem.base_length
+
+
+def _carried(problem: Problem) -> float:
+    """Sum of the weights of the whole foundation's rule."""
+    if problem.foundation == "corner":
+        return 2.0
+    return problem.base_length if problem.patch_width is None else 2 * problem.patch_width
+
+
+def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half: bool = False) -> Rule:
+    """Rule of the foundation on the base; of its first half only if `half`."""
+    a, order = problem.base_length, problem.degree + 1
+    if problem.foundation == "corner":
+        ends = problem.outline[:1] if half else problem.outline[:2]
+        return vertex_rule(mesh, base, ends.T)
+    if problem.foundation == "nodes":
+        return node_rule(mesh, base)
+    w = problem.patch_width
+    intervals = [(-np.inf, np.inf)] if w is None else [(-np.inf, w), (a - w, np.inf)]
+    if w is not None and 2 * w >= a:
+        intervals = [(-np.inf, np.inf)]
+    return edge_rule(mesh, base, np.zeros(2), problem.tangent, intervals, order)
+
+
+def edge_load(
+    basis: Basis, problem: Problem, top: NDArray[np.int64], interval: tuple[float, float]
+) -> tuple[Array, Array]:
+    """Load vectors of a unit traction in x and in y on a part of the top edge [m2], each (unknowns,)."""
+    start, end = problem.top_ends
+    tangent = (end - start) / problem.top_length
+    rule = edge_rule(basis.mesh, top, start, tangent, [interval], problem.degree + 1)
+    u, v = values(basis, rule.points, rule.cells)
+    return u.T @ rule.weights, v.T @ rule.weights
+
+
+def load(basis: Basis, problem: Problem, top: NDArray[np.int64], M: csr_array) -> Array:
+    """Load vector of pressure, traction and gravity [N], shape (unknowns,)."""
+    F: Array = -problem.pressure * edge_load(basis, problem, top, problem.pressed)[1]
+    if problem.traction != 0:
+        F = F + problem.traction * edge_load(basis, problem, top, (-np.inf, np.inf))[0]
+    if problem.gravity != 0:
+        F = F - problem.gravity * (M @ translation(basis)[:, 1])
+    return F
+
+
+def translation(basis: Basis) -> Array:
+    """Unknowns of the unit translations in x and y, shape (unknowns, 2)."""
+    component = components(basis)
+    return np.stack([1 - component, component], axis=1)
+
+
+def components(basis: Basis) -> Array:
+    """Component (0: u, 1: v) of each unknown of a displacement basis, shape (unknowns,)."""
+    component = np.zeros(basis.N)
+    for dofs in (basis.nodal_dofs, basis.facet_dofs, basis.interior_dofs):
+        component[dofs[1::2]] = 1.0
+    return component
+
+
+def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
+    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,).
+
+    The rotation is discontinuous between cells: it is the mean over those that meet at the point.
+
+    Raises
+    ------
+    ValueError
+        If the point lies outside the mesh.
+    """
+    corners = basis.mesh.p[:, basis.mesh.t]
+    x = point[:, None]
+    slack = 1e-9 * np.ptp(basis.mesh.p)
+    inside = (corners.min(axis=1) <= x + slack) & (corners.max(axis=1) >= x - slack)
+    cells = np.flatnonzero(inside.all(axis=0))
+    local = _reference(basis, point, cells)
+    outside = np.maximum(-local, local - 1).max(axis=0, initial=-np.inf)
+    if basis.mesh.t.shape[0] == 3:
+        outside = np.maximum(outside, local.sum(axis=0) - 1)
+    hits = np.flatnonzero(outside < 1e-9)
+    if len(hits) == 0:
+        raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
+    u, v = values(basis, local[:, hits[:1]], cells[hits[:1]])
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, local[:, hits], cells[hits])
+
+
+def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
+    """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
+    row = np.zeros(basis.N)
+    for k in range(basis.Nbfun):
+        gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
+        np.add.at(row, basis.element_dofs[k, cells], (gradient[1, 0] - gradient[0, 1]) / 2 / len(cells))
+    return row
+
+
+def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:
+    """Reference coordinates of a point in each of some cells, by Newton's method, shape (2, cells)."""
+    x = np.repeat(point[:, None, None], len(cells), axis=1)
+    local = np.full(x.shape, 0.5)
+    # A bilinear map needs few steps near its cell; where it fails the point is not in that cell.
+    with np.errstate(all="ignore"):
+        for _ in range(12):
+            inverse = basis.mapping.invDF(local, cells)
+            local = local + np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
+    result: Array = local[:, :, 0]
+    return result

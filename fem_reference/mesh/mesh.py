@@ -1,0 +1,160 @@
+"""Meshes of the block: structured quadrilaterals, or a file with tagged edges.
+
+Coordinates are relative to the start of the base, so that a block far from the origin keeps its digits.
+"""
+
+from __future__ import annotations
+
+import io
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+from skfem import Mesh, MeshQuad, MeshTri
+from skfem.io.meshio import from_meshio
+
+from fem_reference.problem.problem import Array, Problem
+
+
+@dataclass(frozen=True)
+class TaggedMesh:
+    """A mesh and the facets of its base and top."""
+
+    mesh: Mesh
+    """The scikit-fem mesh, coordinates relative to the start of the base [m]."""
+    base: NDArray[np.int64]
+    """Facets of the base."""
+    top: NDArray[np.int64]
+    """Facets of the top."""
+
+
+def block_mesh(problem: Problem) -> TaggedMesh:
+    """Mesh the whole block, from its file if it names one.
+
+    Raises
+    ------
+    ValueError
+        If the block has no file and is not a convex quadrilateral, or the file does not fit the block.
+    """
+    return structured(problem) if problem.mesh is None else from_file(problem)
+
+
+def structured(problem: Problem, half: bool = False) -> TaggedMesh:
+    """Map a tensor mesh of the unit square onto a convex quadrilateral block bilinearly.
+
+    Parameters
+    ----------
+    problem
+        The block, meshed with ``elements`` per side.
+    half
+        Mesh the half next to the start of the base only (``elements`` must be even).
+
+    Raises
+    ------
+    ValueError
+        If the block is not a convex quadrilateral.
+    """
+    _check_convex_quadrilateral(problem)
+    n = problem.elements
+    eta = np.arange(n + 1) / n
+    xi = eta[: n // 2 + 1] if half else eta
+    square = MeshQuad.init_tensor(xi, eta)
+    edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
+    axis, value = edges[(problem.top - problem.base) % 4]
+    if problem.cells == "triangles":
+        square = _cut(square)
+    base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
+    top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
+    return TaggedMesh(type(square)(_bilinear(problem.outline, square.p), square.t), base, top)
+
+
+def _cut(square: MeshQuad) -> MeshTri:
+    """Cut each cell of a tensor mesh into two triangles from its lower left to its upper right corner."""
+    x, y = square.p[:, square.t]
+    # corners of each cell counter-clockwise from the lower left one
+    turn = np.argsort(np.arctan2(y - y.mean(axis=0), x - x.mean(axis=0)), axis=0)
+    a, b, c, d = np.take_along_axis(square.t, turn, axis=0)
+    return MeshTri(square.p, np.hstack([[a, b, c], [a, c, d]]))
+
+
+def _bilinear(corners: Array, p: Array) -> Array:
+    xi, eta = p
+    shape = np.array([(1 - xi) * (1 - eta), xi * (1 - eta), xi * eta, (1 - xi) * eta])
+    mapped: Array = corners.T @ shape
+    return mapped
+
+
+def _check_convex_quadrilateral(problem: Problem) -> None:
+    corners = problem.outline
+    sides = np.roll(corners, -1, axis=0) - corners
+    following = np.roll(sides, -1, axis=0)
+    turns = sides[:, 0] * following[:, 1] - sides[:, 1] * following[:, 0]
+    if len(corners) != 4 or not np.all(turns > 0):
+        raise ValueError(
+            "vertices: only convex quadrilaterals are meshed without a file, "
+            f"got {len(corners)} corners; give a mesh file: [fem] mesh = ..."
+        )
+
+
+def from_file(problem: Problem) -> TaggedMesh:
+    """Read a mesh of triangles or quadrilaterals and check it against the block.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, lacks the tags ``base`` and ``top``, or its outline is not the block's.
+    """
+    mesh = _read(str(problem.mesh))
+    origin = np.asarray(problem.vertices[problem.base], float)
+    mesh = type(mesh)(mesh.p - origin[:, None], mesh.t).with_boundaries(mesh.boundaries or {})
+    tags = mesh.boundaries or {}
+    for name in ("base", "top"):
+        if name not in tags:
+            raise ValueError(f"mesh: must tag the edges 'base' and 'top', {problem.mesh!r} has {sorted(tags)}")
+    tagged = TaggedMesh(mesh, np.asarray(tags["base"]), np.asarray(tags["top"]))
+    _check_outline(problem, tagged)
+    return tagged
+
+
+def _read(path: str) -> Mesh:
+    said = io.StringIO()  # meshio prints and exits where no reader of it takes the file
+    try:
+        with redirect_stdout(said), redirect_stderr(said):
+            data = meshio.read(path)
+            data.points = data.points[:, :2]
+            mesh = from_meshio(data)
+    except (Exception, SystemExit) as error:  # its readers raise anything at a file that is not whole
+        words = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+        raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {words}") from error
+    if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
+        raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {type(mesh).__name__} in {path!r}")
+    return mesh
+
+
+def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
+    """Every boundary node on the polygon, every corner a node, base and top covered in full."""
+    corners, mesh = problem.outline, tagged.mesh
+    slack = 1e-9 * float(np.ptp(corners, axis=0).max())
+    nodes = mesh.p[:, mesh.boundary_nodes()].T
+    if max(_distance(corners, point) for point in nodes) > slack:
+        raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has a boundary node off the polygon")
+    if max(np.hypot(*(nodes - corner).T).min() for corner in corners) > slack:
+        raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has no node at a corner")
+    top = (problem.top - problem.base) % len(corners)
+    for name, facets, edge in (("base", tagged.base, 0), ("top", tagged.top, top)):
+        ends = corners[edge], corners[(edge + 1) % len(corners)]
+        points = mesh.p[:, mesh.facets[:, facets]]
+        length = np.hypot(*(points[:, 1] - points[:, 0])).sum()
+        off = max((_distance(np.array(ends), point) for point in points.reshape(2, -1).T), default=np.inf)
+        if off > slack or abs(length - np.hypot(*(ends[1] - ends[0]))) > slack:
+            raise ValueError(f"mesh: tag {name!r} must cover edge {getattr(problem, name)} of the block exactly")
+
+
+def _distance(corners: Array, point: Array) -> float:
+    """Distance from a point to the closed polygon line through `corners` [m]."""
+    side = np.roll(corners, -1, axis=0) - corners
+    along = np.einsum("ij,ij->i", point - corners, side) / np.einsum("ij,ij->i", side, side)
+    foot = corners + np.clip(along, 0, 1)[:, None] * side
+    return float(np.hypot(*(point - foot).T).min())

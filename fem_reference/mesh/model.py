@@ -1,0 +1,257 @@
+"""The equations M D'' + K D = F of the block, with the savings that are exact.
+
+Each saving leaves the history of the whole block unchanged:
+
+one column of elements
+    An upright rectangle with mu = 0 on a distributed foundation under a vertical load moves alike on
+    every vertical line. The tensor-product elements restricted to functions that are constant in x
+    are line elements of the same degree, so the column holds u(y) and v(y) only.
+half the block
+    An upright rectangle is symmetric about its vertical middle line; u = 0 there.
+unreachable unknowns
+    Connected components of the graph of the structural non-zeros of K and M (entries of terms whose
+    coefficient is not zero) that the load does not touch stay at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import block_diag, csr_array
+from scipy.sparse.csgraph import connected_components
+from skfem import Basis, BilinearForm, ElementLineP1, ElementLineP2, MeshLine
+
+from fem_reference.mesh import elasticity
+from fem_reference.mesh.mesh import TaggedMesh, block_mesh, structured
+from fem_reference.problem import digits
+from fem_reference.problem.problem import Array, Problem
+
+CORNER_WARNING = (
+    "corner point springs have no fine-mesh limit: the displacement drifts with the logarithm of the "
+    'element size; the cure is foundation = "distributed" or "patch"'
+)
+
+
+@dataclass(frozen=True)
+class Model:
+    """M D'' + K D = F + base_force y for a load of unit size, and what is observed of D."""
+
+    M: csr_array
+    """Consistent mass matrix [kg], shape (unknowns, unknowns)."""
+    K: csr_array
+    """Stiffness matrix with the springs [N/m]."""
+    F: Array
+    """Constant load over the problem's `load_size` [m2], shape (unknowns,)."""
+    base_force: Array
+    """Load of a unit displacement of the base in x and in y [N/m], shape (unknowns, 2)."""
+    base_pressure: Array
+    """Contact pressure of a unit displacement of the base, the block held [Pa/m], shape (2,)."""
+    observers: dict[str, Array]
+    """Row of each column of a history, shape (unknowns,)."""
+    places: Array
+    """x, y relative to the start of the base [m] and component (0: u, 1: v), shape (3, unknowns)."""
+    kind: str
+    """``"whole"``, ``"half"`` or ``"column"``."""
+    notes: tuple[str, ...]
+    """Savings used and warnings, in words."""
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """Matrices of the block in the scikit-fem basis."""
+
+    M: csr_array
+    """Consistent mass matrix [kg]."""
+    K: csr_array
+    """Elastic stiffness without the springs [N/m]."""
+    springs: csr_array
+    """Stiffness of the foundation [N/m]."""
+    F: Array
+    """Constant load of the problem [N]."""
+    basis: Basis
+    """The displacement basis; coordinates relative to the start of the base."""
+    observers: dict[str, Array]
+    """Row of each column of a history."""
+
+
+def build(problem: Problem, full: bool = False) -> Model:
+    """Assemble the model, with every exact saving unless `full`.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed.
+    """
+    if full:
+        model = whole_block(problem)
+    elif column_applies(problem):
+        model = reachable(column(problem))
+    elif half_applies(problem):
+        model = reachable(half_block(problem))
+    else:
+        model = reachable(whole_block(problem))
+    warning = (CORNER_WARNING,) if problem.foundation == "corner" else ()
+    return replace(model, notes=model.notes + warning + digits.warnings(problem))
+
+
+def assemble(problem: Problem) -> Assembled:
+    """Assemble mass, elastic stiffness, springs, load and observers of the whole block.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed.
+    """
+    return _assemble_on(problem, block_mesh(problem))
+
+
+def _assemble_on(problem: Problem, tagged: TaggedMesh, half: bool = False, congruent: bool = False) -> Assembled:
+    basis = elasticity.vector_basis(tagged.mesh, problem.degree)
+    rule = elasticity.foundation_rule(problem, tagged.mesh, tagged.base, half)
+    springs, pressure = elasticity.springs(basis, problem, rule)
+    u, v, rotation = elasticity.point_values(basis, problem.centroid)
+    M = elasticity.mass(basis, problem.density, congruent)
+    return Assembled(
+        M=M,
+        K=elasticity.stiffness(basis, problem, congruent),
+        springs=springs,
+        F=elasticity.load(basis, problem, tagged.top, M),
+        basis=basis,
+        observers={
+            "displacement": v,
+            "contact_pressure": pressure,
+            "horizontal_displacement": u,
+            "rotation": rotation,
+        },
+    )
+
+
+def whole_block(problem: Problem) -> Model:
+    """Model of the whole block on its mesh."""
+    return _model(problem, assemble(problem.unit), "whole", ())
+
+
+def column_applies(problem: Problem) -> bool:
+    """Whether nothing depends on x: rectangle, structured mesh, mu = 0, distributed foundation, vertical load."""
+    uniform = problem.poisson == 0 and problem.foundation == "distributed" and _tensor(problem)
+    return uniform and problem.rectangle is not None and problem.vertical
+
+
+def column(problem: Problem) -> Model:
+    """Model of one column of elements: u(y) and v(y) on a line of length h.
+
+    With the width W and line matrices L = (u', v') and B = (u, v), rho W B for the mass, and
+    E W L + 2 p b b' for v, G W L + 2 p_s b b' for u, with b the value at the base.
+
+    Raises
+    ------
+    ValueError
+        If the block is not an upright rectangle.
+    """
+    if problem.rectangle is None:
+        raise ValueError(f"vertices: must be an upright rectangle for one column, got {problem.vertices!r}")
+    width, height = problem.rectangle
+    mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
+    basis = Basis(mesh, (ElementLineP1 if problem.degree == 1 else ElementLineP2)())
+    B = problem.density * width * csr_array(_line_mass.assemble(basis))
+    L = width * csr_array(_line_stiffness.assemble(basis))
+    y = basis.doflocs[0]
+    base, top = (np.eye(1, basis.N, int(np.argmin(np.abs(y - place))))[0] for place in (0.0, height))
+    at_base = csr_array(np.outer(base, base))
+    # With mu = 0 the modulus of a bar, lam + 2 G, is E.
+    K_v = problem.young * L + 2 * problem.stiffness * at_base
+    K_u = problem.shear_modulus * L + 2 * problem.shear_stiffness * at_base
+    middle, none = basis.probes(np.array([[height / 2]])).toarray()[0], np.zeros(basis.N)
+    places = np.array([np.zeros(2 * basis.N), np.tile(y, 2), np.repeat([0.0, 1.0], basis.N)])
+    observers = {
+        "displacement": np.concatenate([none, middle]),
+        "contact_pressure": np.concatenate([none, -2 * problem.stiffness / width * base]),
+        "horizontal_displacement": np.concatenate([middle, none]),
+        "rotation": np.zeros(2 * basis.N),
+    }
+    M, K = (csr_array(block_diag(pair)) for pair in ((B, B), (K_u, K_v)))
+    unit = problem.unit
+    F_v = -unit.pressure * width * top - unit.gravity * (B @ np.ones(basis.N))
+    force, pressure = np.zeros((2 * basis.N, 2)), np.zeros(2)
+    if problem.motion is not None:
+        force[basis.N :, 1] = 2 * problem.stiffness * base
+        pressure[1] = 2 * problem.stiffness / width
+    F = np.concatenate([none, F_v])
+    return Model(M, K, F, force, pressure, observers, places, "column", ("one column of elements",))
+
+
+@BilinearForm
+def _line_mass(u, v, w):  # type: ignore[no-untyped-def]
+    return u * v
+
+
+@BilinearForm
+def _line_stiffness(u, v, w):  # type: ignore[no-untyped-def]
+    return u.grad[0] * v.grad[0]
+
+
+def half_applies(problem: Problem) -> bool:
+    """Whether the block and its mesh are symmetric: rectangle, structured, even number of elements."""
+    symmetric = problem.rectangle is not None and problem.vertical
+    return symmetric and _tensor(problem) and problem.elements % 2 == 0
+
+
+def _tensor(problem: Problem) -> bool:
+    """Whether the mesh is a tensor product."""
+    return problem.mesh is None and problem.cells == "quadrilaterals"
+
+
+def half_block(problem: Problem) -> Model:
+    """Model of the half next to the start of the base, with u = 0 on the mirror line."""
+    assembled = _assemble_on(problem.unit, structured(problem, half=True), half=True, congruent=True)
+    # The other half's springs press as much: the mean over the base counts each half once. Nothing turns the middle.
+    doubled = {"contact_pressure": 2 * assembled.observers["contact_pressure"]}
+    observers = assembled.observers | doubled | {"rotation": np.zeros(assembled.basis.N)}
+    model = _model(problem, replace(assembled, observers=observers), "half", ("half the block",))
+    x, component = model.places[0], model.places[2]
+    mirror = (component == 0) & (x > problem.base_length / 2 * (1 - 1e-9))
+    return restrict(model, ~mirror)
+
+
+def _model(problem: Problem, assembled: Assembled, kind: str, notes: tuple[str, ...]) -> Model:
+    R = elasticity.translation(assembled.basis) * float(problem.motion is not None)
+    if problem.motion is not None and not problem.motion.sideways:
+        R[:, 0] = 0.0
+    pressure = -(assembled.observers["contact_pressure"] @ R)
+    K = _plus(assembled.K, assembled.springs)
+    places = np.vstack([assembled.basis.doflocs, elasticity.components(assembled.basis)])
+    return Model(assembled.M, K, assembled.F, assembled.springs @ R, pressure, assembled.observers, places, kind, notes)
+
+
+def _plus(left: csr_array, right: csr_array) -> csr_array:
+    return csr_array(left + right)
+
+
+def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:
+    """The model with the unknowns of `keep` only, the others held at zero."""
+    kept = np.flatnonzero(keep)
+    return replace(
+        model,
+        M=model.M[kept][:, kept],
+        K=model.K[kept][:, kept],
+        F=model.F[kept],
+        base_force=model.base_force[kept],
+        observers={name: row[kept] for name, row in model.observers.items()},
+        places=model.places[:, kept],
+    )
+
+
+def reachable(model: Model) -> Model:
+    """The model without the unknowns that the load cannot reach through K and M."""
+    pattern = abs(model.K) + abs(model.M)
+    count, label = connected_components(pattern, directed=False)
+    touched = np.zeros(count, dtype=bool)
+    touched[label[(model.F != 0) | np.any(model.base_force != 0, axis=1)]] = True
+    keep = touched[label]
+    dropped, total = int(np.count_nonzero(~keep)), len(keep)
+    if dropped == 0:
+        return model
+    note = f"dropped {dropped} of {total} unknowns"
+    return replace(restrict(model, keep), notes=(*model.notes, note))

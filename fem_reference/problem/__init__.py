@@ -1,0 +1,4 @@
+"""What is solved and what comes out: problem, scheme, motion of the base, result.
+
+No mesh comes in.
+"""

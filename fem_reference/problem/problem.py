@@ -1,0 +1,293 @@
+"""The data of the finite-element and bar references: what is solved, and with which scheme."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_reference.problem.motion import Motion
+
+Array = NDArray[np.float64]
+
+HYPOTHESES = ("plane stress", "plane strain")
+FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
+CELLS = ("quadrilaterals", "triangles")
+STARTS = ("zero", "consistent")
+
+
+def _require(condition: bool, field: str, rule: str, value: object) -> None:
+    if not condition:
+        raise ValueError(f"{field}: {rule}, got {value!r}")
+
+
+def _finite(field: str, value: float) -> None:
+    _require(math.isfinite(value), field, "must be a finite number", value)
+
+
+class Rectangle(NamedTuple):
+    """An upright rectangle that stands on its base."""
+
+    width: float
+    """Length of the base [m]."""
+    height: float
+    """Distance from the base to the top [m]."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One elastic block on a locked elastic foundation under loads that are switched on at t = 0.
+
+    The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
+    edge; a pressure acts vertically downwards and a traction sideways per unit length of the top edge,
+    gravity on the whole block, and the fixed side of the springs may move.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    vertices: tuple[tuple[float, float], ...]
+    """Corners of the polygon, counter-clockwise [m]; edge i runs from vertex i to vertex i + 1."""
+    base: int
+    """Index of the edge that stands on the springs."""
+    top: int
+    """Index of the loaded edge."""
+    density: float
+    """Mass density rho [kg/m3]."""
+    young: float
+    """Young's modulus E [Pa]."""
+    poisson: float
+    """Poisson's ratio mu [-]."""
+    hypothesis: str
+    """``"plane stress"`` or ``"plane strain"``."""
+    stiffness: float
+    """Normal stiffness p of one corner spring [N/m]; the foundation carries 2 p in all."""
+    shear_stiffness: float
+    """Tangential stiffness of one corner spring [N/m]."""
+    pressure: float
+    """Pressure q on the top edge [Pa], downwards."""
+    elements: int = 16
+    """Elements along each side of a structured mesh [-]."""
+    degree: int = 2
+    """Polynomial degree of the elements [-], 1 or 2."""
+    mesh: str | None = None
+    """Path of a mesh file with the boundary tags ``base`` and ``top``; None meshes the block itself."""
+    foundation: str = "distributed"
+    """``"distributed"``, ``"patch"``, ``"corner"`` or ``"nodes"``: p l/a at each end of a base facet of length l."""
+    patch_width: float | None = None
+    """Width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``."""
+    cells: str = "quadrilaterals"
+    """Cells of a structured mesh: ``"quadrilaterals"``, or ``"triangles"``, each cut from lower left to upper right."""
+    eccentricity: float = 0.0
+    """Shift towards +x of the middle of the pressed part of the top edge, whose length is L - 2 |e| [m]."""
+    traction: float = 0.0
+    """Traction towards +x on the whole top edge [Pa]."""
+    gravity: float = 0.0
+    """Acceleration of gravity, downwards [m/s2]."""
+    motion: Motion | None = None
+    """Motion of the fixed side of the foundation."""
+
+    def __post_init__(self) -> None:
+        self._check_polygon()
+        self._check_material()
+        self._check_foundation()
+        self._check_loads()
+        _require(self.elements >= 1, "elements", "must be at least 1", self.elements)
+        _require(self.degree in (1, 2), "degree", "must be 1 or 2", self.degree)
+
+    def _check_polygon(self) -> None:
+        count = len(self.vertices)
+        _require(count >= 3, "vertices", "must hold at least three points", count)
+        for x, y in self.vertices:
+            _require(math.isfinite(x) and math.isfinite(y), "vertices", "must be finite", (x, y))
+        for field, index in (("base", self.base), ("top", self.top)):
+            _require(0 <= index < count, field, f"must be an edge from 0 to {count - 1}", index)
+        _require(self.base != self.top, "top", "must differ from base", self.top)
+        _require(self.base_length > 0, "base", "must have a positive length", self.base_length)
+        _require(self.area > 0, "vertices", "must run counter-clockwise", self.vertices)
+
+    def _check_material(self) -> None:
+        for field in ("density", "young"):
+            value = getattr(self, field)
+            _finite(field, value)
+            _require(value > 0, field, "must be positive", value)
+        _require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
+        strain = self.hypothesis == "plane strain"
+        below = self.poisson < 0.5 or (self.poisson == 0.5 and not strain)
+        rule = f"must be above -1 and {'below' if strain else 'at most'} 0.5 in {self.hypothesis}"
+        _require(self.poisson > -1 and below, "poisson", rule, self.poisson)
+
+    def _check_loads(self) -> None:
+        for field in ("pressure", "eccentricity", "traction", "gravity"):
+            _finite(field, getattr(self, field))
+        inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
+        rule = f"must be below half the top edge, {self.top_length / 2:g}"
+        _require(inside, "eccentricity", rule, self.eccentricity)
+
+    def _check_foundation(self) -> None:
+        _finite("stiffness", self.stiffness)
+        _finite("shear_stiffness", self.shear_stiffness)
+        _require(self.stiffness > 0, "stiffness", "must be positive", self.stiffness)
+        _require(self.shear_stiffness >= 0, "shear_stiffness", "must not be negative", self.shear_stiffness)
+        known = self.foundation in FOUNDATIONS
+        _require(known, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
+        _require(self.cells in CELLS, "cells", f"must be one of {CELLS}", self.cells)
+        w = self.patch_width
+        if self.foundation == "patch":
+            inside = w is not None and 0 < w <= self.base_length / 2
+            _require(inside, "patch_width", f"must be in (0, a/2] with a = {self.base_length!r}", w)
+        else:
+            _require(w is None, "patch_width", 'belongs to foundation = "patch" only', w)
+
+    @cached_property
+    def outline(self) -> Array:
+        """Corners from the start of the base on, relative to that point, shape (count, 2) [m]."""
+        corners = np.roll(np.asarray(self.vertices, float), -self.base, axis=0)
+        relative: Array = corners - corners[0]
+        return relative
+
+    @cached_property
+    def base_length(self) -> float:
+        """Length a of the base [m]."""
+        return float(np.hypot(*self.outline[1]))
+
+    @property
+    def top_ends(self) -> tuple[Array, Array]:
+        """Ends of the top edge relative to the start of the base, each of shape (2,) [m]."""
+        index = (self.top - self.base) % len(self.outline)
+        return self.outline[index], self.outline[(index + 1) % len(self.outline)]
+
+    @property
+    def top_length(self) -> float:
+        """Length L of the top edge [m]."""
+        start, end = self.top_ends
+        return float(np.hypot(*(end - start)))
+
+    @property
+    def pressed(self) -> tuple[float, float]:
+        """Interval of the arc length of the top edge that carries the pressure [m]."""
+        if self.eccentricity == 0:
+            return -np.inf, np.inf
+        side = self.top_ends[1] - self.top_ends[0]
+        along_x = side[0] > 0 or (side[0] == 0 and side[1] > 0)
+        shift = self.eccentricity if along_x else -self.eccentricity
+        return max(0.0, 2 * shift), min(self.top_length, self.top_length + 2 * shift)
+
+    @property
+    def load_size(self) -> float:
+        """Size of the constant loads as a stress, one with a moving base, which sets its own scale [Pa]."""
+        if self.motion is not None:
+            return 1.0
+        weight = self.density * self.gravity * float(np.sqrt(self.area))
+        return max(abs(self.pressure), abs(self.traction), abs(weight))
+
+    @property
+    def unit(self) -> Problem:
+        """The problem under its loads over `load_size`; under a pressure of 1 Pa where there is no load."""
+        size = self.load_size
+        if size == 0:
+            return replace(self, pressure=1.0)
+        return replace(self, pressure=self.pressure / size, traction=self.traction / size, gravity=self.gravity / size)
+
+    @property
+    def vertical(self) -> bool:
+        """Whether all loads are uniform in x and act along y, so that the response may be symmetric."""
+        level = self.eccentricity == 0 and self.traction == 0
+        return level and not (self.motion is not None and self.motion.sideways)
+
+    @cached_property
+    def tangent(self) -> Array:
+        """Unit vector along the base, shape (2,)."""
+        t: Array = self.outline[1] / self.base_length
+        return t
+
+    @cached_property
+    def normal(self) -> Array:
+        """Unit vector normal to the base, into the block, shape (2,)."""
+        n: Array = np.array([-self.tangent[1], self.tangent[0]])
+        return n
+
+    @cached_property
+    def _cross(self) -> tuple[Array, Array]:
+        following = np.roll(self.outline, -1, axis=0)
+        cross = self.outline[:, 0] * following[:, 1] - following[:, 0] * self.outline[:, 1]
+        return cross, self.outline + following
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the polygon [m2]."""
+        return float(self._cross[0].sum() / 2)
+
+    @cached_property
+    def centroid(self) -> Array:
+        """Area centroid relative to the start of the base, shape (2,) [m]."""
+        cross, sums = self._cross
+        point: Array = cross @ sums / (6 * self.area)
+        return point
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + mu)) [Pa]."""
+        return self.young / (2 * (1 + self.poisson))
+
+    @property
+    def lame(self) -> float:
+        """First Lame parameter of the plane problem [Pa].
+
+        E mu / (1 - mu^2) in plane stress, E mu / ((1 + mu) (1 - 2 mu)) in plane strain; both factors
+        of the denominator are exact in floating point near their zeros.
+        """
+        mu = self.poisson
+        last = 1 - mu if self.hypothesis == "plane stress" else 1 - 2 * mu
+        return self.young * mu / ((1 + mu) * last)
+
+    @property
+    def rectangle(self) -> Rectangle | None:
+        """Width and height if the block is an upright rectangle loaded opposite its base, else None."""
+        corners = self.outline
+        opposite = len(corners) == 4 and (self.top - self.base) % 4 == 2
+        if not opposite:
+            return None
+        width, height = float(corners[1, 0]), float(corners[3, 1])
+        expected = np.array([[0, 0], [width, 0], [width, height], [0, height]])
+        # A corner that is off by rounding of its coordinates is still this rectangle's corner.
+        slack = 4 * np.finfo(float).eps * max(width, height, float(np.abs(self.vertices).max()))
+        upright = width > 0 and height > 0 and bool(np.all(np.abs(corners - expected) <= slack))
+        return Rectangle(width, height) if upright else None
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Parameters of the Newmark scheme with kinetic damping (paper, equations (5) to (7)).
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    alpha: float
+    """Weight of the new acceleration in the displacement [-]."""
+    delta: float
+    """Weight of the new acceleration in the velocity [-]."""
+    gg: float
+    """Factor on the velocity at the start of each step [-], 0 to 1."""
+    step: float
+    """Time step dt [s]."""
+    start: Literal["zero", "consistent"] | str = "zero"
+    """Initial acceleration: ``"zero"`` (as the paper) or ``"consistent"`` (M A0 = F)."""
+
+    def __post_init__(self) -> None:
+        for field in ("alpha", "delta", "gg", "step"):
+            _finite(field, getattr(self, field))
+        _require(self.alpha >= 0, "alpha", "must not be negative", self.alpha)
+        _require(self.delta >= 0, "delta", "must not be negative", self.delta)
+        _require(0 <= self.gg <= 1, "gg", "must be from 0 to 1", self.gg)
+        _require(self.step > 0, "step", "must be positive", self.step)
+        _require(self.start in STARTS, "start", f"must be one of {STARTS}", self.start)

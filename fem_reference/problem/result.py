@@ -1,0 +1,66 @@
+"""What a solver of this package hands back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_reference.problem.problem import Array
+
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+"""Columns of a history: v at the centroid [m], mean base pressure [Pa], u and rotation at the centroid [m, 1]."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A history with its work counts; row 0 is step 1."""
+
+    time: Array
+    """Time of each row [s], shape (steps,)."""
+    columns: dict[str, Array]
+    """One array of shape (steps,) for each asked column, in the units of `COLUMNS`."""
+    unknowns: int
+    """Number of unknowns that were integrated [-]."""
+    nonzeros: int
+    """Stored entries of the matrix that was factorised [-]."""
+    factorisations: int
+    """Number of factorisations [-]."""
+    solves: int
+    """Number of solutions with a factorised matrix [-]."""
+    notes: tuple[str, ...]
+    """Savings used and warnings, in words."""
+    setup_seconds: float
+    """Time for assembly and factorisation [s]."""
+    stepping_seconds: float
+    """Time for the steps [s]."""
+    estimate: float | None = None
+    """Estimated error over the maximum value [-]; None where none is made."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A natural mode and what one step of the scheme makes of it."""
+
+    frequency: float
+    """Natural frequency w [rad/s]."""
+    share: float
+    """Share of the static response, (phi'F)^2 / (w^2 F'D_static) [-]."""
+    eigenvalues: NDArray[np.complex128]
+    """Eigenvalues of the mode's own one-step operator, greatest modulus first, shape (3,)."""
+
+
+def check_request(steps: int, columns: tuple[str, ...]) -> None:
+    """Refuse a number of steps or a column that cannot be served.
+
+    Raises
+    ------
+    ValueError
+        If `steps` is below one or a column is unknown.
+    """
+    if steps < 1:
+        raise ValueError(f"steps: must be at least 1, got {steps!r}")
+    for name in columns:
+        if name not in COLUMNS:
+            raise ValueError(f"columns: must be among {COLUMNS}, got {name!r}")

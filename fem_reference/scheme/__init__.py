@@ -1,0 +1,4 @@
+"""The elements' own Newmark scheme, its spectrum, modes and diagnostics.
+
+Nothing of `dda` comes in.
+"""

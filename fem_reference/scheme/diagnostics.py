@@ -1,0 +1,58 @@
+"""Conditioning and stability of one step of the finite-element model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from fem_reference.mesh.model import Model, build
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.scheme.eigen import DENSE, eigenvalues, highest_frequency, lowest
+from fem_reference.scheme.modal import roots
+from fem_reference.scheme.newmark import Work, effective_matrix
+
+
+@dataclass(frozen=True)
+class Diagnostics:
+    """What one step does to the mesh's modes, and how well its matrix is conditioned."""
+
+    condition_number: float
+    """Of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices."""
+    scaled_residual: float
+    """Max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]."""
+    spectral_radius: float
+    """Largest |lambda| seen: the code's own step applied to unit states of single modes [-]."""
+    predicted_radius: float
+    """Largest |lambda| of the same modes from trace and determinant [-]."""
+    largest_omega: float
+    """Largest w dt [-]."""
+
+
+def diagnostics(problem: Problem, scheme: Scheme, full: bool = False) -> Diagnostics:
+    """Return conditioning, residual and spectral radius of the step."""
+    model = build(problem, full)
+    omegas = _frequencies(problem, model, full) * scheme.step
+    S = effective_matrix(model.M, model.K, scheme)
+    b = scheme.step**2 * model.F
+    x = Work().factor(S)(b)
+    residual = np.abs(S @ x - b) / (abs(S) @ np.abs(x) + np.abs(b) + np.finfo(float).tiny)
+    small = len(model.F) <= DENSE
+    return Diagnostics(
+        condition_number=float(np.linalg.cond(S.toarray())) if small else float("nan"),
+        scaled_residual=float(np.max(residual)),
+        spectral_radius=max(float(np.abs(eigenvalues(w / scheme.step, scheme)[0])) for w in omegas),
+        predicted_radius=max(float(np.max(np.abs(roots(float(w), scheme)))) for w in omegas),
+        largest_omega=float(np.max(omegas)),
+    )
+
+
+def _frequencies(problem: Problem, model: Model, full: bool) -> Array:
+    """All frequencies of a small mesh, the lowest ones and the highest of a large one [rad/s]."""
+    if len(model.F) <= DENSE:
+        squares: Array = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)
+    else:
+        squares = np.append(lowest(model, 6)[0], highest_frequency(problem, full) ** 2)
+    found: Array = np.sqrt(np.abs(squares))
+    return found

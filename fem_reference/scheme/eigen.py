@@ -1,0 +1,94 @@
+"""Natural modes of the finite-element model and the scheme's one-step operator on each."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import eigsh
+
+from fem_reference.mesh.model import Model, build
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import Mode
+from fem_reference.scheme.newmark import State, Stepper, Work
+
+DENSE = 400
+"""Unknowns up to which all modes are found by a dense solver."""
+
+
+def modes(problem: Problem, scheme: Scheme, count: int = 12, full: bool = False) -> tuple[Mode, ...]:
+    """Natural modes, greatest share of the static response first.
+
+    Parameters
+    ----------
+    problem, scheme
+        What is solved and how it is integrated.
+    count
+        Number of lowest modes computed; doubled until the first axial mode is certainly among them.
+    full
+        Use the whole block instead of the model with exact savings.
+
+    Returns
+    -------
+    tuple of Mode
+        The first one is the first axial mode.
+    """
+    model = build(problem, full)
+    F = model.F if np.any(model.F) else model.base_force.sum(axis=1)
+    D = Work().factor(model.K)(F)
+    while True:
+        squares, shapes = lowest(model, count)
+        shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
+        # The shares of all modes sum to one: no mode left out can exceed what is still missing.
+        if len(squares) < count or shares.max() > 1 - shares.sum():
+            break
+        count *= 2
+    order = np.argsort(-shares, kind="stable")
+    frequencies = np.sqrt(squares)
+    return tuple(
+        Mode(float(frequencies[i]), float(shares[i]), eigenvalues(float(frequencies[i]), scheme)) for i in order
+    )
+
+
+def lowest(model: Model, count: int) -> tuple[Array, Array]:
+    """Squares of the lowest frequencies [rad2/s2] and their shapes with phi' M phi = 1, one a column."""
+    size = len(model.F)
+    if size <= DENSE or count >= size - 1:
+        squares, shapes = eigh(model.K.toarray(), model.M.toarray())
+        return squares[:count], shapes[:, :count]
+    squares, shapes = eigsh(csc_array(model.K), count, csc_array(model.M), sigma=0.0, v0=_start_vector(size))
+    return squares, shapes
+
+
+def _start_vector(size: int) -> Array:
+    """Fixed start of the Lanczos iteration, so that a run repeats to the last bit."""
+    return np.random.default_rng(0).standard_normal(size)
+
+
+def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
+    """Eigenvalues of the step's operator on (D, dt V, dt^2 A) of one free mode, greatest modulus first.
+
+    The operator is made by applying the scheme's own step to unit states.
+    """
+    dt = scheme.step
+    one, square = csr_array(np.eye(1)), csr_array([[frequency**2]])
+    stepper = Stepper(one, square, np.zeros(1), scheme)
+    columns = []
+    for D, V, A in np.eye(3):
+        new = stepper.advance(State(np.array([D]), np.array([V / dt]), np.array([A / dt**2])))
+        columns.append([new.D[0], dt * new.V[0], dt**2 * new.A[0]])
+    roots: NDArray[np.complex128] = np.linalg.eigvals(np.array(columns).T).astype(complex)
+    return roots[np.argsort(-np.abs(roots), kind="stable")]
+
+
+def highest_frequency(problem: Problem, full: bool = False) -> float:
+    """Largest natural frequency of the mesh [rad/s], which limits a conditionally stable scheme."""
+    model = build(problem, full)
+    size = len(model.F)
+    if size <= DENSE:
+        return float(np.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1]))
+    largest = eigsh(
+        csc_array(model.K), 1, csc_array(model.M), which="LA", v0=_start_vector(size), return_eigenvectors=False
+    )
+    return float(np.sqrt(largest[0]))

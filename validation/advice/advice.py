@@ -1,0 +1,332 @@
+"""The adviser: which time step, discount or scheme gives the damping that is wanted.
+
+The target is the total damping ratio xi (algorithmic and kinetic) of the DDA block's first axial mode by the scheme's
+closed form. Over dt, gg or delta xi is cut at its extrema into monotone pieces, and each piece that brackets the
+target holds exactly one solution. For the scheme the family alpha = (1/2 + delta)^2 / 4, 1/2 <= delta <= 3/2, is
+searched: the boundary of the paper's (14), with |lambda| at infinity from 1 down to 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from validation.advice.search import FLAT, Search
+from validation.advice.spectra import (
+    CONTACT,
+    ModeDamping,
+    dda_modes,
+    mode_damping,
+    mode_names,
+    percent,
+    radii,
+    ratios,
+    runs,
+)
+from validation.errors import InputError
+from validation.metrics.columns import settling_step
+from validation.runs.history import Array
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver, solve
+
+SolveFor = Literal["dt", "gg", "scheme"]
+KINDS = ("dt", "gg", "scheme")
+FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
+LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
+GAIN = 3.0  # a mode's amplitude over its static share, at most: 1 at rest, more where roots collide
+
+
+@dataclass(frozen=True)
+class Solution:
+    """One answer, with what it brings along."""
+
+    value: float  # dt [s], gg [1] or delta [1]
+    damping: float  # xi of the first axial mode there [1]
+    settling_steps: int | None  # displacement within 1 % of static for ever after; None if never
+    settling_seconds: float | None
+    settling_from: str  # "history", or "envelope" where the history would be too long
+    alpha: float
+    delta: float
+    step: float  # dt [s]
+    gg: float  # per step
+    gg_rate: float | None  # c = -ln(gg) / dt [1/s]
+    settings: dict[str, float]  # for Scene.with_values
+    contact: ModeDamping | None
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The answer: solutions with increasing value, what can be reached at all, and one plain sentence."""
+
+    scene: str
+    solve_for: str
+    target: float
+    reachable: bool
+    solutions: tuple[Solution, ...]
+    least: float | None  # smallest and greatest xi that can be reached, and where
+    least_at: float | None
+    greatest: float | None
+    greatest_at: float | None
+    sentence: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return asdict(self)
+
+
+def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
+    """Search over ln Omega, at fixed gg or at fixed rate."""
+    t = scene.time
+    rate = t.gg_rate
+
+    def gg(omega: Array) -> Array | float:
+        return t.discount if rate is None else np.exp(-rate / frequency * omega)
+
+    # below c dt = 1e-6 xi at a fixed rate is c / (2 w) to the digits that gg = exp(-c dt) keeps
+    lowest = min(1e-4, 1e-6 * frequency / rate) if rate else 1e-12
+    return Search(
+        np.linspace(math.log(lowest), math.log(1e8), 4000),
+        lambda s: _stable(np.exp(s), t.alpha, t.delta, gg(np.exp(s)), highest / frequency),
+        lambda s: math.exp(s) / frequency,
+        lambda s: {"time.step": math.exp(s) / frequency},
+        FLAT if rate is None else FLAT_RATE,
+    )
+
+
+def _stable(omega: Array, alpha: float, delta: float, gg: Array | float, highest: float) -> Array:
+    """Return xi over Omega, NaN where the highest mode grows."""
+    radius = radii(omega * highest, alpha, delta, gg)
+    return np.where(radius <= 1 + 1e-12, ratios(omega, alpha, delta, gg), np.nan)
+
+
+def _over_gg(scene: Scene, frequency: float, highest: float) -> Search:
+    """Search over -gg, at the scene's time step; close to 1 the grid follows 1 - gg."""
+    t = scene.time
+    omega = frequency * t.step
+    away = np.geomspace(1e-15, 1 - 1e-12, 3000)
+    grid = np.unique(np.concatenate([[-1.0], away - 1, -np.geomspace(1e-12, 1e-3, 300)]))
+
+    def xi(s: Array) -> Array:
+        return _stable(np.full_like(s, omega), t.alpha, t.delta, -s, highest / frequency)
+
+    return Search(grid, xi, lambda s: -s, lambda s: {"time.gg": -s})
+
+
+def _over_scheme(scene: Scene, frequency: float, highest: float) -> Search:
+    """Search over delta on the family alpha = (1/2 + delta)^2 / 4, at the scene's dt and gg."""
+    omega, gg = frequency * scene.time.step, scene.time.discount
+    grid = np.unique(np.concatenate([[0.5], 0.5 + np.geomspace(1e-14, 1, 2000), np.linspace(0.5, 1.5, 1000)]))
+
+    def alpha(delta: Array | float) -> Array | float:
+        return (0.5 + delta) ** 2 / 4
+
+    return Search(
+        grid,
+        lambda s: ratios(np.full_like(s, omega), alpha(s), s, gg),
+        lambda s: s,
+        lambda s: {"time.alpha": float(alpha(s)), "time.delta": s},
+    )
+
+
+SEARCHES = {"dt": _over_dt, "gg": _over_gg, "scheme": _over_scheme}
+
+
+def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
+    """Return the values of dt, gg or delta that give the first axial mode the wanted damping ratio.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep; its other settings stay as they are. A discount stated as `gg_rate` is kept as a
+        rate when dt is solved for.
+    damping
+        Target xi [1], total: algorithmic and kinetic.
+    solve_for
+        "dt", "gg" (per step; the rate is given as well) or "scheme" (delta, with alpha = (1/2 + delta)^2 / 4).
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep, the target is not a number of at least 0, or `solve_for` is unknown.
+
+    Examples
+    --------
+    >>> from validation import advise, load_scene
+    >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    >>> [round(s.value, 6) for s in advise(scene, damping=0.05, solve_for="dt").solutions]
+    [0.000585]
+    """
+    if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
+        raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
+    if solve_for not in KINDS:
+        raise InputError(f"solve_for: must be one of {', '.join(KINDS)}, got {solve_for!r}")
+    modes = dda_modes(scene)
+    search = SEARCHES[solve_for](scene, modes[0].frequency, max(mode.frequency for mode in modes))
+    values = search.solutions(damping)
+    if not values and _everywhere(search, damping):
+        values = [_own(search, scene, solve_for, modes[0].frequency)]
+    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda found: found.value)
+    ends = search.extremes()
+    least, greatest = (search.at(s) for s in ends) if ends else (None, None)
+    least_at, greatest_at = (search.value(s) for s in ends) if ends else (None, None)
+    text = _sentence(scene, solve_for, damping, solutions, (least, least_at, greatest, greatest_at))
+    return Advice(
+        scene.name,
+        solve_for,
+        float(damping),
+        bool(solutions),
+        tuple(solutions),
+        least,
+        least_at,
+        greatest,
+        greatest_at,
+        text,
+    )
+
+
+def _everywhere(search: Search, target: float) -> bool:
+    """Whether xi is the target whatever the value (average acceleration without discount has none at any dt)."""
+    return bool(search.pieces) and all(abs(search.at(s) - target) < 1e-15 for piece in search.pieces for s in piece)
+
+
+def _own(search: Search, scene: Scene, solve_for: str, frequency: float) -> float:
+    t = scene.time
+    return {"dt": math.log(frequency * t.step), "gg": -t.discount, "scheme": t.delta}[solve_for]
+
+
+def _solution(scene: Scene, search: Search, s: float) -> Solution:
+    settings = search.settings(s)
+    case = scene.with_values(settings)
+    modes = dda_modes(case)
+    names = mode_names(modes)
+    first = mode_damping(case, names[0], modes[0].frequency)
+    contact = names.index(CONTACT) if CONTACT in names else None
+    steps, source = _settling(case)
+    t = case.time
+    return Solution(
+        value=search.value(s),
+        damping=math.nan if first.damping is None else first.damping,
+        settling_steps=steps,
+        settling_seconds=None if steps is None else steps * t.step,
+        settling_from=source,
+        alpha=t.alpha,
+        delta=t.delta,
+        step=t.step,
+        gg=t.discount,
+        gg_rate=-math.log(t.discount) / t.step + 0.0 if t.discount > 0 else None,
+        settings=settings,
+        contact=None if contact is None else mode_damping(case, CONTACT, modes[contact].frequency),
+    )
+
+
+def _settling(case: Scene) -> tuple[int | None, str]:
+    """Return the settling step of the displacement, from its history or, where that is too long, from the envelope."""
+    modes = [(mode.spectral_radius, abs(mode.share)) for mode in dda_modes(case)]
+    last = [_crossing(radius, 0.01 / (GAIN * share)) for radius, share in modes if share > 0]
+    if max(last) > LONGEST:
+        rough = max(_crossing(radius, 0.01 / share) for radius, share in modes if share > 0)
+        return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
+    dda = get_solver("dda")
+    static = dda.static(case)["displacement"]
+    steps = max(10, math.ceil(max(last)) + 10)
+    run = solve(case.with_values({"time.steps": steps, "load.pressure": 1.0}), dda)
+    found = settling_step(run.displacement, static / case.load.pressure if case.load.pressure else static)
+    return (int(found) if isinstance(found, float) else None), "history"
+
+
+def _crossing(radius: float, level: float) -> float:
+    """Step at which radius^n falls below a level."""
+    if level >= 1 or radius <= 0:
+        return 1.0
+    return math.log(level) / math.log(radius) if radius < 1 else math.inf
+
+
+def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> dict[str, Any]:
+    """Return the relative L2 differences of DDA from finite elements and continuum at a solution.
+
+    The window is the scene's own duration, whatever dt is, cut where it would take more than `longest` steps.
+    """
+    from validation.metrics.pairs import pair
+
+    steps = max(2, min(longest, round(scene.time.duration / solution.step)))
+    columns = ["displacement", "contact_pressure"]
+    case = scene.with_values(solution.settings | {"time.steps": steps, "run.columns": columns})
+    own = solve(case, "dda").history
+    found: dict[str, Any] = {"window": steps * case.time.step}
+    for name in ("fem", "continuum"):
+        reference = get_solver(name)
+        if reason := reference.applicable(case):
+            found[name] = {"not applicable": reason}
+            continue
+        try:
+            other = reference.solve(case).history
+        except InputError as error:
+            found[name] = {"not applicable": str(error)}
+            continue
+        if own is not None and other is not None:
+            found[name] = {q: pair(f"{q}.l2", own, other) for q in ("displacement", "pressure")}
+    return found
+
+
+# ---- the sentence -------------------------------------------------------------------------------------------------
+
+Reach = tuple[float | None, float | None, float | None, float | None]
+
+
+def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[Solution], reach: Reach) -> str:
+    """Return the answer in one plain sentence that can be acted on."""
+    if not solutions:
+        return _unreachable(scene, solve_for, target, reach)
+    first = solutions[0]
+    answers = " or ".join(_answer(solve_for, s) for s in solutions)
+    text = f"Set {answers}: the first axial mode of the DDA block is then damped at {percent(target)} of critical"
+    if len(solutions) > 1:
+        text += " by each of them"
+    settles = [f"{s.settling_steps} steps ({s.settling_seconds:.4g} s)" for s in solutions if s.settling_steps]
+    if settles:
+        text += f" and the displacement settles within {' or '.join(settles)}"
+    flips = [s for s in solutions if s.contact is not None and s.contact.flips]
+    if flips:
+        at = "" if len(flips) == len(solutions) else f" at {_answer(solve_for, flips[-1])}"
+        text += f", but the contact mode {runs(flips[-1].contact)}{at}"  # type: ignore[arg-type]
+    return text + _keeping(scene, solve_for, first) + "."
+
+
+def _answer(solve_for: str, solution: Solution) -> str:
+    if solve_for == "dt":
+        return f"dt = {solution.value:.6g} s"
+    if solve_for == "gg":
+        rate = "" if solution.gg_rate is None else f" (c = {solution.gg_rate:.4g} 1/s)"
+        return f"gg = {solution.value:.6g} per step{rate}"
+    return f"delta = {solution.value:.6g}, alpha = {solution.alpha:.6g}"
+
+
+def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
+    """Say what is held fixed, where it matters."""
+    t = scene.time
+    if solve_for == "dt" and t.gg_rate is not None:
+        return f"; the discount is kept as a rate, c = {t.gg_rate:g} 1/s"
+    if solve_for == "dt" and t.discount < 1:
+        return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
+    if solve_for == "gg":
+        return f"; this gg belongs to dt = {solution.step:g} s, at another dt keep the rate c"
+    return ""
+
+
+def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> str:
+    names = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
+    least, least_at, greatest, greatest_at = reach
+    wanted = f"No {names[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
+    if greatest is None or least is None or greatest_at is None or least_at is None:
+        return f"{wanted}: the mode has no damping ratio here, since a root of the step is not positive."
+    unit = " s" if solve_for == "dt" else ""
+    name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
+    if target > greatest:
+        return (
+            f"{wanted}: the greatest that can be reached is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
+        )
+    return f"{wanted}: the least that can be reached is {percent(least)}, at {name} = {least_at:.6g}{unit}."

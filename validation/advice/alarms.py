@@ -1,0 +1,159 @@
+"""Alarms: results that look better than they are.
+
+agreement by damping
+    DDA and its reference agree better than either of them agrees with the motion, because both are damped out.
+hidden tension
+    A locked contact pulls; a real one would open.
+contact ringing
+    A root of the contact mode lies next to -1: it flips sign every step and hardly decays.
+fixed discount
+    dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from validation.metrics.pairs import pair as pair_metric
+from validation.runs.history import History
+from validation.runs.results import Row
+from validation.scenes.scene import Scene
+
+AGREEMENT, TENSION, RINGING, DISCOUNT = "agreement by damping", "hidden tension", "contact ringing", "fixed discount"
+REMOVED = 0.5  # of the first mode's motion over the window
+FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps more than 0.9 of itself
+REPEATS = ("dda-textbook", "dda-60", "fem-60", "bar-60")  # the same answer by other arithmetic
+REFERENCES = ("bar", "fem")  # under the same scheme as DDA
+
+
+class Cases(Protocol):
+    """What alarms are raised from: rows and histories of finished cases."""
+
+    @property
+    def rows(self) -> dict[tuple[str, str], Row]:
+        """Rows by (scene, solver)."""
+
+    def history(self, scene: str, solver: str) -> History | None:
+        """Return the history of a case, or None."""
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """One alarm on one case, with the numbers behind it and a sentence."""
+
+    kind: str
+    scene: str
+    sentence: str
+    values: Mapping[str, float] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """Return plain data, numbers rounded well above the last bits."""
+        rounded = {key: float(f"{value:.4g}") for key, value in self.values.items()}
+        return asdict(self) | {"values": rounded}
+
+
+def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
+    """Yield the alarms of finished cases, in the order of the scenes."""
+    listed = list(scenes)
+    solvers: dict[str, dict[str, Row]] = {}
+    for (name, solver), row in finished.rows.items():
+        solvers.setdefault(name, {})[solver] = row
+    for scene in listed:
+        rows = solvers.get(scene.name, {})
+        yield from _agreement(scene, finished)
+        yield from _tension(scene, rows)
+        yield from _ringing(scene, rows)
+    yield from fixed_discount(listed)
+
+
+def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | None:
+    """Return agreement, share of the motion that damping removed and time error, or None where not all are known.
+
+    Agreement and time error are relative L2 of the displacement, over the whole history: DDA against the bar (or
+    elements) under the same scheme, and that reference against the continuum. The share is one minus the root mean
+    square over the window of the first mode's amplitude |lambda|^n, without what physical damping would remove: the
+    continuum has the kinetic damping -ln(gg) / dt, so that only the algorithmic part counts.
+    """
+    dda = finished.rows.get((scene.name, "dda"))
+    if dda is None or (scene.name, "continuum") not in finished.rows:
+        return None
+    exact, own = finished.history(scene.name, "continuum"), finished.history(scene.name, "dda")
+    name = next((r for r in REFERENCES if finished.history(scene.name, r) is not None), None)
+    reference = None if name is None else finished.history(scene.name, name)
+    if own is None or exact is None or reference is None:
+        return None
+    agreement = pair_metric("displacement.l2", own, reference)
+    error = pair_metric("displacement.l2", reference, exact)
+    radius = dda.metrics.get("mode1.spectral_radius")
+    if not (isinstance(agreement, float) and isinstance(error, float) and isinstance(radius, float)):
+        return None
+    return {"agreement": agreement, "removed": removed_motion(scene, radius), "time error": error}
+
+
+def removed_motion(scene: Scene, radius: float) -> float:
+    """Return one minus the root mean square of (|lambda| / sqrt(gg))^n over the window, 0 where nothing is damped."""
+    kinetic = math.sqrt(scene.time.discount)
+    if radius == 0 or kinetic == 0:
+        return 1.0
+    amplitude = np.minimum(radius / kinetic, 1.0) ** np.arange(1, scene.time.steps + 1)
+    return float(1 - np.sqrt(np.mean(amplitude**2)))
+
+
+def _agreement(scene: Scene, finished: Cases) -> Iterator[Alarm]:
+    found = agreement_by_damping(scene, finished)
+    if found is None or found["removed"] < REMOVED or found["agreement"] >= found["time error"]:
+        return
+    said = (
+        f"DDA agrees with the elastic block to {100 * found['agreement']:.2g} % because both are damped: damping took "
+        f"{100 * found['removed']:.0f} % of the first mode's motion, and the time error is "
+        f"{100 * found['time error']:.2g} %"
+    )
+    yield Alarm(AGREEMENT, scene.name, said, found)
+
+
+def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
+    """Yield one alarm for the solvers whose contact pulls; runs that repeat another are left out."""
+    values: dict[str, float] = {}
+    said = []
+    for solver, row in solvers.items():
+        found = [row.metrics.get(f"pressure.{part}") for part in ("minimum", "minimum_time", "tension_time")]
+        least, when, duration = (v if isinstance(v, float) else math.nan for v in found)
+        if ":" in solver or solver in REPEATS or not (least < -1e-6 * abs(scene.load.pressure) and duration > 0):
+            continue
+        values |= {f"{solver}.minimum": least, f"{solver}.time": when, f"{solver}.duration": duration}
+        said.append(f"in {solver} by {-least / 1e6:.3g} MPa at t = {when:.4g} s and for {duration:.3g} s in all")
+    if said:
+        yield Alarm(TENSION, scene.name, f"the locked contact pulls, {'; '.join(said)}", values)
+
+
+def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
+    row = solvers.get("dda")
+    root, radius = (
+        None if row is None else row.metrics.get(f"contact.{part}") for part in ("least_root", "spectral_radius")
+    )
+    if not (isinstance(root, float) and isinstance(radius, float)) or root > FLIPPING:
+        return
+    steps = math.log(100) / -math.log(radius) if 0 < radius < 1 else math.inf
+    decays = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly ever decays"
+    said = f"a root of the contact mode is {root:.4g}: the contact force rings from step to step and {decays}"
+    yield Alarm(RINGING, scene.name, said, {"root": root, "radius": radius})
+
+
+def fixed_discount(scenes: Sequence[Scene]) -> Iterator[Alarm]:
+    """Yield an alarm for each scene whose cases refine dt at one gg < 1."""
+    groups: dict[tuple[str, float], set[float]] = {}
+    for scene in scenes:
+        if scene.time.gg_rate is None and 0 < scene.time.discount < 1:
+            groups.setdefault((scene.name.partition("[")[0], scene.time.discount), set()).add(scene.time.step)
+    for (name, gg), steps in groups.items():
+        if len(steps) > 1:
+            said = (
+                f"dt is varied at a fixed gg = {gg:g}, which acts per step: refining dt does not converge; state "
+                "gg_rate instead, gg = exp(-gg_rate dt)"
+            )
+            yield Alarm(DISCOUNT, name, said, {"gg": gg})

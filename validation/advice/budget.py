@@ -1,0 +1,126 @@
+"""The damping budget of a scene: what damping its modes get over dt, and where the limits lie.
+
+The curves are computed when a study runs and kept in its manifest, so that the report draws them without a solver.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from validation.advice.spectra import CONTACT, FIRST, dda_modes, radii, ratios
+from validation.errors import InputError
+from validation.gates import closed_forms
+from validation.runs.history import Array
+from validation.runs.modes import contact_index
+from validation.scenes.scene import Scene
+
+POINTS = 161
+LOWEST, HIGHEST = 1e-3, 30.0  # range of w dt of the first axial mode
+VARIANTS = 10  # panels of a scene, at most
+
+
+def budgets(scenes: Iterable[Scene]) -> Iterator[dict[str, Any]]:
+    """Yield one budget for each setting of a scene apart from its time steps and meshes."""
+    settings: dict[str, dict[str, list[Scene]]] = {}
+    for scene in scenes:
+        group = settings.setdefault(scene.name.partition("[")[0], {})
+        group.setdefault(_setting(scene), []).append(scene)
+    for group in settings.values():
+        for cases in list(group.values())[:VARIANTS]:
+            try:
+                yield budget(cases)
+            except (InputError, ValueError):  # a scene that DDA cannot take has no budget
+                continue
+
+
+def _setting(scene: Scene) -> str:
+    data = scene.definition()
+    time = {key: value for key, value in data["time"].items() if key not in ("step", "steps", "start")}
+    return repr((data["block"], data["contact"], time))
+
+
+def budget(cases: list[Scene]) -> dict[str, Any]:
+    """Return curves and limits of one setting, as plain data.
+
+    Keys: `scene` (name of the first case), `steps` (dt of the cases [s]), `dt` [s], `modes` (name -> total,
+    algorithmic and kinetic xi, None where a root is not positive), `limits` (dt [s] where the first axial mode's roots
+    turn real, below which it is overdamped, wave transit), `real roots at` (w dt of the first of these), `floor` (first
+    frequency of DDA over that of the bar).
+    """
+    scene = cases[0]
+    modes = dda_modes(scene)
+    first = modes[0].frequency
+    steps = sorted({case.time.step for case in cases})
+    low, high = min(LOWEST / first, steps[0] / 2), max(HIGHEST / first, steps[-1] * 2)
+    dt = np.geomspace(low, high, POINTS)
+    named = {FIRST: first}
+    if (index := contact_index(modes)) is not None:
+        named[CONTACT] = modes[index].frequency
+    curves = {name: _curves(scene, w, dt) for name, w in named.items()}
+    limits = _limits(scene, first, dt)
+    return {
+        "scene": scene.name,
+        "steps": steps,
+        "gg": scene.time.discount,
+        "gg_rate": scene.time.gg_rate,
+        "dt": _listed(dt),
+        "modes": curves,
+        "limits": limits,
+        "real roots at": float(f"{limits.get('real roots', 0.0) * first:.4g}"),
+        "floor": _floor(scene, first),
+    }
+
+
+def discounts(scene: Scene, dt: Array) -> Array:
+    """Return gg over dt: fixed per step, or at a fixed rate."""
+    rate = scene.time.gg_rate
+    return np.full_like(dt, scene.time.discount) if rate is None else np.exp(-rate * dt)
+
+
+def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
+    t = scene.time
+    total = ratios(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
+    own = ratios(frequency * dt, t.alpha, t.delta, 1.0)
+    radius = radii(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
+    return {
+        "total": _listed(total),
+        "algorithmic": _listed(own),
+        "kinetic": _listed(total - own),
+        "spectral_radius": _listed(radius),
+    }
+
+
+def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
+    """Return the dt of the limits that exist within the range [s]."""
+    t = scene.time
+    fine = np.geomspace(dt[0], dt[-1], 20_001)
+    total = ratios(first * fine, t.alpha, t.delta, discounts(scene, fine))
+    found = {}
+    if np.isnan(total).any() and np.isfinite(total[0]):
+        found["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])
+    if total[0] >= 1 and (total < 1).any():
+        found["overdamped below"] = float(fine[int(np.argmax(total < 1))])
+    found["wave transit"] = transit(scene)
+    return {name: float(f"{value:.4g}") for name, value in found.items()}
+
+
+def transit(scene: Scene) -> float:
+    """Time h / c of an axial wave through the block's height [s], c = sqrt(E' / rho)."""
+    E, _ = closed_forms.moduli(scene)
+    height = np.ptp([y for _, y in scene.block.outline])
+    return float(height) / math.sqrt(E / scene.block.density)
+
+
+def _floor(scene: Scene, first: float) -> float | None:
+    """First frequency of DDA over that of the exact bar; None for a block that is no rectangle or not at mu = 0."""
+    if scene.block.vertices is not None or scene.block.poisson != 0:
+        return None
+    return float(f"{first / closed_forms.bar_frequency(scene):.6g}")
+
+
+def _listed(values: Array) -> list[float | None]:
+    return [float(f"{value:.5g}") if math.isfinite(value) else None for value in values]

@@ -1,0 +1,112 @@
+"""A search for all values of one parameter that give a function its target: monotone pieces, one root in each."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from validation.runs.history import Array
+
+FLAT = 1e-12  # relative; smaller turns of a function are rounding, not extrema
+
+
+@dataclass(frozen=True)
+class Search:
+    """A one-parameter search: the damping ratio xi over a coordinate s, and the scene's settings there."""
+
+    grid: Array  # coordinates, increasing
+    xi: Callable[[Array], Array]  # NaN where a root is not positive
+    value: Callable[[float], float]
+    settings: Callable[[float], dict[str, float]]
+    flat: float = FLAT  # relative size of turns that are rounding
+
+    @cached_property
+    def pieces(self) -> list[tuple[float, float]]:
+        """Intervals of s on which xi is defined and monotone."""
+        found: list[tuple[float, float]] = []
+        for s in self._defined():
+            turns = [0, *_turning_points(self.xi(s), self.flat), len(s) - 1]
+            ends = [float(s[0]), *(self._extremum(s, i) for i in turns[1:-1]), float(s[-1])]
+            found += [(a, b) for a, b in itertools.pairwise(ends) if b > a]
+        return found
+
+    def _defined(self) -> list[Array]:
+        """Cut the grid where xi is not defined; the cuts are found to the last bit."""
+        ok = np.isfinite(self.xi(self.grid))
+        cuts = np.flatnonzero(ok[1:] != ok[:-1])
+        parts = np.split(self.grid, cuts + 1)
+        edges = {int(i): self._edge(float(self.grid[i]), float(self.grid[i + 1]), bool(ok[i])) for i in cuts}
+        found, start = [], 0
+        for part in parts:
+            stop = start + len(part) - 1
+            if ok[start]:
+                before = [edges[start - 1]] if start else []
+                after = [edges[stop]] if stop in edges else []
+                found.append(np.unique(np.array([*before, *part, *after])))
+            start = stop + 1
+        return found
+
+    def _edge(self, a: float, b: float, defined_at_a: bool) -> float:
+        """Last coordinate of [a, b] at which xi is defined."""
+        inside, outside = (a, b) if defined_at_a else (b, a)
+        for _ in range(200):
+            middle = (inside + outside) / 2
+            if middle in (inside, outside):
+                break
+            defined = bool(np.isfinite(self.at(middle)))
+            inside, outside = (middle, outside) if defined else (inside, middle)
+        return inside
+
+    def _extremum(self, s: Array, i: int) -> float:
+        """Refine a turning point of the grid."""
+        y = self.xi(s[i - 1 : i + 2])
+        sign = -1.0 if y[1] >= max(y[0], y[2]) else 1.0
+        bounds = (float(s[i - 1]), float(s[i + 1]))
+        found = minimize_scalar(lambda x: sign * self.at(x), bounds=bounds, method="bounded", options={"xatol": 1e-14})
+        return float(found.x) if sign * self.at(found.x) <= sign * y[1] else float(s[i])
+
+    def at(self, s: float) -> float:
+        """Return xi at one coordinate."""
+        return float(self.xi(np.array([s]))[0])
+
+    def solutions(self, target: float) -> list[float]:
+        """Return all coordinates at which xi is the target."""
+        found: list[float] = []
+        for a, b in self.pieces:
+            low, high = self.at(a) - target, self.at(b) - target
+            if low * high <= 0 and (low or high):
+                root = float(brentq(lambda s: self.at(s) - target, a, b, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+                if not found or not math.isclose(self.value(root), self.value(found[-1]), rel_tol=1e-12):
+                    found.append(root)
+        return found
+
+    def extremes(self) -> tuple[float, float] | None:
+        """Return where xi is least and where it is greatest, or None where it is nowhere defined."""
+        ends = [s for piece in self.pieces for s in piece]
+        return (min(ends, key=self.at), max(ends, key=self.at)) if ends else None
+
+
+def _turning_points(y: Array, flat: float) -> list[int]:
+    """Indices of the local extrema, turns within rounding left out."""
+    steps = np.sign(np.diff(y))
+    candidates = np.flatnonzero(steps[1:] * steps[:-1] <= 0) + 1
+    found: list[int] = []
+    low = high = 0
+    rising: bool | None = None
+    for i in [*candidates.tolist(), len(y) - 1]:
+        size = flat * max(abs(y[i]), abs(y[high]), abs(y[low]))
+        high = i if y[i] > y[high] else high
+        low = i if y[i] < y[low] else low
+        if rising is not False and y[high] - y[i] > size:
+            found += [high]
+            rising, low = False, i
+        elif rising is not True and y[i] - y[low] > size:
+            found += [low]
+            rising, high = True, i
+    return [i for i in found if 0 < i < len(y) - 1]

@@ -1,0 +1,215 @@
+"""What damping a scene really runs: total, algorithmic and kinetic, mode by mode.
+
+The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`) are evaluated at the frequencies
+of the DDA block. The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that
+of the same scheme at gg = 1; the kinetic part is the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from dda.scheme import spectral
+from validation.errors import InputError
+from validation.metrics.modes import operator_damping
+from validation.runs.history import Array
+from validation.runs.modes import Mode, contact_index
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
+
+FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
+FIRST, CONTACT = "first axial", "contact"
+
+
+@dataclass(frozen=True)
+class ModeDamping:
+    """Damping of one mode of the DDA block by the scheme of a scene."""
+
+    name: str
+    frequency: float  # w, undamped natural [rad/s]
+    damping: float | None  # total damping ratio xi [1]; None where a root is not positive
+    spectral_radius: float  # max |lambda| [1]
+    omega_dt: float  # Omega = w dt [1]
+    algorithmic: float | None  # xi of the same scheme at gg = 1 [1]
+    kinetic: float | None  # the rest of xi [1]
+    period_elongation: float | None  # w / w' - 1 [1]
+    least_root: float  # real part of the eigenvalue next to -1 [1]
+
+    @property
+    def flips(self) -> bool:
+        """Whether the mode changes sign every step and is hardly damped."""
+        return self.least_root <= FLIPPING
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Damping of a scene: modes of the DDA block, first axial mode first, and the reference's first mode."""
+
+    scene: str
+    step: float  # dt [s]
+    gg: float  # discount per step [1]
+    gg_rate: float | None  # c = -ln(gg) / dt [1/s]; None at gg = 0
+    modes: tuple[ModeDamping, ...]
+    references: dict[str, dict[str, float | None]]  # solver -> frequency and damping of its first axial mode
+    sentence: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return asdict(self)
+
+
+def number(value: float) -> float | None:
+    """Return a finite number, or None."""
+    return float(value) if math.isfinite(value) else None
+
+
+def damping_ratio(scene: Scene, frequency: float) -> float:
+    """Return xi of the scene's scheme at a frequency [rad/s]; NaN where a root is not positive."""
+    t = scene.time
+    return float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
+
+
+def mode_names(modes: Sequence[Mode]) -> list[str]:
+    """Name modes: the first axial one, the contact mode (see `history.contact_index`), the rest numbered."""
+    contact = contact_index(modes)
+    return [FIRST if i == 0 else CONTACT if i == contact else f"mode {i + 1}" for i in range(len(modes))]
+
+
+def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
+    """Return the damping of a mode of the given frequency [rad/s] under the scheme of a scene."""
+    t = scene.time
+    omega, gg = frequency * t.step, t.discount
+    total = damping_ratio(scene, frequency)
+    own = float(spectral.damping_ratio(omega, t.alpha, t.delta))
+    roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
+    return ModeDamping(
+        name,
+        frequency,
+        number(total),
+        float(spectral.spectral_radius(omega, t.alpha, t.delta, gg)),
+        omega,
+        number(own),
+        number(total - own),
+        number(float(spectral.period_elongation(omega, t.alpha, t.delta, gg))),
+        float(np.min(roots.real)),
+    )
+
+
+def single(scene: Scene) -> Scene:
+    """Return the scene, or refuse it where it still has a sweep.
+
+    Raises
+    ------
+    InputError
+        One value must be picked for a swept field.
+    """
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    return scene
+
+
+def dda_modes(scene: Scene) -> tuple[Mode, ...]:
+    """Return the modes of the DDA block that the load reaches, the first axial one first."""
+    return get_solver("dda").modes(single(scene))
+
+
+def damping(scene: Scene, references: bool = False) -> Damping:
+    """Return what damping a scene really runs, per mode.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep.
+    references
+        Also return the first axial mode of the finite elements and, where it applies, of the exact bar.
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep.
+
+    Examples
+    --------
+    >>> from validation import damping, load_scene
+    >>> found = damping(load_scene("figures-3-4").with_values({"time.step": 0.002}))
+    >>> round(found.modes[0].damping, 4)
+    0.1602
+    """
+    modes = dda_modes(scene)
+    named = [mode_damping(scene, name, m.frequency) for name, m in zip(mode_names(modes), modes, strict=True)]
+    gg = scene.time.discount
+    rate = -math.log(gg) / scene.time.step + 0.0 if gg > 0 else None
+    others = {name: first_mode(scene, name) for name in ("fem", "bar")} if references else {}
+    found = {name: values for name, values in others.items() if values}
+    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named))
+
+
+def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
+    """Return frequency and damping of a reference's first axial mode; empty where it does not apply."""
+    chosen = get_solver(solver)
+    if chosen.applicable(scene):
+        return {}
+    mode = chosen.modes(scene)[0]
+    xi = operator_damping(mode.eigenvalues)
+    return {"frequency": mode.frequency, "damping": xi if isinstance(xi, float) else None}
+
+
+# ---- sentences ----------------------------------------------------------------------------------------------------
+
+
+def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
+    """Return one plain sentence on what a scene runs."""
+    first, rest = modes[0], [mode for mode in modes if mode.name == CONTACT]
+    text = f"At dt = {scene.time.step:g} s the first axial mode ({first.frequency:.4g} rad/s) {runs(first)}"
+    return f"{text}{''.join(f'; the contact mode {runs(mode)}' for mode in rest)}."
+
+
+def runs(mode: ModeDamping) -> str:
+    """Say in words how a mode is damped."""
+    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of itself per step"
+    if mode.spectral_radius > 1 + 1e-12:
+        return f"grows by {mode.spectral_radius:.4g} per step"
+    if mode.flips:
+        return f"flips sign every step and {keeps} (w dt = {mode.omega_dt:.3g})"
+    if mode.damping is None:
+        return f"has no damping ratio (a root is not positive) and {keeps}"
+    if mode.damping < 5e-16:
+        return "is not damped"
+    over = "is overdamped at" if mode.damping >= 1 else "is damped at"
+    return f"{over} {percent(mode.damping)} of critical, {parts(mode)}"
+
+
+def percent(value: float) -> str:
+    """Return a fraction in per cent with three digits."""
+    return f"{100 * value:.3g} %"
+
+
+def parts(mode: ModeDamping) -> str:
+    """Say which part of the damping is algorithmic and which is kinetic."""
+    if mode.algorithmic is None or mode.kinetic is None or mode.damping is None:
+        return "kinetic and algorithmic"
+    small = 1e-9 * mode.damping
+    if abs(mode.kinetic) <= small:
+        return "all of it algorithmic"
+    if abs(mode.algorithmic) <= small:
+        return "all of it kinetic"
+    return f"{percent(mode.algorithmic)} algorithmic and {percent(mode.kinetic)} kinetic"
+
+
+# ---- the scheme's closed forms over arrays ------------------------------------------------------------------------
+
+
+def ratios(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
+    """Return xi over Omega = w dt, for parameters that may vary with it; NaN where a root is not positive."""
+    return spectral.damping_ratio(omega, alpha, delta, gg)
+
+
+def radii(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
+    """Return max |lambda| over Omega = w dt, for parameters that may vary with it."""
+    return spectral.spectral_radius(omega, alpha, delta, gg)

@@ -1,0 +1,86 @@
+"""The command line ``dda-validate``: the application, its options and exit statuses."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from validation.scenes.scene import Scene
+
+PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
+SLOW = 2.0  # seconds after which progress is shown
+app: typer.Typer = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    help="Cross-validation of Discontinuous Deformation Analysis (DDA) against finite elements and exact solutions "
+    "on the two-block model.\n\nExample: [bold]dda-validate run core && dda-validate report[/bold]",
+)
+ResultsOption = Annotated[Path, typer.Option("--results", help="Results directory.", metavar="DIR")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Set a value of the scene, as in --set time.step=0.001; may be repeated.",
+        metavar="KEY=VALUE",
+    ),
+]
+FullOption = Annotated[
+    bool,
+    typer.Option(
+        "--full",
+        help="Switch the numerical savings off: no dropped unknowns, no single column, no half block, no small space, "
+        "no blocked steps.",
+    ),
+]
+RESULTS: Path = Path("reports/results")
+
+
+def one_case(source: str, assignments: list[str] | None) -> Scene:
+    """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
+    from validation.errors import InputError
+    from validation.scenes.scene import load_scene, parse_assignment
+    from validation.studies.catalogue import check_words
+
+    scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
+    check_words(scene, source)
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{source}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")
+    return scene
+
+
+@contextmanager
+def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that shows a progress bar once the work has taken two seconds."""
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    start = time.monotonic()
+    bar = Progress(
+        TextColumn("{task.description}"),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[label]}"),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    task = bar.add_task(title, label="")
+
+    def show(done: int, total: int, label: str) -> None:
+        if time.monotonic() - start > SLOW and not bar.live.is_started:
+            bar.start()
+        bar.update(task, completed=done, total=total, label=label)
+
+    try:
+        yield show
+    finally:
+        if bar.live.is_started:
+            bar.stop()

@@ -1,0 +1,77 @@
+"""The command ``compare``: a history of another program, judged."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.cli.app import SetOption, app, one_case
+
+if TYPE_CHECKING:
+    from validation.compare.diagnosis import Answer
+
+SHOWN = 6  # lines of the ranking
+
+
+@app.command()
+def compare(
+    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file: what the program was to compute.")],
+    history: Annotated[
+        Path, typer.Argument(help="The history: a table under a header, or a measured-point file of ntdda (.m).")
+    ],
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Their column names, or numbers, for ours.", metavar="time=T,displacement=UY"),
+    ] = None,
+    scale: Annotated[
+        str | None,
+        typer.Option(help="Factors that make their numbers SI, upwards positive.", metavar="displacement=-1e-3"),
+    ] = None,
+    report: Annotated[Path | None, typer.Option(help="Write a page.", metavar="FILE.pdf")] = None,
+    assignments: SetOption = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
+) -> None:
+    """Judge another program's history: same model and scheme, or where and how it departs, and why.
+
+    The scene states what the program was to compute; the history's own time step is used.
+
+    Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
+    --scale displacement=-1e-3[/bold]
+    """
+    from validation.compare.diagnosis import compare as judge
+    from validation.compare.reading import parse_columns, parse_scale, read
+
+    case = one_case(scene, assignments)
+    answer = judge(case, read(history, parse_columns(columns), parse_scale(scale)))
+    if report is not None:
+        from validation.report.chapters.compare import write_page
+
+        write_page(case, history.name, answer, report)
+    if as_json:
+        typer.echo(json.dumps(answer.as_dict(), indent=1, allow_nan=False))
+    else:
+        _print(answer)
+
+
+def _print(answer: Answer) -> None:
+    """Print the sentence first, then what it rests on."""
+    from validation.compare.causes import CAUSES
+    from validation.compare.sentences import told_lines
+
+    typer.echo(answer.sentence)
+    if answer.causes:
+        typer.echo("\ncauses")
+        for name in answer.causes:
+            typer.echo(f"  {name:<18} {CAUSES[name].words}")
+    if answer.opened:
+        typer.echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
+    typer.echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
+    for row in answer.ranking[:SHOWN]:
+        soft = "-" if row["compliance"] is None else f"{100 * row['compliance']:.3g}"
+        name = row["name"] or ("exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}")
+        typer.echo(f"  {row['model']:<10} {name:<24} {100 * row['misfit']:>10.3g} {soft:>14}")
+    for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
+        typer.echo(line)

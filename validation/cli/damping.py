@@ -1,0 +1,152 @@
+"""The commands ``damping`` and ``advise``: what damping a scene runs, and what gives the damping that is wanted."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from validation.cli.app import RESULTS, ResultsOption, SetOption, app, one_case
+
+if TYPE_CHECKING:
+    from validation.advice.advice import Advice, Solution
+    from validation.advice.spectra import Damping
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
+SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.")]
+
+
+@app.command()
+def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOption = False) -> None:
+    """Tell what damping a scene really runs, per mode: total, algorithmic and kinetic.
+
+    Example: [bold]dda-validate damping figures-3-4 --set time.step=0.002[/bold]
+    """
+    from validation.advice.spectra import damping as analyse
+
+    found = analyse(one_case(scene, assignments), references=True)
+    if as_json:
+        typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+    else:
+        _print_damping(found)
+
+
+@app.command()
+def advise(
+    scene: SceneArgument,
+    damping: Annotated[
+        float, typer.Option("--damping", help="Wanted damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0)
+    ],
+    solve_for: Annotated[
+        str, typer.Option("--solve-for", help="dt, gg or scheme (delta, alpha = (1/2 + delta)^2 / 4).", metavar="NAME")
+    ] = "dt",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find the time step, discount or scheme that gives a wanted damping ratio.
+
+    Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
+    """
+    from validation.advice.advice import advise as solve
+    from validation.advice.advice import expected_errors
+
+    case = one_case(scene, assignments)
+    found = solve(case, damping, solve_for)
+    errors = [expected_errors(case, solution) for solution in found.solutions]
+    if as_json:
+        data = found.as_dict()
+        for solution, error in zip(data["solutions"], errors, strict=True):
+            solution["errors"] = error
+        typer.echo(json.dumps(data, indent=1, allow_nan=False))
+    else:
+        _print_advice(found, errors)
+
+
+@app.command()
+def claims(
+    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
+    results: ResultsOption = RESULTS,
+) -> None:
+    """List the paper's statements and slips with their verdicts, from the results of the study `paper`.
+
+    Example: [bold]dda-validate run paper && dda-validate claims[/bold]
+    """
+    from validation.errors import InputError
+    from validation.runs.files import write_atomically
+    from validation.runs.results import Results
+    from validation.studies.paper.claims import Finding, page
+    from validation.studies.paper.study import CLAIMS
+
+    rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
+    if not rows:
+        raise InputError(f"{results}: no results of the study paper here; run `dda-validate run paper` first")
+    measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
+    for claim in CLAIMS:
+        verdict = measured.get(claim.id)
+        words = "not run" if verdict is None else Finding(int(verdict)).words
+        typer.echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
+    if out is not None:
+        text = page(CLAIMS, rows)
+        write_atomically(out, lambda stream: stream.write(text.encode()))
+
+
+def _print_damping(found: Damping) -> None:
+    rate = "" if found.gg_rate is None else f", c = {found.gg_rate:.4g} 1/s"
+    typer.echo(f"{found.sentence}\n\ngg = {found.gg:.6g} per step{rate}")
+    heads = ("mode", "w [rad/s]", "w dt", "xi [%]", "algorithmic", "kinetic", "|lambda|", "w/w' - 1")
+    rows = [
+        (
+            mode.name,
+            f"{mode.frequency:.6g}",
+            f"{mode.omega_dt:.4g}",
+            *(_percent(v) for v in (mode.damping, mode.algorithmic, mode.kinetic)),
+            f"{mode.spectral_radius:.6g}",
+            "-" if mode.period_elongation is None else f"{mode.period_elongation:.3g}",
+        )
+        for mode in found.modes
+    ]
+    rows += [
+        (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), "", "", "", "")
+        for name, values in found.references.items()
+    ]
+    _print_table([heads, *rows])
+
+
+def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
+    typer.echo(found.sentence)
+    for solution, error in zip(found.solutions, errors, strict=True):
+        typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
+        _print_table(_facts(solution, error))
+
+
+def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
+    from validation.advice.spectra import runs
+
+    steps = "never" if solution.settling_steps is None else f"{solution.settling_steps} steps"
+    seconds = "" if solution.settling_seconds is None else f" = {solution.settling_seconds:.4g} s"
+    rate = "" if solution.gg_rate is None else f", c = {solution.gg_rate:.4g} 1/s"
+    facts = [
+        ("damping ratio", f"{100 * solution.damping:.6g} %"),
+        ("discount", f"gg = {solution.gg:.6g} per step{rate}"),
+        ("displacement settles", f"{steps}{seconds} (from the {solution.settling_from})"),
+    ]
+    if solution.contact is not None:
+        facts.append(("contact mode", runs(solution.contact)))
+    for name in ("fem", "continuum"):
+        values = error.get(name, {})
+        said = ", ".join(f"{q} {100 * v:.3g} %" for q, v in values.items() if isinstance(v, float))
+        window = f" over {error['window']:.4g} s (relative L2)" if said else ""
+        facts.append((f"differs from {name} by", (said or "; ".join(map(str, values.values()))) + window))
+    return [(f"  {key}", value) for key, value in facts]
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None else f"{100 * value + 0.0:.4g}"
+
+
+def _print_table(rows: list[tuple[str, ...]]) -> None:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    for row in rows:
+        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

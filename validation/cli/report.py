@@ -1,0 +1,44 @@
+"""Commands that render: ``report`` and ``figures``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    pass
+from validation.cli.app import RESULTS, ResultsOption, app
+
+
+@app.command()
+def report(
+    out: Annotated[Path, typer.Option(help="The PDF.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
+
+    Example: [bold]dda-validate report --out report.pdf[/bold]
+    """
+    from validation.report.book import build
+    from validation.runs.results import Results
+
+    typer.echo(f"wrote {build(Results(results), out)}")
+
+
+@app.command()
+def figures(
+    study: Annotated[str, typer.Argument(help="A study or scene whose results are there.")],
+    out: Annotated[Path, typer.Option(help="Directory for the SVG and PNG files.", metavar="DIR")] = Path("figures"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write a study's figures as SVG and PNG.
+
+    Example: [bold]dda-validate figures core --out figures[/bold]
+    """
+    from validation.report.book import figures as write_figures
+    from validation.runs.results import Results
+
+    for path in write_figures(study, Results(results), out):
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,124 @@
+"""What `run` prints: verdicts, alarms, and cases that did not complete."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from validation.advice.alarms import DISCOUNT
+from validation.gates.gate import Verdict
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+
+if TYPE_CHECKING:
+    from validation.gates.changes import Change
+
+
+def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
+    """Print one table: scene, pair, metric, value, band, verdict, seconds."""
+    rows = results.rows()
+    cases = [case for study in studies for case in results.manifest(study)["cases"]]
+    seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("scene", "pair", "metric"):
+        table.add_column(name, overflow="fold")
+    for name in ("value", "band"):
+        table.add_column(name, justify="right")
+    table.add_column("verdict")
+    table.add_column("seconds", justify="right")
+    colours = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
+    for v in verdicts:
+        g, word = v.gate, str(v.status)
+        spent = seconds.get((g.scene, g.pair[0]))
+        table.add_row(
+            g.scene.replace("[", r"\["),
+            " | ".join(g.pair),
+            g.id.rpartition(":")[2],
+            _number(v.value),
+            f"{g.low:.4g} .. {g.high:.4g}",
+            f"[{colours[word]}]{word}[/]",
+            "" if spent is None else f"{spent:.2f}",
+        )
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    console.print(table)
+    for v in verdicts:
+        if v.status != "PASS":
+            console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
+    words = [str(v.status) for v in verdicts]
+    console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+
+
+def _number(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
+
+
+def print_failures(results: Results, studies: list[str]) -> bool:
+    """Name the cases that did not complete; return whether one was refused."""
+    rows, refused = results.rows(), False
+    for study in studies:
+        for case in results.manifest(study)["cases"]:
+            row = rows[case["key"]]
+            refused = refused or row.outcome is Outcome.REFUSED
+            if row.outcome is not Outcome.COMPLETED:
+                typer.echo(
+                    f"{case['scene']} {row.solver}: {row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
+                )
+    return refused
+
+
+def print_alarms(results: Results, studies: list[str]) -> None:
+    """Print how many cases each kind of alarm was raised on, and in full what concerns a whole scene."""
+    cases: dict[str, set[str]] = {}
+    for alarm in [alarm for study in studies for alarm in results.manifest(study).get("alarms", [])]:
+        if alarm["kind"] == DISCOUNT:
+            typer.echo(f"warning: {alarm['scene']}: {alarm['sentence']}", err=True)
+        else:
+            cases.setdefault(alarm["kind"], set()).add(alarm["scene"])
+    if cases:
+        said = ", ".join(f"{kind} in {len(some)} case{'s' * (len(some) > 1)}" for kind, some in cases.items())
+        typer.echo(f"alarms: {said} (see the report)")
+
+
+def after_run(records: list[dict[str, object]], summary: Path | None, baseline: Path | None) -> bool | None:
+    """Write the summary and compare with the baseline; return whether something got worse, None without a baseline."""
+    from validation.gates.changes import against, markdown
+    from validation.runs.files import write_atomically
+
+    since = None if baseline is None else against(baseline, records)
+    if summary is not None:
+        text = markdown(records, since)
+        write_atomically(summary, lambda stream: stream.write(text.encode()))
+    if since is None:
+        return None
+    print_changes(since)
+    return any(change.worse for change in since)
+
+
+def print_changes(found: list[Change]) -> None:
+    """Print one table: change, study, gate, verdict and value before and after."""
+    from rich import box
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    from validation.gates.changes import shown
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("change", "study", "gate", "before", "after"):
+        table.add_column(name, overflow="fold")
+    colours = {"worse": "bold red", "better": "green"}
+    for c in found:
+        values = (f"{word} {shown(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
+        table.add_row(f"[{colours.get(c.kind, 'default')}]{c.kind}[/]", c.study, escape(c.id), *values)
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    if found:
+        console.print(table)
+    kinds = [c.kind for c in found]
+    words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
+    console.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)

@@ -1,0 +1,44 @@
+"""Commands for other people's CI and codes: differences of verdicts, the reference pack."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.cli.app import GATE_FAILED, PASSED, app
+from validation.cli.tables import print_changes
+
+if TYPE_CHECKING:
+    pass
+
+
+@app.command()
+def diff(
+    before: Annotated[Path, typer.Argument(help="verdicts.json or a results directory.", metavar="A")],
+    after: Annotated[Path, typer.Argument(help="verdicts.json or a results directory.", metavar="B")],
+) -> None:
+    """Compare the verdicts of two runs, one row for each gate that differs; exit 1 if one got worse.
+
+    Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
+    """
+    from validation.gates.changes import changes, read_verdicts
+
+    found = changes(read_verdicts(before), read_verdicts(after))
+    print_changes(found)
+    raise typer.Exit(GATE_FAILED if any(change.worse for change in found) else PASSED)
+
+
+@app.command("export-pack")
+def export_pack(
+    directory: Annotated[Path, typer.Argument(help="Directory to make.", metavar="DIR")],
+) -> None:
+    """Write a reference pack: scenes, exact histories as CSV, bands and a README, for codes in any language.
+
+    Example: [bold]dda-validate export-pack pack[/bold]
+    """
+    from validation.studies.pack import write_pack
+
+    written = write_pack(directory)
+    typer.echo(f"wrote {directory}: {written.scenes} scenes, {written.histories} histories, {written.bands} bands")

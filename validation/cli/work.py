@@ -1,0 +1,104 @@
+"""The commands ``rows``, ``plot`` and ``record``: any column of a study's rows, and the record of errors and work."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
+
+StudyArgument = Annotated[str, typer.Argument(help="A study or scene whose results are there.")]
+
+
+def _table(study: str, results: Path) -> list[dict[str, Any]]:
+    from validation.errors import InputError
+    from validation.runs.results import Results
+    from validation.studies.work.points import table
+
+    kept = Results(results)
+    if study not in kept.studies():
+        raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
+    return table(kept, kept.manifest(study))
+
+
+@app.command()
+def rows(
+    study: StudyArgument,
+    out: Annotated[Path, typer.Option("--csv", help="The table.", metavar="FILE.csv")] = Path("rows.csv"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
+
+    Example: [bold]dda-validate rows work-precision --csv rows.csv[/bold]
+    """
+    from validation.runs.files import write_atomically
+
+    lines = _table(study, results)
+    names = list(dict.fromkeys(name for line in lines for name in line))
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(lines)
+    write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
+    typer.echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
+
+
+@app.command()
+def plot(
+    study: StudyArgument,
+    x: Annotated[str, typer.Option(help="Column of the table for the x axis.", metavar="COLUMN")] = "seconds.total",
+    y: Annotated[str, typer.Option(help="Column for the y axis.", metavar="COLUMN")] = "continuum:displacement.l2",
+    out: Annotated[Path, typer.Option(help="The figure.", metavar="FILE.svg")] = Path("plot.svg"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Draw one column of a study's table against another, both logarithmic, a line for each solver.
+
+    Example: [bold]dda-validate plot work-precision --x work.solves --y bar:pressure.l2 --out plot.svg[/bold]
+    """
+    from validation.errors import InputError
+    from validation.report.figures.cost import columns_figure
+    from validation.report.figures.histories import save
+
+    lines = _table(study, results)
+    series: dict[str, list[tuple[float, float]]] = {}
+    for line in lines:
+        pair = line.get(x), line.get(y)
+        if all(isinstance(value, int | float) and value > 0 for value in pair):
+            name = f"{line['scene'].partition('[')[0]} {line['solver']}"
+            series.setdefault(name, []).append((float(pair[0]), float(pair[1])))  # type: ignore[arg-type]
+    if not series:
+        known = ", ".join(dict.fromkeys(name for line in lines for name in line))
+        raise InputError(f"--x, --y: must be columns with positive numbers in common rows, among {known}; got {x}, {y}")
+    typer.echo(f"wrote {save(columns_figure((x, y), series), out)}")
+
+
+@app.command()
+def record(
+    update: Annotated[bool, typer.Option("--update-record", help="Write the record from this run.")] = False,
+    reason: Annotated[str, typer.Option(help="Why the record changes; needed to write it.", metavar="TEXT")] = "",
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Run the study work-precision and compare its errors and work counts with the committed record.
+
+    Example: [bold]dda-validate record --update-record --reason "fewer Krylov vectors"[/bold]
+    """
+    from validation.engine.run import finish
+    from validation.errors import InputError
+    from validation.runs.results import Results
+    from validation.studies.work import record as work_record
+    from validation.studies.work.study import WORK_PRECISION, study_cases
+
+    if update and not reason.strip():
+        raise InputError('--reason: must say why the record changes, got nothing; add --reason "..."')
+    finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
+    found = work_record.ratios(work_record.measured(finished, study_cases()), work_record.load().get("cases", {}))
+    typer.echo(f"worst ratio to the record: errors {found['errors']:.3f}, work {found['work']:.3f}")
+    if update:
+        work_record.update(finished, study_cases(), reason)
+        typer.echo(f"wrote {work_record.PATH}")
+    elif any(value > 1 + work_record.SLACK[part] for part, value in found.items()):
+        raise typer.Exit(GATE_FAILED)

@@ -1,0 +1,114 @@
+"""A history beside any solver of the suite, scheme by scheme, each with one free compliance of the springs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.compare.fit import NAMED
+from validation.errors import InputError
+from validation.runs.history import PRESSURE, Array
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
+
+SCHEMES_OF = {"continuum": 1, "fem": 2}  # how many are tried: the continuum has none, finite elements take long
+NUDGE = 1e-4  # of ln stiffness, for the derivative
+ROUNDS = 4  # of Gauss-Newton: a compliance of some per cent needs two
+MOST = math.log(1e3)  # no spring is softer or stiffer than that
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A solver under a scheme, at its best compliance."""
+
+    model: str  # the solver's name
+    alpha: float | None  # None for a solver without a scheme
+    delta: float | None
+    gg: float | None
+    misfit: float  # relative L2 [-]
+    softness: float  # ln of the scene's spring stiffness over that in effect [-]
+    displacement: Array  # of every step [m]
+
+
+def rivals(
+    scene: Scene, solvers: Sequence[str], goal: Goal, schemes: Iterable[tuple[float, float]] = NAMED.values()
+) -> list[Rival]:
+    """Return the solvers that apply to the scene, under the scene's own and other schemes.
+
+    Parameters
+    ----------
+    scene
+        The scene at the history's own time step and number of steps.
+    solvers
+        Names of solvers; the continuum has no scheme.
+    goal
+        The history.
+    schemes
+        Pairs (alpha, delta), the likeliest first; by default the named ones.
+    """
+    t, found = scene.time, []
+    every = dict.fromkeys([(t.alpha, t.delta), *schemes])
+    for name in solvers:
+        pairs = list(every)[: SCHEMES_OF.get(name, len(every))]
+        for alpha, delta in pairs:
+            rival = _fitted(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
+            if rival is not None:
+                found.append(rival)
+    return sorted(found, key=lambda r: r.misfit)
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """The recorded rows of a history."""
+
+    rows: np.ndarray  # indices of the steps
+    displacement: Array  # [m]
+    pressure: Array | None  # [Pa]
+
+    def scaled(self, displacement: Array, pressure: Array | None) -> Array:
+        """Return columns of the recorded rows over the norms of the history's own."""
+        first = displacement / (np.linalg.norm(self.displacement) or 1.0)
+        if self.pressure is None or pressure is None:
+            return np.asarray(first)
+        second = pressure / (np.linalg.norm(self.pressure) or 1.0)
+        return np.concatenate([first, second]) / math.sqrt(2)
+
+
+def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
+    """Return a solver at its best compliance, None where it does not apply."""
+    if get_solver(name).applicable(scene) is not None:
+        return None
+    wanted, softness = goal.scaled(goal.displacement, goal.pressure), 0.0
+    try:
+        best, shown = _response(scene, name, goal, softness)
+        for _ in range(ROUNDS):
+            slope = (_response(scene, name, goal, softness + NUDGE)[0] - best) / NUDGE
+            change = float(slope @ (wanted - best)) / (float(slope @ slope) or 1.0)
+            trial = min(max(softness + change, -MOST), MOST)
+            answer, curve = _response(scene, name, goal, trial)
+            if not np.linalg.norm(wanted - answer) < np.linalg.norm(wanted - best):
+                break
+            softness, best, shown = trial, answer, curve
+            if abs(change) < NUDGE**2:
+                break
+    except InputError:  # the step lies beyond the limit of this scheme
+        return None
+    t, misfit = scene.time, float(np.linalg.norm(wanted - best))
+    if name == "continuum":
+        return Rival(name, None, None, None, misfit, softness, shown)
+    return Rival(name, t.alpha, t.delta, t.discount, misfit, softness, shown)
+
+
+def _response(scene: Scene, name: str, goal: Goal, softness: float) -> tuple[Array, Array]:
+    """Return the scaled rows and the whole displacement of a solver with softer springs."""
+    c = scene.contact
+    changes: dict[str, object] = {
+        "contact.stiffness": c.stiffness * math.exp(-softness),
+        "contact.shear_stiffness": c.shear,
+    }
+    done = get_solver(name).solve(scene.with_values(changes))
+    pressure = None if goal.pressure is None or done.history is None else done.history.columns[PRESSURE][goal.rows]
+    return goal.scaled(done.displacement[goal.rows], pressure), done.displacement

@@ -1,0 +1,69 @@
+"""Pending cases on worker processes, in this process or on a cluster."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+
+from validation.engine.case import Case
+from validation.engine.measure import execute
+from validation.engine.study import Study
+from validation.runs.history import History
+from validation.runs.results import Row
+from validation.runs.run import Outcome
+
+
+def _executed(
+    pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
+) -> Iterator[tuple[Row, History | None]]:
+    """Run the pending cases, in this process where one worker or one case is all there is."""
+    if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
+        for key, case in pending.items():
+            yield execute(case, key, study.name)
+        return
+    lost = []
+    with _pool(executor, min(jobs, len(pending))) as pool:
+        futures = {pool.submit(execute, case, key, study.name): key for key, case in pending.items()}
+        for future in as_completed(futures):
+            if isinstance(future.exception(), BrokenExecutor):
+                lost.append(futures[future])
+            else:
+                yield future.result()
+    for key in lost:
+        yield _alone(pending[key], key, study)
+
+
+def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
+    """Run a case in a process of its own: one that kills its worker, for want of memory, is a row like any other."""
+    with _pool(None, 1) as pool:
+        try:
+            return pool.submit(execute, case, key, study.name).result()
+        except BrokenExecutor:
+            note = "the process died, for want of memory or by a signal"
+            return Row(key, study.name, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
+
+
+@contextmanager
+def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
+    """Yield the given executor, or one of processes that goes down at once on an interruption."""
+    if executor is not None:
+        yield executor
+        return
+    pool, wait = ProcessPoolExecutor(jobs, initializer=_ignore_interrupt), True
+    try:
+        yield pool
+    except KeyboardInterrupt:
+        # A worker that ends while it hands over a result leaves the pool's thread waiting for the rest of it.
+        wait = False
+        for process in (pool._processes or {}).values():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=wait, cancel_futures=True)
+
+
+def _ignore_interrupt() -> None:
+    """Leave Ctrl-C to the parent, which ends the workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

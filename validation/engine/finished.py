@@ -1,0 +1,40 @@
+"""The finished cases of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from validation.engine.study import Derived
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.runs.run import Outcome
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""
+
+    rows: dict[tuple[str, str], Row]
+    results: Results
+    derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
+
+    def row(self, scene: str, name: str) -> Row | None:
+        """Return the row of a case, or compute the derived row of that name."""
+        recipe = self.derived.get((scene, name))
+        if recipe is None or (scene, name) in self.rows:
+            return self.rows.get((scene, name))
+        for need in recipe.needs:
+            row = self.rows.get(need)
+            if row is None or row.outcome is not Outcome.COMPLETED:
+                outcome = Outcome.NOT_RUN if row is None else row.outcome
+                return Row("", "", scene, name, outcome, {}, notes=(f"needs {need[1]} on {need[0]}",))
+        try:
+            return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
+        except (ArithmeticError, LookupError, ValueError) as error:  # numbers that a faulty run leaves without meaning
+            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(f"{type(error).__name__}: {error}",))
+
+    def history(self, scene: str, solver: str) -> History | None:
+        """Return the history of a case, or None."""
+        row = self.rows.get((scene, solver))
+        return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)

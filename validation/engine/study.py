@@ -1,0 +1,122 @@
+"""Studies: scenes x variations x solvers, with the gates that judge them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from validation.engine.case import MEASURES, Case
+from validation.gates.gate import Gate
+from validation.runs.results import Value
+from validation.scenes.scene import Scene, load_scene
+
+if TYPE_CHECKING:
+    from validation.engine.finished import Finished
+
+REPEATS = 3  # of each case of a study of timings
+
+
+def _no_gates() -> tuple[Gate, ...]:
+    return ()
+
+
+def _nothing_derived() -> tuple[Derived, ...]:
+    return ()
+
+
+def _no_data() -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A row that is computed from finished cases instead of by a solver; gates address it as any other.
+
+    Attributes
+    ----------
+    scene, name
+        Where gates find it: ``Gate(scene, (name,), metric, ...)``.
+    needs
+        The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
+    compute
+        Function of the finished cases that returns metrics.
+    """
+
+    scene: str
+    name: str
+    needs: tuple[tuple[str, str], ...]
+    compute: Callable[[Finished], Mapping[str, Value]]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A declaration that the engine runs.
+
+    Attributes
+    ----------
+    name, title, purpose
+        Name on the command line, heading and first sentence of its chapter.
+    scenes
+        Names of built-in scenes, or scenes.
+    solvers
+        Solvers for every scene; by default those of the scene's `[run]` table.
+    variations
+        Dotted key to values, in product with the scenes' own sweeps.
+    extra
+        Further (case name, solver) pairs, such as a run without savings.
+    gates
+        Function that returns the gates, so that listing studies computes nothing.
+    timed
+        Whether the study is one of timings, which always run afresh, alone and repeatedly.
+    derived
+        Function that returns the rows that are computed from finished cases.
+    data
+        Function that returns plain data which the chapter draws beside the rows, such as closed forms.
+    measures
+        What is measured on each run, see `validation.cases`.
+    pairs
+        The comparisons that are kept; every solver with every later one where None.
+    long
+        Whether the gates are left to `dda-validate run`; the tests judge the others.
+    """
+
+    name: str
+    title: str
+    purpose: str
+    scenes: Sequence[str | Scene]
+    solvers: tuple[str, ...] | None = None
+    variations: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    extra: tuple[tuple[str, str], ...] = ()
+    gates: Callable[[], tuple[Gate, ...]] = _no_gates
+    timed: bool = False
+    derived: Callable[[], tuple[Derived, ...]] = _nothing_derived
+    data: Callable[[], Mapping[str, Any]] = _no_data
+    measures: tuple[str, ...] = MEASURES
+    pairs: tuple[tuple[str, str], ...] | None = None
+    long: bool = False
+
+    def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
+        """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
+        scenes = [case for scene in self.scenes for case in self._varied(scene).expand()]
+        named = {scene.name: scene for scene in scenes}
+        pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
+        pairs += [(named[name], solver) for name, solver in self.extra if name in named]
+        repeats = REPEATS if self.timed else 0
+        return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
+
+    def recipes(self) -> dict[tuple[str, str], Derived]:
+        """Return the derived rows by the names that gates address them with."""
+        return {(row.scene, row.name): row for row in self.derived()}
+
+    def needs(self, gate: Gate) -> list[tuple[str, str]]:
+        """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
+        recipes = self.recipes()
+        return [need for name in gate.cases for need in (recipes[name].needs if name in recipes else (name,))]
+
+    def _varied(self, scene: str | Scene) -> Scene:
+        loaded = load_scene(scene) if isinstance(scene, str) else scene
+        if not self.variations:
+            return loaded
+        sweep = dict(loaded.sweep) | {key: list(values) for key, values in self.variations.items()}
+        return loaded.model_copy(update={"sweep": sweep})

@@ -1,0 +1,212 @@
+"""Closed forms that gates are derived from: statics, first frequencies, damping; written apart from the solvers.
+
+They hold for the paper's block, an upright rectangle on its lower edge under vertical pressure, and are code of
+their own, so that a slip in a solver cannot hide in its gate.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import cache
+
+import numpy as np
+
+from validation.runs.history import Array
+from validation.scenes.scene import Scene, load_scene
+
+EPS = 2.0**-52
+
+
+def moduli(scene: Scene) -> tuple[float, float]:
+    """Return (E', mu') that turn the plane-stress formulas into the scene's hypothesis.
+
+    Plane strain: E' = E / (1 - mu^2), mu' = mu / (1 - mu).
+    """
+    E, mu = scene.block.young, scene.block.poisson
+    return (E, mu) if scene.block.hypothesis == "plane stress" else (E / (1 - mu * mu), mu / (1 - mu))
+
+
+def size(scene: Scene) -> tuple[float, float]:
+    """Width and height of the rectangle [m]."""
+    (x0, y0), (x1, _), (_, y2), _ = scene.block.outline
+    return x1 - x0, y2 - y0
+
+
+def static_displacement(scene: Scene) -> float:
+    """Static v of the centroid on corner springs [m].
+
+    Square, p = ps, plane stress: -(a q / 2 p) [2 E^2 + 3 E p + (1 - mu^2) p^2] / [E (2 E + p)]; here from the three
+    equations of equilibrium of (v, ex, ey) on a w x h rectangle, with the lateral strain eliminated.
+    """
+    E, mu = moduli(scene)
+    w, h = size(scene)
+    q, p, ps = scene.load.pressure, scene.contact.stiffness, scene.contact.shear
+    plate = E / (1 - mu * mu)
+    lateral = plate + ps * w / (2 * h)  # stress per ex, springs included
+    strain = -q / (plate * (1 - mu * mu * plate / lateral))
+    return -q * w / (2 * p) + h / 2 * strain
+
+
+def dda_frequency(scene: Scene) -> float:
+    """First axial frequency of the DDA block for mu = 0 [rad/s].
+
+    Smaller root of [2p - w^2 m] [E h w + ... ] - (p h)^2: M = diag(m, m h^2/12), K = [[2p, -p h], [-p h, E w h +
+    p h^2/2]], the two-unknown form of equations (17) and (27).
+    """
+    E, _ = moduli(scene)
+    w, h = size(scene)
+    p, m = scene.contact.stiffness, scene.block.density * w * h
+    a, c = 2 * p / m, 12 * (E * w * h + p * h * h / 2) / (m * h * h)
+    determinant = 2 * p / m * 12 * E * w * h / (m * h * h)
+    half = (a + c) / 2
+    return math.sqrt(determinant / (half + math.sqrt(half * half - determinant)))
+
+
+def bar_frequency(scene: Scene) -> float:
+    """First frequency of the bar on its base spring [rad/s]: w = (b / h) sqrt(E/rho), b tan b = 2 p h / (E w)."""
+    E, _ = moduli(scene)
+    w, h = size(scene)
+    ratio = 2 * scene.contact.stiffness * h / (E * w)
+    low, high = 0.0, math.pi / 2
+    for _ in range(200):
+        b = (low + high) / 2
+        low, high = (b, high) if b * math.sin(b) < ratio * math.cos(b) else (low, b)
+    return low / h * math.sqrt(E / scene.block.density)
+
+
+def roots(scene: Scene, frequency: float) -> tuple[complex, complex]:
+    """Eigenvalues of one Newmark step of a mode: lambda^2 - trace lambda + det = 0, (10) to (12) with gg."""
+    t = scene.time
+    omega2 = (frequency * t.step) ** 2
+    beta = 1 + t.alpha * omega2
+    trace = 1 - omega2 / (2 * beta) + t.discount * (1 - t.delta * omega2 / beta)
+    det = t.discount * (1 + (0.5 - t.delta) * omega2 / beta)
+    root = cmath.sqrt(trace * trace - 4 * det)
+    return (trace + root) / 2, (trace - root) / 2
+
+
+def damping_ratio(scene: Scene, frequency: float) -> float:
+    """Damping ratio xi = -Re(ln lambda) / |ln lambda| of a mode that oscillates."""
+    logarithm = cmath.log(roots(scene, frequency)[0])
+    return -logarithm.real / abs(logarithm)
+
+
+def contact_frequency(scene: Scene) -> float:
+    """Second (contact) frequency of the DDA block for mu = 0 [rad/s], from det(K) / det(M) = w1^2 w2^2."""
+    E, _ = moduli(scene)
+    w, h = size(scene)
+    m = scene.block.density * w * h
+    return math.sqrt(2 * scene.contact.stiffness / m) * math.sqrt(12 * E * w / (m * h)) / dda_frequency(scene)
+
+
+def critical_omega(scene: Scene) -> float:
+    """Limit of w dt beyond which one root passes -1.
+
+    Omega^2 = 2 (1 + gg) / [1/2 + gg (2 delta - 1/2) - 2 alpha (1 + gg)], infinite where the denominator is
+    not positive; for delta >= 1/2 no complex pair leaves the unit circle.
+    """
+    t = scene.time
+    below = 0.5 + t.discount * (2 * t.delta - 0.5) - 2 * t.alpha * (1 + t.discount)
+    return math.sqrt(2 * (1 + t.discount) / below) if below > EPS else math.inf
+
+
+def spectral_radius(scene: Scene, frequency: float) -> float:
+    """Largest |lambda| of one step of a mode."""
+    return max(map(abs, roots(scene, frequency)))
+
+
+def remaining_motion(scene: Scene) -> float:
+    """Largest |lambda|^steps over the two modes: what damping has left of the DDA block's motion at the last step."""
+    both = (dda_frequency(scene), contact_frequency(scene))
+    return float(max(spectral_radius(scene, frequency) for frequency in both) ** scene.time.steps)
+
+
+def mesh_frequency_error(scene: Scene) -> float:
+    """Leading relative error of a bar's first frequency on n elements a side, consistent mass.
+
+    Linear: (b/n)^2 / 24. Quadratic: (b/n)^4 / 1440 times the mean of sin^2 over that of cos^2 along the bar: the
+    interpolation error's energy is h^4 / 720 times the integral of EA (d3 phi / dy3)^2, phi = cos(b (1 - y/h)).
+    """
+    E, _ = moduli(scene)
+    b = bar_frequency(scene) * size(scene)[1] / math.sqrt(E / scene.block.density)
+    wave, turn = b / scene.fem.per_side, math.sin(2 * b) / (2 * b)
+    return wave**2 / 24 if scene.fem.degree == 1 else wave**4 / 1440 * (1 - turn) / (1 + turn)
+
+
+def elements_per_front(scene: Scene) -> float:
+    """Elements per distance c dt that the wave runs in one step."""
+    E, _ = moduli(scene)
+    c = math.sqrt(E / scene.block.density)
+    return c * scene.time.step * scene.fem.per_side / size(scene)[1]
+
+
+def bar_modes(scene: Scene, count: int) -> Array:
+    """Lowest roots of b tan b = 2 p h / (E w), shape (count,): bisection on each branch [n pi, n pi + pi/2]."""
+    E, _ = moduli(scene)
+    w, h = size(scene)
+    ratio = 2 * scene.contact.stiffness * h / (E * w)
+    low = np.pi * np.arange(count)
+    high = low + np.pi / 2
+    sign = np.where(np.arange(count) % 2, -1.0, 1.0)
+    for _ in range(60):
+        b = (low + high) / 2
+        below = sign * (b * np.sin(b) - ratio * np.cos(b)) < 0
+        low, high = np.where(below, b, low), np.where(below, high, b)
+    return (low + high) / 2
+
+
+def bar_shares(scene: Scene, quantity: str, b: Array) -> Array:
+    """Share of each mode cos(b (1 - y/h)) in the static displacement of the centroid or in the static pressure."""
+    E, _ = moduli(scene)
+    w, h = size(scene)
+    ratio = 2 * scene.contact.stiffness * h / (E * w)
+    modal = 2 / (b**2 * (1 + np.sin(2 * b) / (2 * b)))  # response of the mode to a unit of q h / E, in phi
+    if quantity == "displacement":
+        return np.asarray(modal * np.cos(b / 2) / (1 / ratio + 0.5))
+    return np.asarray(modal * np.cos(b) * ratio)
+
+
+def bar_response(scene: Scene, omega: Array) -> Array:
+    """Newmark's response of modes to a step load over their static values, from rest, shape (steps, modes).
+
+    From the second step on x(n+1) = trace x(n) - det x(n-1), x measured from static; the first two steps from the
+    scheme's equations (6) and (7) with K = M w^2.
+    """
+    t, o2 = scene.time, omega**2
+    beta = 1 + t.alpha * o2
+    trace = 1 - o2 / (2 * beta) + t.discount * (1 - t.delta * o2 / beta)
+    det = t.discount * (1 + (0.5 - t.delta) * o2 / beta)
+    D, V, A = np.zeros_like(omega), np.zeros_like(omega), o2 * (t.start == "consistent")
+    x = np.empty((t.steps, len(omega)))
+    for n in range(t.steps):
+        if n < 2:
+            predicted = D + t.discount * V + (0.5 - t.alpha) * A
+            D = (predicted + t.alpha * o2) / beta
+            V, A = t.discount * V + (1 - t.delta) * A + t.delta * o2 * (1 - D), o2 * (1 - D)
+            x[n] = D - 1
+        else:
+            x[n] = trace * x[n - 1] - det * x[n - 2]
+    return 1 + x
+
+
+@cache
+def mesh_error(scene: str, quantity: str) -> float:
+    """Relative L2 error of quadratic elements against the bar, predicted from their dispersion alone.
+
+    Each mode's frequency is high by (b/n)^4 / 1440 (with the first factor of `mesh_frequency_error`), its share is
+    right; the histories of all modes that the mesh can hold, with and without that shift, are compared.
+    """
+    case = _case(scene)
+    E, _ = moduli(case)
+    b = bar_modes(case, 2 * case.fem.per_side)
+    turn = np.sin(2 * b) / (2 * b)
+    shift = (b / case.fem.per_side) ** 4 / 1440 * (1 - turn) / (1 + turn)
+    omega = b / size(case)[1] * math.sqrt(E / case.block.density) * case.time.step
+    share = bar_shares(case, quantity, b)
+    exact, shifted = (bar_response(case, factor * omega) @ share for factor in (1.0, 1 + shift))
+    return float(np.linalg.norm(shifted - exact) / np.linalg.norm(exact + (1 - share.sum())))
+
+
+def _case(name: str) -> Scene:
+    return next(case for case in load_scene(name.partition("[")[0]).expand() if case.name == name)

@@ -1,0 +1,132 @@
+"""Gates: a band for a metric of a pair of solvers, with its reason; verdicts are what comes out."""
+
+from __future__ import annotations
+
+import enum
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from validation.runs.results import Value
+
+
+class Status(enum.StrEnum):
+    """What a gate says."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"
+    NOT_RUN = "NOT RUN"
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A two-sided band for one metric of one case.
+
+    Attributes
+    ----------
+    scene
+        Name of the case, the swept values included.
+    pair
+        Solver and reference; a single solver where the metric is compared with a number only.
+        A metric of one run, given a pair, is compared as value / reference - 1.
+    metric
+        Metric id.
+    low, high
+        Edges of the band, both inside.
+    reason
+        Why these edges; where they come from a formula, the formula.
+    reference_kind
+        "exact", "other code" or "own last value".
+    reference_uncertainty
+        Uncertainty of the reference in the metric's own unit; a narrower band is refused.
+    until
+        Length of the time window [s]; the whole history where None.
+    against
+        Case of the reference where it is not `scene` itself (another mesh, another step).
+    """
+
+    scene: str
+    pair: tuple[str, ...]
+    metric: str
+    low: float
+    high: float
+    reason: str
+    reference_kind: str = "exact"
+    reference_uncertainty: float = 0.0
+    until: float | None = None
+    against: str | None = None
+
+    def __post_init__(self) -> None:
+        if not self.low <= self.high:
+            raise ValueError(f"{self.id}: band must be [low, high] with low <= high, got [{self.low}, {self.high}]")
+        if self.high - self.low < self.reference_uncertainty:
+            raise ValueError(
+                f"{self.id}: band must not be tighter than the reference's uncertainty "
+                f"{self.reference_uncertainty:g}, got width {self.high - self.low:g}"
+            )
+        if not self.reason:
+            raise ValueError(f"{self.id}: reason must be given, got nothing")
+
+    @property
+    def cases(self) -> list[tuple[str, str]]:
+        """Case and solver (or name of a derived row) of each side of the pair."""
+        names = [(self.scene, self.pair[0])]
+        return [*names, (self.against or self.scene, self.pair[1])] if len(self.pair) == 2 else names
+
+    @property
+    def id(self) -> str:
+        """Stable id: scene, pair, metric and window."""
+        window = "" if self.until is None else f"@{self.until:g}s"
+        other = "" if self.against is None else f"({self.against})"
+        return f"{self.scene}:{'-'.join(self.pair)}{other}:{self.metric}{window}"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a gate said of a value; `value` is a number, "undefined", "not reported" or None (nothing measured)."""
+
+    gate: Gate
+    value: Value
+    status: Status
+    why: str = ""
+
+    def record(self, study: str) -> dict[str, Any]:
+        """Return the verdict as plain data, rounded well above the last bits and without seconds."""
+        g = self.gate
+        value = rounded(self.value) if isinstance(self.value, float) else self.value
+        return {
+            "id": g.id,
+            "study": study,
+            "scene": g.scene,
+            "pair": list(g.pair),
+            "metric": g.metric,
+            "value": value,
+            "band": [g.low, g.high],
+            "verdict": str(self.status),
+            "reason": g.reason,
+            "why": self.why,
+            "reference_kind": g.reference_kind,
+            "reference_uncertainty": g.reference_uncertainty,
+        }
+
+
+def judge(gate: Gate, value: Value) -> Verdict:
+    """Judge a value: inside the band passes; outside, undefined, absent or not a number fails."""
+    if isinstance(value, str) or value is None or math.isnan(value):
+        return Verdict(
+            gate,
+            None if value is None or not isinstance(value, str) else value,
+            Status.FAIL,
+            "the gate measured nothing",
+        )
+    inside = gate.low <= value <= gate.high
+    return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)
+
+
+def rounded(value: float, digits: int = 4) -> float:
+    """Round well above the last bits: fewer digits for small values, below 1e-12 the next power of ten."""
+    if value == 0 or not math.isfinite(value):
+        return value if math.isfinite(value) else math.copysign(1.7976931348623157e308, value)
+    if abs(value) < 1e-12:
+        return math.copysign(10.0 ** math.ceil(math.log10(abs(value))), value)
+    return float(f"{value:.{(digits if abs(value) >= 1e-9 else 2) - 1}e}")

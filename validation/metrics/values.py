@@ -1,0 +1,56 @@
+"""Numbers without digits to lose: norms, ratios, and values that have no number."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.results import Value
+
+UNDEFINED, NOT_REPORTED = "undefined", "not reported"
+SETTLED = 0.01  # of the static value
+FINELY = 1e-4  # of the static value: a contact that rings shows here, long after it has settled to one per cent
+NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
+QUANTITIES = {
+    "displacement": DISPLACEMENT,
+    "pressure": PRESSURE,
+    "horizontal": "horizontal_displacement",
+    "rotation": "rotation",
+}
+
+
+def largest(x: Array) -> float:
+    """Maximum of |x|."""
+    return float(np.max(np.abs(x), initial=0.0))
+
+
+def norm(x: Array) -> float:
+    """Euclidean norm, scaled so that neither 1e300 overflows nor 1e-300 vanishes."""
+    top = largest(x)
+    return 0.0 if top == 0 else top * float(np.linalg.norm(x / top))
+
+
+def _ratio(error: float, size: float) -> Value:
+    """Relative error; undefined for a zero or non-finite signal."""
+    if size == 0 or not math.isfinite(size) or not math.isfinite(error):
+        return UNDEFINED
+    return error / size
+
+
+def _finite(value: Value) -> Value:
+    """Replace what is not a finite number by its name."""
+    return value if not isinstance(value, float) or math.isfinite(value) else UNDEFINED
+
+
+def _as_number(value: Value) -> float:
+    return float(value) if isinstance(value, float) else math.inf
+
+
+def ratio(value: Value, reference: Value) -> Value:
+    """Return value / reference - 1 for two metrics of single runs."""
+    for part in (value, reference):
+        if not isinstance(part, float | int):
+            return part
+    return _ratio(float(value) - float(reference), float(reference))  # type: ignore[arg-type]

@@ -1,0 +1,90 @@
+"""Blocks that a chapter is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from validation.runs.results import Results
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading; level 1 opens a chapter, 2 a scene, 3 a part of it."""
+
+    text: str
+    level: int = 1
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph of plain text; `lead` sets it larger, `small` smaller."""
+
+    text: str
+    tone: Literal["plain", "lead", "small"] = "plain"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A table column: title, kind of its cells, and a title shared with neighbours.
+
+    ``decimal`` aligns numbers at the decimal point, ``verdict`` colours PASS, FAIL and NOT RUN, ``code`` is
+    an identifier, ``id`` a long one that breaks and takes the remaining width, as ``fill`` does for text.
+    """
+
+    title: str
+    kind: Literal["text", "decimal", "verdict", "code", "id", "fill"] = "text"
+    group: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; a row of one cell spans all columns as a remark on the rows below it.
+
+    Where `ruled`, a thin rule is drawn above each row whose first cell is not empty.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[str, ...], ...]
+    caption: str = ""
+    notes: tuple[str, ...] = ()
+    ruled: bool = True
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) not in (1, len(self.columns)):
+                raise ValueError(f"rows: must have {len(self.columns)} cells each, or one, got {len(row)}")
+
+
+@dataclass(frozen=True)
+class FigureBlock:
+    """A figure by its file name in the figure directory."""
+
+    file: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Callout:
+    """A framed remark: `fail` in red, `warn` in amber."""
+
+    text: str
+    tone: Literal["fail", "warn"]
+
+
+@dataclass(frozen=True)
+class Math:
+    """A displayed formula in typst's mathematics."""
+
+    source: str
+
+
+@dataclass(frozen=True)
+class PageBreak:
+    """The rest starts on a new page (nothing happens at the top of a page)."""
+
+
+Block = Heading | Paragraph | Table | FigureBlock | Callout | Math | PageBreak
+Chapter = Callable[[Results, dict[str, Any], Path], list[Block]]

@@ -1,0 +1,92 @@
+"""The report: front matter, a chapter for each study of a results directory, provenance."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from validation.errors import InputError
+from validation.report.blocks import Block, Chapter, FigureBlock, PageBreak
+from validation.report.typesetting import _png, write_document
+from validation.runs.results import Results
+
+# study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
+CHAPTERS: dict[str, str] = {
+    "work-precision": "validation.report.chapters.work:chapter",
+    "paper": "validation.report.chapters.paper:paper_chapter",
+    "subblocks": "validation.report.chapters.subblocks:chapter",
+    "stability": "validation.report.chapters.stability:stability_chapter",
+    "stability-small": "validation.report.chapters.stability:stability_chapter",
+    "stiff-contact": "validation.report.chapters.stiff_contact:contact_chapter",
+}
+DEFAULT_CHAPTER = "validation.report.chapters.scene:scene_chapter"
+
+
+def chapter_of(study: str) -> Chapter:
+    """Return the function that writes a study's chapter, importing its module now."""
+    module, _, name = CHAPTERS.get(study, DEFAULT_CHAPTER).partition(":")
+    function: Chapter = getattr(importlib.import_module(module), name)
+    return function
+
+
+def ordered_studies(results: Results) -> list[str]:
+    """Return the studies of a directory, the core study first.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    studies = sorted(results.studies(), key=lambda name: (name != "core", name))
+    if not studies:
+        raise InputError(f"{results.directory}: no study's results here; run a study first")
+    return studies
+
+
+def build(results: Results, out: Path) -> Path:
+    """Write the PDF of all studies in a results directory and return its path.
+
+    Raises
+    ------
+    InputError
+        There are no results, or the file cannot be written.
+    """
+    studies = ordered_studies(results)
+    return write_document(out, lambda root: _all_blocks(results, studies, root))
+
+
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
+    from validation.report.chapters import front as chapters_front
+
+    chapters = [
+        block
+        for study in studies
+        for block in (PageBreak(), *chapter_of(study)(results, results.manifest(study), figures))
+    ]
+    return [
+        *chapters_front.front_matter(results, studies, figures),
+        *chapters,
+        PageBreak(),
+        *chapters_front.provenance(results, studies),
+    ]
+
+
+def figures(study: str, results: Results, out: Path) -> list[Path]:
+    """Write the figures of a study's chapter to a directory as SVG and PNG and return their paths.
+
+    Raises
+    ------
+    InputError
+        The directory has no such study, or cannot be made.
+    """
+    if study not in results.studies():
+        known = ", ".join(results.studies()) or "none"
+        raise InputError(f"study: must be one of those in {results.directory} ({known}), got {study!r}")
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
+    blocks = chapter_of(study)(results, results.manifest(study), out)
+    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
+    return [path for svg in drawn for path in (svg, _png(svg))]

@@ -1,0 +1,83 @@
+"""The page of `compare --report`: the answer, the curves and the ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from validation.compare.causes import CAUSES
+from validation.compare.diagnosis import Answer
+from validation.compare.sentences import told_lines
+from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.chapters.text import DASH, parameters, short
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import Panel
+from validation.report.typesetting import write_document
+from validation.runs.history import DISPLACEMENT, History
+from validation.scenes.scene import Scene
+
+FIGURE = "compare.svg"
+LINES = 7  # of the ranking that leave the answer on one page
+
+
+def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
+    """Write the answer as one PDF page and return its path.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    return write_document(out, lambda directory: page(scene, source, answer, directory))
+
+
+def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence[Block]:
+    """Return the blocks of the page; its figure is written to a directory."""
+    panel = Panel(
+        "displacement of the centroid",
+        {name: History(time, {DISPLACEMENT: values}) for name, (time, values) in answer.curves.items()},
+        None,
+        next(iter(answer.curves)),
+    )
+    figures.save(figures.history_figure([panel], DISPLACEMENT), directory / FIGURE)
+    rest = [*told_lines(answer.told, answer.untold), *answer.notes]
+    return [
+        Heading(f"{source} beside {scene.name}"),
+        Callout(answer.sentence, "warn") if answer.departure else Paragraph(answer.sentence, "lead"),
+        Paragraph(parameters(scene, set()), "small"),
+        FigureBlock(FIGURE, "The file, the scene as DDA with what is no fault, and the best explanation."),
+        *_facts(answer),
+        _ranking(answer),
+        *(Paragraph(line, "small") for line in rest),
+    ]
+
+
+def _facts(answer: Answer) -> list[Block]:
+    rows = [(name, CAUSES[name].words) for name in answer.causes]
+    if answer.departure:
+        rows.append(("departure", f"step {answer.departure.step}, mainly in {answer.departure.kind}"))
+    if answer.opened:
+        rows.append(("contact open", f"first step {answer.opened[0]}, last {answer.opened[1]}"))
+    return [Table((Column("Found", "code"), Column("In words", "fill")), tuple(rows))] if rows else []
+
+
+def _ranking(answer: Answer) -> Table:
+    columns = (
+        Column("Model", "code"),
+        Column("Scheme", "fill"),
+        Column("Misfit [%]", "decimal"),
+        Column("Compliance [%]", "decimal"),
+    )
+    rows = tuple(
+        (
+            str(row["model"]),
+            str(
+                row["name"]
+                or ("exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}")
+            ),
+            short(100 * row["misfit"], 3),
+            DASH if row["compliance"] is None else short(100 * row["compliance"], 3),
+        )
+        for row in answer.ranking[:LINES]
+    )
+    return Table(columns, rows, "Relative L2 of what each model leaves, at its best compliance of the springs.")

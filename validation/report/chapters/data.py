@@ -1,0 +1,126 @@
+"""What a chapter is built from: the scenes of a study with their cases, rows, histories and verdicts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from validation.report.chapters.text import case_labels, swept
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.scenes.scene import Scene, parse_scene
+
+PICTURE_REFERENCES = ("bar", "fem", "continuum")  # the same Newmark scheme first: pictures show model and code
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case of a scene: rows and histories by solver."""
+
+    name: str
+    label: str
+    scene: Scene
+    rows: Mapping[str, Row]
+    histories: Mapping[str, History]
+
+    def number(self, solver: str, metric: str) -> float | None:
+        """Return a metric of a solver where it is a number."""
+        row = self.rows.get(solver)
+        value = None if row is None else row.metrics.get(metric)
+        return float(value) if isinstance(value, int | float) else None
+
+    @property
+    def reference(self) -> str | None:
+        """The solver that pictures take differences from."""
+        return next((name for name in PICTURE_REFERENCES if name in self.histories), None)
+
+
+@dataclass(frozen=True)
+class Group:
+    """A scene of a study: the cases of one sweep, their comparisons and verdicts."""
+
+    name: str
+    title: str
+    cases: tuple[Case, ...]
+    comparisons: tuple[Mapping[str, Any], ...]
+    verdicts: tuple[Mapping[str, Any], ...]
+    alarms: tuple[Mapping[str, Any], ...] = ()
+    budgets: tuple[Mapping[str, Any], ...] = ()
+
+    @property
+    def solvers(self) -> list[str]:
+        """All solvers of the cases, in the order of the study."""
+        return list(dict.fromkeys(solver for case in self.cases for solver in case.rows))
+
+    @property
+    def slug(self) -> str:
+        """The name as part of a file name."""
+        return re.sub(r"[^\w.-]+", "-", self.name).strip("-.") or "scene"
+
+    def compared(self, case: Case, solver: str, reference: str) -> Mapping[str, Any] | None:
+        """Return the metrics of a pair over the longest window, in either order, or None."""
+        found = [
+            c
+            for c in self.comparisons
+            if c["scene"] == case.name and {c["solver"], c["reference"]} == {solver, reference}
+        ]
+        longest = max(found, key=lambda c: float(c.get("window") or 0.0), default=None)
+        return None if longest is None else dict(longest["metrics"])
+
+
+def groups(results: Results, manifest: Mapping[str, Any]) -> list[Group]:
+    """Return the scenes of a study in the order of its manifest."""
+    rows = results.rows()
+    names = list(dict.fromkeys(entry["scene"] for entry in manifest.get("cases", [])))
+    verdicts = results.verdicts(manifest.get("study"))
+    return [
+        _group(results, rows, manifest, base, [n for n in names if base_name(n) == base], verdicts)
+        for base in dict.fromkeys(map(base_name, names))
+    ]
+
+
+def base_name(case: str) -> str:
+    """Return the scene's name without its swept values."""
+    return case.partition("[")[0]
+
+
+def _group(
+    results: Results,
+    rows: Mapping[str, Row],
+    manifest: Mapping[str, Any],
+    base: str,
+    names: Sequence[str],
+    verdicts: Sequence[Mapping[str, Any]],
+) -> Group:
+    entries = {name: [e for e in manifest["cases"] if e["scene"] == name] for name in names}
+    scenes = [parse_scene(entries[name][0]["definition"], name) for name in names]
+    labels = case_labels(names, scenes)
+    cases = tuple(
+        _case(results, rows, entries[name], label, scene)
+        for name, label, scene in zip(names, labels, scenes, strict=True)
+    )
+    return Group(
+        base,
+        entries[names[0]][0].get("title") or base,
+        cases,
+        tuple(c for c in manifest.get("comparisons", []) if base_name(c["scene"]) == base),
+        tuple(v for v in verdicts if base_name(v["scene"]) == base),
+        tuple(a for a in manifest.get("alarms", []) if base_name(a["scene"]) == base),
+        tuple(b for b in manifest.get("budgets", []) if base_name(b["scene"]) == base),
+    )
+
+
+def _case(
+    results: Results, rows: Mapping[str, Row], entries: Sequence[Mapping[str, Any]], label: str, scene: Scene
+) -> Case:
+    own = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
+    drawn = {solver: row for solver, row in own.items() if not solver.endswith(":full")}  # equal to what they repeat
+    histories = {s: history for s, row in drawn.items() if (history := results.history(row.key)) is not None}
+    return Case(entries[0]["scene"], label, scene, own, histories)
+
+
+def varied_fields(group: Group) -> set[str]:
+    """Return the fields that vary between the cases of a scene."""
+    return {field for case in group.cases for field in swept(case.name)}

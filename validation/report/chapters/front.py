@@ -1,0 +1,156 @@
+"""The first page (conclusion, verdicts, error ledger) and the last (provenance)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.book import CHAPTERS
+from validation.report.chapters.data import Group, groups
+from validation.report.chapters.ledger import ledger_lines, ledger_table, part_values, with_entries
+from validation.report.chapters.scene import ORDER, band, gate_count, value_cell
+from validation.report.chapters.text import percent, plain, span
+from validation.report.figures import histories as figures
+from validation.runs.results import Results
+
+LEDGER_FIGURE = "error-ledger.svg"
+
+
+def front_matter(results: Results, studies: Sequence[str], directory: Path) -> list[Block]:
+    """Return conclusion, failures, verdict counts and the error ledger of the studies of scenes."""
+    scenes = [study for study in studies if study not in CHAPTERS]
+    found = with_entries([group for study in scenes for group in groups(results, results.manifest(study))])
+    verdicts = [v for study in studies for v in results.verdicts(study)]
+    blocks: list[Block] = [
+        Paragraph(headline(found, verdicts), "lead"),
+        *_failures(verdicts),
+        Heading("Verdicts", 3),
+        verdict_counts(results, studies),
+    ]
+    if not found:
+        return blocks
+    blocks += [Heading("Error ledger", 3), ledger_table(found)]
+    lines = ledger_lines(found)
+    if any(value is not None for line in lines for pair in line.parts.values() for value in pair):
+        figures.save(figures.ledger_figure(lines), directory / LEDGER_FIGURE)
+        blocks.append(FigureBlock(LEDGER_FIGURE, "The error ledger: displacement filled, contact pressure open."))
+    return blocks
+
+
+def headline(found: Sequence[Group], verdicts: Sequence[Mapping[str, Any]]) -> str:
+    """Return the report's conclusion in one plain sentence."""
+    said = gate_count(verdicts) if verdicts else "no gate was judged"
+    gates = said[:1].upper() + said[1:]
+    form = [part_values(found, "model form", column) for column in (0, 1)]
+    if not all(form):
+        return f"{gates}; DDA was not compared with the exact bar."
+    return (
+        f"{gates}: under the same Newmark scheme DDA differs from the exact elastic bar by {span(form[0])} in "
+        f"displacement and {span(form[1])} in contact pressure (relative L2){_shares(found, min(form[0]))}."
+    )
+
+
+def _shares(found: Sequence[Group], form: float) -> str:
+    """Say what code and mesh contribute, and call the rest model form where both are below the least difference."""
+    parts = {
+        "code and rounding are": part_values(found, "code", 0),
+        "the finite-element mesh is": part_values(found, "mesh", 0),
+    }
+    said = [f"{name} at most {percent(max(values))}" for name, values in parts.items() if values]
+    if not said:
+        return ""
+    small = all(max(values) < form for values in parts.values() if values)
+    rest = "; the rest is model form, one strain in the block against a wave" if small else ""
+    return f"; of the displacement's difference {' and '.join(said)}{rest}"
+
+
+def _failures(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:
+    bad = [v for v in verdicts if v["verdict"] != "PASS"]
+    failed = sum(v["verdict"] == "FAIL" for v in bad)
+    blocks: list[Block] = []
+    if failed:
+        blocks.append(Callout(f"{failed} gates fail." if failed > 1 else "One gate fails.", "fail"))
+    return [*blocks, failure_table(bad)] if bad else blocks
+
+
+def failure_table(verdicts: Sequence[Mapping[str, Any]]) -> Table:
+    """Return the gates that did not pass by their ids, failures first."""
+    remarks: dict[str, list[Mapping[str, Any]]] = {}
+    for v in sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)):
+        remarks.setdefault(v.get("why") or "", []).append(v)
+    columns = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
+    rows = [
+        row
+        for said, some in remarks.items()
+        for row in [
+            *([(said,)] if said else []),
+            *((v["verdict"], v["id"], value_cell(v["value"]), band(v)) for v in some),
+        ]
+    ]
+    return Table(columns, tuple(rows), ruled=False)
+
+
+def verdict_counts(results: Results, studies: Sequence[str]) -> Table:
+    """Return PASS, FAIL and NOT RUN per study; per scene of a single study, and of scenes that do not pass."""
+    rows = []
+    for study in studies:
+        per_scene: dict[str, Counter[str]] = {}
+        for v in results.verdicts(study):
+            per_scene.setdefault(v["scene"].partition("[")[0], Counter())[v["verdict"]] += 1
+        total = sum(per_scene.values(), Counter())
+        rows.append((study, "all scenes", *_counts(total)))
+        listed = {name: c for name, c in per_scene.items() if len(studies) == 1 or set(c) - {"PASS"}}
+        rows += [("", name, *_counts(c)) for name, c in listed.items()]
+    return Table(
+        (Column("Study"), Column("Scene"), *(Column(word, "decimal") for word in reversed(ORDER))), tuple(rows)
+    )
+
+
+def _counts(count: Mapping[str, int]) -> list[str]:
+    return [str(count.get(word, 0)) for word in reversed(ORDER)]
+
+
+def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
+    """Return where the numbers come from and what they cost."""
+    blocks: list[Block] = [Heading("Provenance")]
+    for study in studies:
+        manifest = results.manifest(study)
+        rows = [(name.capitalize(), _said(value)) for name, value in manifest.get("provenance", {}).items()]
+        if isinstance(manifest.get("seconds"), int | float):
+            rows.append(("Wall time", f"{plain(manifest['seconds'], 3)} s"))
+        blocks += [
+            Heading(manifest.get("title") or study, 3),
+            Table((Column("Item"), Column("Value", "fill")), tuple(rows)),
+            cost_table(results, manifest),
+        ]
+    return blocks
+
+
+def _said(value: object) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {version}" for name, version in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value)) or "none"
+    return "none" if value is None else str(value)
+
+
+def cost_table(results: Results, manifest: Mapping[str, Any]) -> Table:
+    """Return runs, work and seconds of each solver of a study."""
+    rows = results.rows()
+    keys = {entry["key"]: entry["solver"] for entry in manifest.get("cases", []) if entry["key"] in rows}
+    lines = []
+    for solver in dict.fromkeys(keys.values()):
+        own = [rows[key] for key, name in keys.items() if name == solver]
+        most = max((row.work.get("unknowns", 0) for row in own), default=0)
+        total = [sum(row.work.get(name, 0) for row in own) for name in ("factorisations", "solves", "steps")]
+        seconds = sum(sum(row.seconds.values()) for row in own)
+        lines.append((solver, str(len(own)), str(most), *map(str, total), plain(seconds, 3)))
+    titles = ("Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
+    return Table(
+        (Column("Solver"), *(Column(title, "decimal") for title in titles)),
+        tuple(lines),
+        "What the answers cost; kept runs count with the seconds that they took.",
+    )

@@ -1,0 +1,137 @@
+"""The error ledger: what part of a difference is code, mesh, model form and time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from validation.report.blocks import Column, Table
+from validation.report.chapters.data import Case, Group
+from validation.report.chapters.text import DASH, bounded, power, raised
+from validation.report.figures.histories import LedgerLine
+from validation.runs.run import Outcome
+
+PARTS = {
+    "code": ("dda", "dda-textbook"),
+    "mesh": ("fem", "bar"),
+    "model form": ("dda", "bar"),
+    "time": ("bar", "continuum"),
+}
+METRICS = ("displacement.l2", "pressure.l2")
+NOT_COMPARED = "The results hold no comparison of this pair."
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One part for one case: relative L2 of displacement and contact pressure [1], or the reason for none.
+
+    A remark says where the numbers come from another place than the part's own pair.
+    """
+
+    values: tuple[float | None, float | None] = (None, None)
+    reason: str = ""
+    remark: str = ""
+
+
+def entry(group: Group, case: Case, part: str) -> Entry:
+    """Return a part of the ledger for one case."""
+    solver, reference = PARTS[part]
+    if (found := _compared(group, case, solver, reference)) is not None:
+        return found
+    if part == "code" and (row := case.rows.get("dda")) is not None and row.estimate is not None:
+        return Entry((row.estimate, row.estimate), remark="Code: the solver's own estimate of its rounding.")
+    if part == "model form" and (instead := _against_fem(group, case)) is not None:
+        return instead
+    return Entry(reason=_absence(case, solver) or _absence(case, reference) or NOT_COMPARED)
+
+
+def _compared(group: Group, case: Case, solver: str, reference: str) -> Entry | None:
+    metrics = group.compared(case, solver, reference)
+    values = [None if metrics is None else metrics.get(name) for name in METRICS]
+    numbers = [float(v) if isinstance(v, int | float) else None for v in values]
+    return None if numbers == [None, None] else Entry((numbers[0], numbers[1]))
+
+
+def _against_fem(group: Group, case: Case) -> Entry | None:
+    """Return dda against fem where there is no bar; corner point springs have no limit to compare with."""
+    if case.scene.fem.foundation == "corner":
+        return Entry(reason="fem on corner point springs has no fine-mesh limit.")
+    found = _compared(group, case, "dda", "fem")
+    return None if found is None else Entry(found.values, remark="Model form: against fem, where the bar does not run.")
+
+
+def _absence(case: Case, solver: str) -> str:
+    """Return why a solver has no history of a case, or nothing where it has one."""
+    row = case.rows.get(solver)
+    if row is None:
+        return f"The scene does not ask for {solver}."
+    if row.outcome is Outcome.COMPLETED:
+        return ""
+    return f"{solver}: {row.outcome}" + (f" ({'; '.join(row.notes)})." if row.notes else ".")
+
+
+def with_entries(groups: Sequence[Group]) -> list[Group]:
+    """Return the groups with the cases that some part of the ledger applies to."""
+    kept = [replace(group, cases=tuple(case for case in group.cases if _has_entry(group, case))) for group in groups]
+    return [group for group in kept if group.cases]
+
+
+def _has_entry(group: Group, case: Case) -> bool:
+    return any(value is not None for part in PARTS for value in entry(group, case, part).values)
+
+
+def ledger_table(groups: Sequence[Group]) -> Table:
+    """Return the ledger of all cases, reasons and remarks numbered below."""
+    notes: list[str] = []
+    rows = [_row(group, case, notes) for group in groups for case in group.cases]
+    named = [
+        (group.name if i == 0 else "", *row)
+        for group, row in zip([g for g in groups for _ in g.cases], rows, strict=True)
+        for i in [0 if row[0] == group.cases[0].label else 1]
+    ]
+    columns = [Column("Scene"), Column("Case")]
+    for part, (solver, reference) in PARTS.items():
+        name = f"{part}: {solver} − {reference}" if part != "code" else "code: dda − textbook"
+        columns += [Column("displ.", "decimal", name), Column("pressure", "decimal", name)]
+    return Table(
+        tuple(columns),
+        tuple(named),
+        "Relative L2 difference over the whole history, as a fraction; below 10⁻⁹ a bound.",
+        tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)),
+    )
+
+
+def _row(group: Group, case: Case, notes: list[str]) -> tuple[str, ...]:
+    cells = []
+    for part in PARTS:
+        found = entry(group, case, part)
+        text = found.reason or found.remark
+        if text and text not in notes:
+            notes.append(text)
+        mark = raised(notes.index(text) + 1) if text else ""
+        cells += [_cell(value, mark) for value in found.values]
+    return case.label, *cells
+
+
+def _cell(value: float | None, mark: str) -> str:
+    if value is None:
+        return f"{DASH}{mark}"
+    return bounded(value, power(value)) + (f" {mark}" if mark else "")
+
+
+def ledger_lines(groups: Sequence[Group]) -> list[LedgerLine]:
+    """Return the ledger as lines of a figure."""
+    return [
+        LedgerLine(
+            f"{group.name}: {case.label}" if len(group.cases) > 1 else group.name,
+            {part: entry(group, case, part).values for part in PARTS},
+        )
+        for group in groups
+        for case in group.cases
+    ]
+
+
+def part_values(groups: Sequence[Group], part: str, column: int) -> list[float]:
+    """Return all numbers of a part that come from its own pair, for displacement (0) or pressure (1)."""
+    found = [entry(group, case, part) for group in groups for case in group.cases]
+    return [value for e in found if not e.remark and (value := e.values[column]) is not None]

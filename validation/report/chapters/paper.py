@@ -1,0 +1,177 @@
+"""The chapter of the study `paper`: claims, figures 1 and 3 to 9, alarms, damping budgets."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.report.blocks import Block, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
+from validation.report.chapters.damping import alarm_blocks, budget_blocks
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.text import DASH, short
+from validation.report.figures import histories as figures
+from validation.report.figures import paper as figures_paper
+from validation.report.figures.paper import StepPanel
+from validation.runs.history import Array
+from validation.runs.results import Results
+
+SOLVERS = ("continuum", "bar", "fem", "dda")
+COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
+WORDS = {0: "refuted", 1: "under a condition", 2: "confirmed"}
+VERBS = {  # of one, of several
+    "confirmed": ("is confirmed", "are confirmed"),
+    "under a condition": tuple(f"{verb} under a condition that the paper does not name" for verb in ("holds", "hold")),
+    "refuted": ("is refuted", "are refuted"),
+}
+CLAIMS = "claims"
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper over time steps: its scene, quantity, scale and window."""
+
+    number: int
+    scene: str
+    quantity: str  # displacement or pressure
+    last: int  # steps shown
+    caption: str
+    relative: bool = False  # value / static - 1 instead of the value
+
+
+FIGURES = (
+    PaperFigure(3, "figures-3-4", "displacement", 100, "Displacement of the centroid at p = 1E for three time steps"),
+    PaperFigure(4, "figures-3-4", "pressure", 100, "Contact pressure at p = 1E for three time steps"),
+    PaperFigure(
+        5, "figures-5-6", "displacement", 100, "Displacement of the centroid at dt = 0.002 s, three stiffnesses"
+    ),
+    PaperFigure(6, "figures-5-6", "pressure", 100, "Contact pressure at dt = 0.002 s for three stiffnesses"),
+    PaperFigure(7, "figure-7", "displacement", 20000, "Displacement of the centroid at dt = 0.00001 s"),
+    PaperFigure(8, "figure-8", "displacement", 200, "Relative error of the displacement, dt = 0.001 s, p = 1E", True),
+    PaperFigure(9, "figure-9", "displacement", 200, "Displacement for four discounts, dt = 0.001 s, p = 1E"),
+)
+COLUMNS = {
+    "displacement": ("displacement", 1e3, "Displacement [mm]"),
+    "pressure": ("contact_pressure", 1e-6, "Contact pressure [MPa]"),
+}
+
+
+def paper_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+    """Return the chapter: conclusion, register of claims, figures, and for each scene its alarms and budget."""
+    found = {group.name: group for group in groups(results, manifest)}
+    rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
+    claims = manifest.get("data", {}).get("claims", [])
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
+    for title, letter in (("Statements", "C"), ("Slips of the equations", "S")):
+        blocks += [Heading(title, 2), claims_table([c for c in claims if c["id"].startswith(letter)], rows)]
+    blocks += [PageBreak(), Heading("The figures", 2), *figure_1(manifest, found, directory)]
+    for figure in FIGURES:
+        if figure.scene in found:
+            blocks.append(figure_block(figure, found[figure.scene], directory))
+    blocks += [PageBreak(), Heading("What the figures hide", 2)]
+    for name in dict.fromkeys(figure.scene for figure in FIGURES if figure.scene in found):
+        group = found[name]
+        own = [*alarm_blocks(group), *budget_blocks(group, directory)]
+        blocks += [Heading(group.title, 3), *own] if own else []
+    return blocks
+
+
+def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return one sentence on the register."""
+    count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
+    said = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
+    return f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(said)}."
+
+
+def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
+    """Return the register: verdict, statement, reason and measured numbers."""
+    lines = []
+    for claim in claims:
+        metrics = rows.get(claim["id"], {})
+        word = WORDS.get(int(metrics.get("verdict", -1)), "not tested")
+        condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
+        measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
+        lines.append(
+            (
+                claim["id"],
+                word,
+                f"{claim['says']} ({claim['place']})",
+                f"{_sentence(claim['why'])}{condition}",
+                measured,
+            )
+        )
+    columns = (
+        Column("Id"),
+        Column("Verdict"),
+        Column("The paper says", "fill"),
+        Column("Why", "fill"),
+        Column("Measured", "fill"),
+    )
+    return Table(columns, tuple(lines))
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _number(value: object) -> str:
+    return short(float(value)) if isinstance(value, int | float) else str(value or DASH)
+
+
+def figure_1(manifest: Mapping[str, Any], found: Mapping[str, Group], directory: Path) -> list[Block]:
+    """Return Figure 1, with the spectral radii of the study's own constant-acceleration operators."""
+    data = manifest.get("data", {})
+    if "schemes" not in data:
+        return []
+    cases = found["damping-map"].cases if "damping-map" in found else ()
+    figures.save(figures_paper.radius_figure(data, _points(cases)), directory / "figure-1.svg")
+    caption = (
+        "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
+        "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."
+    )
+    return [FigureBlock("figure-1.svg", caption)]
+
+
+def _points(cases: Sequence[Case]) -> list[tuple[float, float]]:
+    pairs = [
+        (case.number("dda", f"{mode}.frequency"), case.number("dda", f"{mode}.spectral_radius"), case.scene.time.step)
+        for case in cases
+        for mode in ("mode1", "contact")
+    ]
+    points = [(w * dt, radius) for w, radius, dt in pairs if w is not None and radius is not None]
+    return [(x, y) for x, y in points if 0.1 <= x <= 100]
+
+
+def figure_block(figure: PaperFigure, group: Group, directory: Path) -> FigureBlock:
+    """Draw one of the paper's figures and return its block."""
+    panels = [_panel(figure, case) for case in group.cases]
+    label = "Relative error of displacement [%]" if figure.relative else COLUMNS[figure.quantity][2]
+    file = f"figure-{figure.number}.svg"
+    figures.save(figures_paper.steps_figure(panels, label, figure.last), directory / file)
+    marked = any(panel.settled is not None for panel in panels)
+    dash = " Dashed: step from which DDA stays within 1 % of static." if marked else ""
+    left_out = any(
+        "continuum" in case.histories and "continuum" not in p.lines
+        for case, p in zip(group.cases, panels, strict=True)
+    )
+    less = f" The continuum is left out where its period has fewer than {COARSE} steps." if left_out else ""
+    return FigureBlock(file, f"Figure {figure.number}. {figure.caption}. Hairline: static value.{dash}{less}")
+
+
+def _panel(figure: PaperFigure, case: Case) -> StepPanel:
+    column, factor, _ = COLUMNS[figure.quantity]
+    static = case.number("dda", f"{figure.quantity}.static") or 0.0
+
+    def shown(values: Array) -> Array:
+        return np.asarray(100 * (values / static - 1) if figure.relative and static else factor * values)
+
+    lines = {s: shown(case.histories[s].columns[column]) for s in SOLVERS if s in case.histories}
+    w = case.number("bar", "mode1.frequency")
+    if w is not None and 2 * np.pi / w < COARSE * case.scene.time.step:
+        lines.pop("continuum", None)
+    settled = None if figure.relative else case.number("dda", f"{figure.quantity}.settling_step")
+    return StepPanel(case.label, lines, 0.0 if figure.relative else factor * static, settled)

@@ -1,0 +1,351 @@
+"""The chapter of scenes, for `core` and for users' own: a page for each scene."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
+from validation.report.chapters.damping import alarm_blocks, budget_blocks
+from validation.report.chapters.data import Case, Group, groups, varied_fields
+from validation.report.chapters.ledger import METRICS
+from validation.report.chapters.text import (
+    AS_STATED,
+    bounded,
+    cell,
+    parameters,
+    percent,
+    plain,
+    short,
+    span,
+    word_notes,
+)
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import COLUMNS, Panel
+from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.results import Results, Value
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+
+ORDER = {"FAIL": 0, "NOT RUN": 1, "PASS": 2}
+MOST_PANELS = 10
+NARROW = 7  # digits; a narrower band is written as middle and half width
+NOISE = 1e-9  # of the load; a smaller least pressure is rounding
+_PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
+
+
+def scene_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+    """Return the chapter of a study: its purpose, then a page for each scene."""
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
+    if manifest.get("purpose"):
+        blocks.append(Paragraph(manifest["purpose"]))
+    for i, group in enumerate(groups(results, manifest)):
+        blocks += [PageBreak()] * (i > 0) + scene_page(group, directory)
+    return blocks
+
+
+def scene_page(group: Group, directory: Path) -> list[Block]:
+    """Return the page of one scene: data, conclusion, figures, damping, gates."""
+    blocks: list[Block] = [
+        Heading(group.title, 2),
+        Paragraph(parameters(group.cases[0].scene, varied_fields(group)), "small"),
+        Paragraph(conclusion(group)),
+    ]
+    blocks += outcomes(group)
+    blocks += [_history_block(group, column, directory) for column in _columns(group)]
+    if len(drift := drift_values(group)) > 1:
+        blocks += _drift_blocks(group, drift, directory)
+    if any(_finished(case) for case in group.cases):
+        blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
+    blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
+    if group.verdicts:
+        blocks += [Heading("Gates", 3), gate_table(group.verdicts, {case.name: case.label for case in group.cases})]
+    return blocks
+
+
+# ---- sentences ----------------------------------------------------------------------------------------------------
+
+
+def conclusion(group: Group) -> str:
+    """Return one plain sentence on a scene, computed from its comparisons and verdicts."""
+    parts = [_agreement(group), gate_count(group.verdicts)]
+    if tension := _tension(group):
+        parts.append(tension)
+    if trend := _damped_agreement(group):
+        parts.append(trend)
+    text = "; ".join(part for part in parts if part)
+    return text[:1].upper() + text[1:] + "."
+
+
+def _agreement(group: Group) -> str:
+    for reference in ("bar", "fem"):
+        values = [_pair_values(group, "dda", reference, metric) for metric in METRICS]
+        if any(values):
+            said = [
+                f"{span(v)} in {name}"
+                for v, name in zip(values, ("displacement", "contact pressure"), strict=True)
+                if v
+            ]
+            return f"against {reference}, dda differs by {' and '.join(said)} (relative L2)"
+    return "no pair of solvers was compared"
+
+
+def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list[float]:
+    found = [group.compared(case, solver, reference) for case in group.cases]
+    return [float(m[metric]) for m in found if m and isinstance(m.get(metric), int | float)]
+
+
+def gate_count(verdicts: Sequence[Mapping[str, Any]]) -> str:
+    """Return how many gates pass, fail or did not run, as part of a sentence."""
+    count = {word: sum(v["verdict"] == word for v in verdicts) for word in ORDER}
+    if not verdicts:
+        return "no gate judges this scene"
+    if count["PASS"] == len(verdicts):
+        return f"all {len(verdicts)} gates pass" if len(verdicts) > 1 else "its one gate passes"
+    verb = "fails" if count["FAIL"] == 1 else "fail"
+    said = [f"{count['FAIL']} of {len(verdicts)} gates {verb}"] * bool(count["FAIL"])
+    return " and ".join(said + [f"{count['NOT RUN']} did not run"] * bool(count["NOT RUN"]))
+
+
+def _tension(group: Group) -> str:
+    """Say where a locked contact hides tension."""
+    found = {
+        s: [v for case in group.cases if (v := case.number(s, "pressure.minimum")) is not None] for s in group.solvers
+    }
+    pulled = {s: min(values) for s, values in found.items() if values and min(values) < -1e-6 * _load(group)}
+    if not pulled:
+        return ""
+    named = [s for s in ("dda", "bar", "fem") if s in pulled][:2] or list(pulled)[:2]
+    deepest = " and ".join(f"{plain(pulled[solver] / 1e6, 3)} MPa in {solver}" for solver in named)
+    return f"the locked contact hides tension, down to {deepest}"
+
+
+def _load(group: Group) -> float:
+    return abs(group.cases[0].scene.load.pressure)
+
+
+def _damped_agreement(group: Group) -> str:
+    """Warn where the agreement grows with the damping, since agreement alone then rewards the worse run."""
+    pairs = sorted(
+        (xi, values[0])
+        for case in group.cases
+        if (xi := case.number("dda", "mode1.damping")) is not None
+        and (values := _pair_values(replace(group, cases=(case,)), "dda", "bar", METRICS[0]))
+    )
+    falls = all(a[0] < b[0] and a[1] > b[1] for a, b in itertools.pairwise(pairs))
+    if len(pairs) < 3 or not falls:
+        return ""
+    least, most = (f"{percent(error)} at ξ₁ = {100 * xi:.2f}\u00a0%" for xi, error in (pairs[0], pairs[-1]))
+    return f"the difference falls as the damping grows, from {least} to {most}: both are damped, which is no merit"
+
+
+def outcomes(group: Group) -> list[Block]:
+    """Name every outcome other than completed, with its sentence; cases that share it share a line."""
+    said: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
+    for case in group.cases:
+        for solver, row in case.rows.items():
+            if row.outcome is not Outcome.COMPLETED:
+                said.setdefault((solver, row.outcome, row.notes), []).append(case.label)
+    return [
+        Callout(f"{solver}{_where(labels)}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn")
+        for (solver, outcome, notes), labels in said.items()
+    ]
+
+
+def _where(labels: Sequence[str]) -> str:
+    return "" if list(labels) == [AS_STATED] else f" at {'; '.join(labels)}"
+
+
+# ---- figures ------------------------------------------------------------------------------------------------------
+
+
+def _columns(group: Group) -> list[str]:
+    """Return the columns that some solver reports, displacement and contact pressure first."""
+    kept = {column for case in group.cases for history in case.histories.values() for column in history.columns}
+    return sorted(kept, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
+
+
+def _history_block(group: Group, column: str, directory: Path) -> FigureBlock:
+    shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
+    window = shared_window(shown)
+    panels = [_panel(case, column, window) for case in shown]
+    file = f"{group.slug}-{column.replace('_', '-')}.svg"
+    figures.save(figures.history_figure(panels, column), directory / file)
+    name = COLUMNS.get(column, (column,))[0]
+    less = "" if len(shown) == len(group.cases) else f" ({len(shown)} of {len(group.cases)} cases)"
+    cut = any(h.time[-1] > window * 1.001 for case in shown for h in case.histories.values())
+    span = f"The first {plain(window, 3)} s, the time that all cases run." if cut else ""
+    caption = _history_caption(panels) if column == DISPLACEMENT else ""
+    return FigureBlock(file, " ".join(f"{name}{less}. {span} {caption}".split()))
+
+
+def shared_window(cases: Sequence[Case]) -> float:
+    """Return the time that all cases of a sweep run [s]: cases of one figure are compared over the same time."""
+    return min((float(h.time[-1]) for case in cases for h in case.histories.values() if len(h.time)), default=0.0)
+
+
+def _history_caption(panels: Sequence[Panel]) -> str:
+    said = ["The hairline is the static value."] if any(p.static is not None for p in panels) else []
+    references = list(dict.fromkeys(p.reference for p in panels if p.reference and len(p.histories) > 1))
+    if references:
+        said.append(f"Below: difference Δ from {' or '.join(references)}, the largest in each fortieth of the time.")
+    return " ".join(said)
+
+
+def _panel(case: Case, column: str, window: float) -> Panel:
+    histories = {s: h.until(window) for s, h in case.histories.items() if column in h.columns}
+    reference = case.reference if case.reference in histories else None
+    metric = f"{_PREFIX.get(column, column)}.static"
+    known = [case.number(solver, metric) for solver in (reference or "", "dda", *histories)]
+    title = "" if case.label == AS_STATED else case.label
+    return Panel(title, histories, next((v for v in known if v is not None), None), reference)
+
+
+def drift_values(group: Group) -> list[tuple[int, float]]:
+    """Return elements a side and static displacement [m] of fem on corner point springs, where meshes vary."""
+    cases = [case for case in group.cases if case.scene.fem.foundation == "corner" and case.scene.fem.mesh is None]
+    found = {case.scene.fem.per_side: case.number("fem", "displacement.static") for case in cases}
+    return sorted((n, v) for n, v in found.items() if v is not None)
+
+
+def _drift_blocks(group: Group, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+    n, v = np.array([float(n) for n, _ in drift]), np.array([v for _, v in drift])
+    slope = float(np.polyfit(np.log2(n), v, 1)[0])
+    dda = group.cases[0].number("dda", "displacement.static")
+    note = f": {plain(1e3 * slope, 3)} mm per doubling of n"
+    figure = figures.line_figure(
+        [figures.Line("fem", n, 1e3 * v, note)],
+        "Elements a side n",
+        "Static displacement [mm]",
+        {} if dda is None else {"dda": 1e3 * dda},
+        log2_x=True,
+    )
+    file = f"{group.slug}-drift.svg"
+    figures.save(figure, directory / file)
+    return [
+        FigureBlock(file, "Static displacement on corner point springs over the mesh, with the fitted slope."),
+        Callout(
+            f"On corner point springs the static displacement changes by {plain(1e3 * slope, 3)} mm with every "
+            "halving of the mesh and has no limit: a point force moves its own point of an elastic body "
+            'infinitely. The cure is foundation = "distributed" or "patch".',
+            "warn",
+        ),
+    ]
+
+
+# ---- tables -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A column of the damping table: titles, metric, factor and decimals (four digits where None)."""
+
+    title: str
+    over: str
+    metric: str
+    factor: float = 1.0
+    decimals: int | None = None
+
+
+_MEASURES = (
+    Measure("model", "ω₁ [rad/s]", "mode1.frequency"),
+    Measure("operator", "ω₁ [rad/s]", "mode1.numerical_frequency"),
+    Measure("history", "ω₁ [rad/s]", "mode1.measured_frequency"),
+    Measure("operator", "ξ₁ [%]", "mode1.damping", 100.0, 3),
+    Measure("history", "ξ₁ [%]", "mode1.measured_damping", 100.0, 3),
+    Measure("", "|λ₁|", "mode1.spectral_radius", 1.0, 4),
+    Measure("displ.", "Settling step", "displacement.settling_step", 1.0, 0),
+    Measure("press.", "Settling step", "pressure.settling_step", 1.0, 0),
+    Measure("mm", "First peak", "displacement.peak", 1e3),
+    Measure("MPa", "First peak", "pressure.peak", 1e-6),
+    Measure("MPa", "Least press.", "pressure.minimum", 1e-6),
+)
+
+
+LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
+
+
+def damping_table(group: Group) -> Table:
+    """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver."""
+    long = any(len(case.label) > LONG_LABEL for case in group.cases)
+    rows: list[tuple[str, ...]] = []
+    for case in group.cases:
+        rows += [(case.label,)] if long else []
+        for i, solver in enumerate(_finished(case)):
+            values = (_measured(m, case.rows[solver].metrics.get(m.metric), case.scene) for m in _MEASURES)
+            rows.append((*(() if long else (case.label if i == 0 else "",)), solver, *values))
+    columns = [Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES)]
+    measured = [row.metrics.get(m.metric) for case in group.cases for row in case.rows.values() for m in _MEASURES]
+    return Table(
+        tuple(columns if long else [Column("Case"), *columns]), tuple(rows), notes=word_notes(measured), ruled=not long
+    )
+
+
+def _finished(case: Case) -> list[str]:
+    return [solver for solver, row in case.rows.items() if row.metrics]
+
+
+def _measured(measure: Measure, value: Value, scene: Scene) -> str:
+    if not isinstance(value, int | float):
+        return cell(value)
+    if measure.decimals is None:
+        noise = NOISE * abs(scene.load.pressure) if measure.metric == "pressure.minimum" else 0.0
+        return cell(value if abs(value) > noise else 0.0, measure.factor)
+    return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")
+
+
+def gate_table(verdicts: Sequence[Mapping[str, Any]], labels: Mapping[str, str]) -> Table:
+    """Return gates with value and band under the reason that they share, failures first."""
+    reasons: dict[str, list[Mapping[str, Any]]] = {}
+    for v in sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), [*labels, v["scene"]].index(v["scene"]))):
+        reasons.setdefault(reason(v), []).append(v)
+    columns = (
+        Column("Verdict", "verdict"),
+        Column("Case"),
+        Column("Pair"),
+        Column("Metric", "code"),
+        Column("Value", "decimal"),
+        Column("Band"),
+    )
+    rows = [row for said, some in reasons.items() for row in [(said,), *(_gate_row(v, labels) for v in some)]]
+    return Table(columns, tuple(rows), ruled=False)
+
+
+def _gate_row(v: Mapping[str, Any], labels: Mapping[str, str]) -> tuple[str, ...]:
+    window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
+    return (
+        v["verdict"],
+        labels.get(v["scene"], v["scene"]),
+        " – ".join(v["pair"]),
+        v["metric"] + window,
+        value_cell(v["value"]),
+        band(v),
+    )
+
+
+def value_cell(value: Value) -> str:
+    """Return the value of a verdict without needless zeros."""
+    return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
+
+
+def band(v: Mapping[str, Any]) -> str:
+    """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
+    low, high = v["band"]
+    middle, half, size = (low + high) / 2, (high - low) / 2, max(abs(low), abs(high))
+    digits = next((d for d in range(4, 16) if high - low > 3 * 10.0**-d * size), 16)
+    if low != high and digits > NARROW:
+        return f"{short(middle, digits)} ± {short(half, 2)}"
+    return f"{short(low, digits)} … {short(high, digits)}"
+
+
+def reason(v: Mapping[str, Any]) -> str:
+    """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
+    uncertainty = v.get("reference_uncertainty") or 0.0
+    kind = f" [{v['reference_kind']}" + (f" ± {short(uncertainty, 2)}" if uncertainty else "") + "]"
+    why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
+    return f"{v['reason']}{kind}{why}"

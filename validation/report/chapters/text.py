@@ -1,0 +1,169 @@
+"""Numbers and swept values as the report writes them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+
+from validation.runs.results import Value
+from validation.scenes.scene import Scene
+
+DASH = "–"
+AS_STATED = "as stated"  # label of a case without swept values
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_MEANINGS = (
+    ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
+    ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
+)
+_WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
+_SYMBOLS = {
+    "time.step": ("dt", " s"),
+    "time.gg": ("gg", ""),
+    "time.gg_rate": ("c", " 1/s"),
+    "time.alpha": ("α", ""),
+    "time.delta": ("δ", ""),
+    "time.steps": ("steps", ""),
+    "fem.elements": ("n", ""),
+    "fem.degree": ("degree", ""),
+    "block.poisson": ("μ", ""),
+    "block.young": ("E", " Pa"),
+    "block.side": ("a", " m"),
+    "load.pressure": ("q", " Pa"),
+    "fem.foundation": ("foundation", ""),
+    "fem.patch_width": ("patch width", " m"),
+    "time.start": ("start", ""),
+    "load.traction": ("τ", " Pa"),
+    "load.gravity": ("g", " m/s²"),
+    "load.eccentricity": ("e", " m"),
+    "block.hypothesis": ("", ""),
+    "block.pattern": ("", ""),
+    "block.subdivide": ("", " sub-blocks"),
+    "block.glue_ratio": ("glue", "E"),
+}
+
+
+def raised(number: int) -> str:
+    """Return a whole number in superscript digits."""
+    return str(number).translate(_RAISED)
+
+
+def power(value: float, digits: int = 2) -> str:
+    """Return a number as mantissa times a power of ten, ``3.6×10⁻²``."""
+    if value == 0 or not math.isfinite(value):
+        return plain(value, digits)
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}×10{raised(int(exponent))}".replace("-", "−")
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """Return a number with significant digits, as a power of ten outside 1e-3 to 1e6."""
+    if math.isnan(value):
+        return "not a number"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value and not 1e-3 <= abs(value) < 1e6:
+        return power(value, digits)
+    text = f"{value:#.{digits}g}" if value else "0"
+    return (f"{value:.0f}" if "e" in text else text.removesuffix(".")).replace("-", "−")
+
+
+def short(value: float, digits: int = 4) -> str:
+    """Return a number as `plain` does, without zeros at the end of its decimals."""
+    return re.sub(r"(\.\d*?)0+(?=×|$)", r"\1", plain(value, digits)).replace(".×", "×").removesuffix(".")
+
+
+def bounded(value: float, text: str) -> str:
+    """Return the text of a kept value; where only the next power of ten was kept, say that it is a bound."""
+    if not 0 < abs(value) <= 1e-9 or f"{value:.12e}".lstrip("-")[:14] != "1.000000000000":
+        return text
+    bound = f"10{raised(round(math.log10(abs(value))))}"
+    return f"<{bound}" if value > 0 else f">−{bound}"
+
+
+def percent(value: float) -> str:
+    """Return a fraction in per cent, or as a power of ten below 0.01 %."""
+    return f"{short(100 * value, 3)}\u00a0%" if value == 0 or value >= 1e-4 else power(value)
+
+
+def span(values: Sequence[float]) -> str:
+    """Return the range of fractions, ``0.26 % to 9.0 %``; one value where they read alike."""
+    low, high = percent(min(values)), percent(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def cell(value: Value, factor: float = 1.0, digits: int = 4) -> str:
+    """Return a metric as a table cell: a number, or its word, or a dash where there is none."""
+    if value is None:
+        return DASH
+    return _WORDS.get(value, value) if isinstance(value, str) else plain(value * factor, digits)
+
+
+def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
+    """Return what the short words in a table's cells stand for."""
+    met = set(values)
+    return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in met)
+
+
+def swept(name: str) -> dict[str, str]:
+    """Return the swept fields and values of a case name ``scene[field=value,...]``."""
+    inside = re.fullmatch(r"[^\[]*\[(.*)\]", name)
+    pairs = re.findall(r"([\w.]+)=(.*?)(?=,[\w.]+=|$)", inside.group(1)) if inside else []
+    return dict(pairs)
+
+
+def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
+    """Return a short label per case of one scene: the swept values in the symbols of the text."""
+    fields = [swept(name) for name in names]
+    short = [
+        _label({f: v for f, v in values.items() if f != "time.steps"}, scene)
+        for values, scene in zip(fields, scenes, strict=True)
+    ]
+    if len(set(short)) == len(short):
+        return short
+    return [_label(values, scene) for values, scene in zip(fields, scenes, strict=True)]
+
+
+def _label(values: dict[str, str], scene: Scene) -> str:
+    parts = []
+    for field, value in values.items():
+        symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))
+        if field == "contact.stiffness":
+            symbol, value, unit = "p", f"{scene.contact.stiffness / scene.block.young:.4g}E", ""
+        elif unit == " Pa":
+            value, unit = _pressure(value)
+        parts.append((f"{symbol} = {value}{unit}" if symbol else value).replace("-", "−"))
+    return ", ".join(parts) or AS_STATED
+
+
+def _pressure(text: str) -> tuple[str, str]:
+    """Return a pressure in MPa where it is large, as number and unit; zero needs none."""
+    value = float(text)
+    if value == 0:
+        return "0", ""
+    return (f"{value / 1e6:g}", " MPa") if abs(value) >= 1e4 else (f"{value:g}", " Pa")
+
+
+def parameters(scene: Scene, varied: set[str]) -> str:
+    """Return the data of a scene in one line, without the fields that vary between its cases."""
+    block, time = scene.block, scene.time
+    outline = f"a = {block.side:g} m" if block.side else f"polygon of {len(block.outline)} vertices"
+    items = [
+        ("block.side", outline),
+        ("block.density", f"ρ = {block.density:g} kg/m³"),
+        ("block.young", f"E = {short(block.young, 2)} Pa"),
+        ("block.poisson", f"μ = {block.poisson:g}"),
+        ("block.hypothesis", block.hypothesis),
+        ("contact.stiffness", f"p = {short(scene.contact.stiffness, 2)} N/m"),
+        ("load.pressure", f"q = {short(scene.load.pressure, 2)} Pa"),
+        ("time.step", f"dt = {time.step:g} s"),
+        ("time.steps", f"{time.steps} steps"),
+        ("time.alpha", f"α = {time.alpha:g}"),
+        ("time.delta", f"δ = {time.delta:g}"),
+        ("time.gg", f"gg = {time.discount:.6g}"),
+        ("time.start", f"{time.start} initial acceleration"),
+        ("fem.degree", f"elements of degree {scene.fem.degree}"),
+        ("fem.elements", f"{scene.fem.per_side} a side" if not scene.fem.mesh else "mesh from a file"),
+        ("fem.foundation", f"{scene.fem.foundation} foundation"),
+    ]
+    return ", ".join(text for field, text in items if field not in varied) + "."

@@ -1,0 +1,134 @@
+"""The chapter of the study `work-precision`: error against run time and work, the cheapest answer, the orders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.chapters.scene import band, gate_count
+from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.figures import histories as figures
+from validation.report.figures.cost import work_figure
+from validation.runs.results import Results
+from validation.studies.work.points import Point, cheapest, floor, points
+
+SCHEMES = {"work-constant": "Constant acceleration", "work-average": "Average acceleration, consistent start"}
+ASKED = (0.1, 0.01, 0.001)
+
+
+def chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+    """Return the chapter."""
+    verdicts = results.verdicts(manifest["study"])
+    blocks: list[Block] = [Heading(manifest["title"]), Paragraph(manifest["purpose"])]
+    for prefix, title in SCHEMES.items():
+        blocks += scheme_blocks(points(results, manifest, prefix), prefix, title, directory)
+    return [*blocks, Heading("Orders of convergence", 2), *order_blocks(verdicts)]
+
+
+def scheme_blocks(found: Sequence[Point], prefix: str, title: str, directory: Path) -> list[Block]:
+    """Return the figure, the sentences and the table of one scheme."""
+    if not found:
+        return [Heading(title, 2), Paragraph("No run completed.")]
+    figures.save(work_figure(found), directory / f"{prefix}.svg")
+    caption = (
+        "Error against cost, step and mesh refined together. Left of each pair against the bar under the same scheme, "
+        "right against the continuum; displacement and pressure relative in L2, the frequency relative, the damping "
+        "ratio absolute. Grey: what no run beats in both; dotted: the model form of DDA; hollow: below the reference's "
+        "own uncertainty."
+    )
+    return [
+        Heading(title, 2),
+        Paragraph(cheapest_sentence(found), "lead"),
+        Paragraph(floor_sentence(found)),
+        FigureBlock(f"{prefix}.svg", caption),
+        run_table(found),
+    ]
+
+
+def cheapest_sentence(found: Sequence[Point]) -> str:
+    """Say what is cheapest at 10, 1 and 0.1 % of the continuum, in displacement and contact pressure both."""
+    parts = []
+    for error in ASKED:
+        best = cheapest(found, error)
+        block = [p for p in found if p.method != "bar"]
+        other = cheapest(block, error)
+        named = f"{_name(best)}" if best else "no run gets there"
+        if best and best.method == "bar":
+            named += f", and of the block's own models {_name(other)}" if other else ", and no model of the block does"
+        parts.append(f"at {percent(error)}: {named}")
+    return f"Cheapest against the continuum, {'; '.join(parts)}."
+
+
+def _name(point: Point | None) -> str:
+    if point is None:
+        return DASH
+    mesh = f", {point.scene.fem.per_side} elements a side" if point.method.startswith("fem") else ""
+    step, spent = short(1e3 * point.scene.time.step, 3), short(1e3 * point.seconds, 2)
+    return f"{point.method} with dt = {step} ms{mesh} (in {spent} ms)"
+
+
+def floor_sentence(found: Sequence[Point]) -> str:
+    """Say where DDA's model form stops it."""
+    levels = [floor(found, name, "continuum") for name in ("displacement", "contact pressure")]
+    if None in levels:
+        return "DDA was not run."
+    v, p = (percent(float(level)) for level in levels if level is not None)
+    return (
+        f"At the finest step DDA is {v} from the continuum in displacement and {p} in contact pressure: its model "
+        "form, which no finer step removes."
+    )
+
+
+def run_table(found: Sequence[Point]) -> Table:
+    """Return errors, work and seconds of every run."""
+    columns = (
+        Column("Method"),
+        Column("dt [ms]", "decimal"),
+        Column("n", "decimal"),
+        Column("v", "decimal", "Error against the bar"),
+        Column("pressure", "decimal", "Error against the bar"),
+        Column("v", "decimal", "Error against the continuum"),
+        Column("pressure", "decimal", "Error against the continuum"),
+        Column("Unknowns", "decimal"),
+        Column("Solves", "decimal"),
+        Column("Set-up [ms]", "decimal"),
+        Column("Steps [ms]", "decimal"),
+    )
+    return Table(columns, tuple(_row(p) for p in found), ruled=False)
+
+
+def _row(p: Point) -> tuple[str, ...]:
+    pairs = [(q, r) for r in ("bar", "continuum") for q in ("displacement", "contact pressure")]
+    errors = [plain(p.errors[pair], 2) if pair in p.errors else DASH for pair in pairs]
+    mesh = str(p.scene.fem.per_side) if p.method.startswith("fem") else DASH
+    spent = [plain(1e3 * p.row.seconds.get(part, 0.0), 2) for part in ("setup", "stepping")]
+    work = [str(p.row.work.get(name, DASH)) for name in ("unknowns", "solves")]
+    return (p.method, short(1e3 * p.scene.time.step, 3), mesh, *errors, *work, *spent)
+
+
+def order_blocks(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:
+    """Return the table of fitted orders and of the comparison with the record."""
+    rows = tuple(
+        (
+            v["scene"],
+            v["metric"],
+            plain(float(v["value"]), 4) if isinstance(v["value"], int | float) else DASH,
+            band(v),
+            v["verdict"],
+        )
+        for v in verdicts
+    )
+    columns = (
+        Column("Refined", "code"),
+        Column("Metric", "code"),
+        Column("Value", "decimal"),
+        Column("Band"),
+        Column("Verdict", "verdict"),
+    )
+    note = (
+        "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
+    )
+    note += "grid-convergence index as its uncertainty."
+    return [Paragraph(gate_count(verdicts)), Table(columns, rows, notes=(note,), ruled=False)]

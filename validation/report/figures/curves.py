@@ -1,0 +1,169 @@
+"""What figures draw, before anything is drawn: the house style, thinned curves, differences, places of labels.
+
+Every solver has one colour and one line style everywhere, of a palette that colour-blind readers can tell apart.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.runs.history import Array, History
+
+SMALL, HAIR = 7.0, 0.4  # pt
+GREY = "#6b6b6b"
+HOUSE_STYLE = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": SMALL,
+    "mathtext.fontset": "dejavusans",
+    "axes.labelsize": 6.5,
+    "axes.titlesize": SMALL,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 3.0,
+    "axes.linewidth": HAIR,
+    "axes.edgecolor": GREY,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.use_mathtext": True,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": "black",
+    "ytick.labelcolor": "black",
+    "xtick.major.width": HAIR,
+    "ytick.major.width": HAIR,
+    "xtick.minor.width": HAIR,
+    "ytick.minor.width": HAIR,
+    "xtick.major.size": 2.0,
+    "ytick.major.size": 2.0,
+    "xtick.minor.size": 1.2,
+    "ytick.minor.size": 1.2,
+    "lines.solid_capstyle": "round",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "dda-validation",
+    "path.simplify": True,
+}
+
+COLUMNS = {
+    "displacement": ("Displacement", "m"),
+    "contact_pressure": ("Contact pressure", "Pa"),
+    "horizontal_displacement": ("Horizontal displacement", "m"),
+    "rotation": ("Rotation", "rad"),
+}
+
+
+@dataclass(frozen=True)
+class LineStyle:
+    """Colour and stroke of one solver's lines."""
+
+    color: str
+    dash: tuple[float, ...]  # lengths on and off, in line widths; empty is solid
+    width: float  # pt
+    layer: int  # higher is drawn later
+
+
+STYLES = {
+    "dda": LineStyle("#d55e00", (), 1.1, 5),
+    "dda-textbook": LineStyle("#e69f00", (2.5, 2.5), 1.1, 6),
+    "fem": LineStyle("#0072b2", (4.0, 1.5), 1.1, 4),
+    "fenicsx": LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4),
+    "bar": LineStyle("#000000", (), 0.8, 3),
+    "continuum": LineStyle("#999999", (), 0.7, 1),
+}
+_OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
+_OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
+
+
+def style_of(name: str) -> LineStyle:
+    """Return the style of a solver; an unknown name gets one that depends on the name alone."""
+    if name in STYLES:
+        return STYLES[name]
+    code = zlib.crc32(name.encode())
+    color = _OTHER_COLORS[code % len(_OTHER_COLORS)]
+    return LineStyle(color, _OTHER_DASHES[code // len(_OTHER_COLORS) % len(_OTHER_DASHES)], 1.0, 2)
+
+
+def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
+    """Return at most about `points` samples: first, last and the extremes of equal bins, so that no peak is lost."""
+    if x.size <= points:
+        return x, y
+    edges = np.linspace(0, x.size, points // 2 + 1).astype(int)
+    keep = {0, x.size - 1}
+    for start, stop in itertools.pairwise(edges):
+        keep |= {start + int(np.argmin(y[start:stop])), start + int(np.argmax(y[start:stop]))}
+    index = np.array(sorted(keep))
+    return x[index], y[index]
+
+
+def envelope(x: Array, y: Array, bins: int = 40) -> tuple[Array, Array]:
+    """Return the largest magnitude of y in each of `bins` equal parts of the samples, at the parts' middles."""
+    edges = np.unique(np.linspace(0, x.size, bins + 1).astype(int))
+    pairs = list(itertools.pairwise(edges))
+    return (np.array([(x[i] + x[j - 1]) / 2 for i, j in pairs]), np.array([np.abs(y[i:j]).max() for i, j in pairs]))
+
+
+def nudge(wanted: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
+    """Return places at least `gap` apart, in the order of and as near as possible to the wanted ones.
+
+    The least-squares answer: isotonic regression (pool adjacent violators) of ``wanted - gap * rank``, clipped so
+    that all places stay within [low, high] as long as they fit.
+    """
+    goal = np.asarray(wanted, dtype=float)
+    order = np.argsort(goal, kind="stable")
+    steps = gap * np.arange(goal.size)
+    pools: list[tuple[float, int]] = []
+    for value in goal[order] - steps:
+        pools.append((float(value), 1))
+        while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
+            (a, n), (b, m) = pools[-2:]
+            pools[-2:] = [((a * n + b * m) / (n + m), n + m)]
+    level = np.repeat([v for v, _ in pools], [n for _, n in pools])
+    places = np.empty_like(goal)
+    places[order] = np.clip(level, low, max(low, high - gap * (goal.size - 1))) + steps
+    return places
+
+
+def engineering(largest: float, unit: str) -> tuple[float, str]:
+    """Return factor and unit with the SI prefix that brings the largest value between 1 and 1000."""
+    if not unit or not largest > 0 or not math.isfinite(largest):
+        return 1.0, unit
+    power = min(9, max(-9, 3 * math.floor(math.log10(largest) / 3)))
+    return 10.0**-power, {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}[power] + unit
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One of several small multiples: the histories of all solvers for one case."""
+
+    title: str
+    histories: Mapping[str, History]
+    static: float | None  # static value of the drawn column, in its unit
+    reference: str | None  # the solver that differences are taken from
+
+
+def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
+    """Return the common range of a column; histories that blow up are cut at six static values."""
+    values = np.concatenate([h.columns[column] for p in panels for h in p.histories.values()] or [np.ones(1)])
+    values = np.append(values[np.isfinite(values)], 0.0)
+    limit = 6 * max((abs(p.static) for p in panels if p.static), default=math.inf)
+    return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
+
+
+def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
+    """Return the envelope of each solver's scaled difference from the reference."""
+    if panel.reference is None or panel.reference not in panel.histories:
+        return {}
+    base = panel.histories[panel.reference]
+    scale = abs(panel.static or 0.0) or float(np.abs(base.columns[column]).max()) or 1.0
+    others = {s: h for s, h in panel.histories.items() if s != panel.reference and h.time.size == base.time.size}
+    with np.errstate(all="ignore"):  # a run that blew up differs by infinity
+        scaled = {s: (h.columns[column] - base.columns[column]) / scale for s, h in others.items()}
+    return {s: envelope(base.time, np.where(np.isfinite(d), d, np.inf)) for s, d in scaled.items()}

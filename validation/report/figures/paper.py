@@ -1,0 +1,267 @@
+"""The paper's figures redrawn, and the damping budget, in the house style of `figures`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
+
+from validation.report.figures.curves import GREY, HAIR, STYLES, thin
+from validation.report.figures.histories import (
+    Margins,
+    axes_grid,
+    draw_line,
+    house_style,
+    label_ends,
+    size_of,
+    wrapped_titles,
+)
+from validation.runs.history import Array
+
+SCHEME_COLORS = ("#009e73", "#5d3a9b", "#cc79a7", "#8c6d1f")  # schemes are no solvers: colours of their own
+CONTACT_COLOR = "#5d3a9b"
+BUDGET_PANELS = 4  # in a row
+LEAST_RATIO = 1e-4  # damping ratios below are off the axis
+
+
+@dataclass(frozen=True)
+class StepPanel:
+    """One panel over the number of time steps: lines by solver, an optional level, and where DDA has settled."""
+
+    title: str
+    lines: Mapping[str, Array]
+    level: float | None = None
+    settled: float | None = None
+    marks: Sequence[float] = field(default_factory=tuple)
+
+
+def steps_figure(panels: Sequence[StepPanel], label: str, last: int) -> Figure:
+    """Draw histories over the step number, one panel a case, up to step `last`; the settling step is marked."""
+    low, high = _range(panels, last)
+    with house_style():
+        figure, (row,) = axes_grid([(36.0, 0.0)], len(panels), Margins(right=22.0, bottom=9.5))
+        for axes, panel in zip(row, panels, strict=True):
+            axes.set_title(panel.title)
+            axes.set_xlim(0, last)
+            axes.set_ylim(low, high)
+            for name, values in panel.lines.items():
+                x, y = thin(np.arange(1.0, min(last, values.size) + 1), values[:last])
+                draw_line(axes, name, x, y)
+            _mark(axes, panel)
+            _step_axis(axes, last)
+        row[0].set_ylabel(label)
+        for axes in row[1:]:
+            axes.tick_params(labelleft=False)
+        label_ends(row[-1], {n: float(v[min(last, v.size) - 1]) for n, v in panels[-1].lines.items()})
+    return figure
+
+
+def _range(panels: Sequence[StepPanel], last: int) -> tuple[float, float]:
+    values = np.concatenate([v[:last] for panel in panels for v in panel.lines.values()])
+    values = np.append(values[np.isfinite(values)], 0.0)
+    pad = 0.06 * float(np.ptp(values)) or 1.0
+    return float(values.min()) - pad, float(values.max()) + pad
+
+
+def _mark(axes: Axes, panel: StepPanel) -> None:
+    if panel.level is not None:
+        axes.axhline(panel.level, color="#bbbbbb", lw=HAIR, zorder=1)
+    if panel.settled is None or panel.settled > axes.get_xlim()[1]:
+        return
+    color, right = STYLES["dda"].color, panel.settled > 0.6 * axes.get_xlim()[1]
+    axes.axvline(panel.settled, color=color, lw=HAIR, zorder=1, ls=(0, (2, 2)))
+    axes.annotate(
+        f"{panel.settled:.0f} steps",
+        (panel.settled, 1.0),
+        (-2.0 if right else 2.0, -1.0),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        color=color,
+        va="top",
+        ha="right" if right else "left",
+        fontsize=6,
+    )
+
+
+def _step_axis(axes: Axes, last: int) -> None:
+    room = size_of(axes)[0] > (34 if last < 1000 else 60)
+    ticks = MaxNLocator(4 if room else 2, integer=True, steps=[1, 2, 5, 10]).tick_values(0, last)
+    shown = [float(tick) for tick in ticks if 0 <= tick <= last]
+    axes.set_xticks(shown, [f"{tick:,.0f}".replace(",", "\u202f") for tick in shown])
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.set_xlabel("Time step", labelpad=1.5)
+    labels = axes.get_xticklabels()
+    labels[0].set_horizontalalignment("left")
+    if shown[-1] > 0.95 * last:
+        labels[-1].set_horizontalalignment("right")
+
+
+# ---- figure 1 -----------------------------------------------------------------------------------------------------
+
+
+def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> Figure:
+    """Draw spectral radius over w dt for some schemes, what the paper prints dashed, and the code's own operators."""
+    omega = np.array(data["omega"])
+    with house_style():
+        figure, ((axes,),) = axes_grid([(58.0, 0.0)], 1, Margins(13.0, 56.0, 4.0, 9.5))
+        axes.set_xscale("log")
+        axes.set_xlim(omega[0], omega[-1])
+        axes.set_ylim(0, 1.06)
+        ends: dict[str, tuple[float, str]] = {}
+        for (name, curve), color in zip(data["schemes"].items(), SCHEME_COLORS, strict=True):
+            radius, printed = np.array(curve["radius"]), np.array(curve["printed"])
+            axes.plot(omega, radius, color=color, lw=1.2, zorder=3)
+            ends[name] = (float(radius[-1]), color)
+            departs = np.abs(printed - radius) > 1e-6
+            if departs.any():
+                axes.plot(omega[departs], printed[departs], color=color, lw=0.9, ls=(0, (4, 2)), zorder=2)
+                ends[f"{name.split(' (')[0]}: √(1+h), as printed"] = (float(printed[-1]), color)
+        if points:
+            x, y = np.array(points).T
+            axes.plot(x, y, "o", ms=2.6, mfc="none", mec=STYLES["dda"].color, mew=0.6, zorder=5)
+            axes.annotate(
+                "one-step operators of dda", (0.04, 0.06), xycoords="axes fraction", color=STYLES["dda"].color
+            )
+        axes.axvline(4.0, color=GREY, lw=HAIR, ls=(0, (2, 2)))
+        axes.annotate("ω dt = 4", (4.0, 0.02), (3, 0), textcoords="offset points", color=GREY)
+        axes.set_xlabel("ω dt")
+        axes.set_ylabel("Spectral radius |λ|")
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        _colored_ends(axes, ends)
+    return figure
+
+
+def _colored_ends(axes: Axes, ends: Mapping[str, tuple[float, str]]) -> None:
+    """Write names beside the ends of lines in the lines' own colours, nudged apart."""
+    from validation.report.figures.curves import nudge
+
+    width, height = size_of(axes)
+    low, high = axes.get_ylim()
+    to_unit = (
+        (lambda y: (math.log10(y / low)) / math.log10(high / low))
+        if axes.get_yscale() == "log"
+        else (lambda y: (y - low) / (high - low))
+    )
+    own = [float(np.clip(to_unit(y), 0, 1)) for y, _ in ends.values()]
+    places = nudge(own, 3.0 / height, 0.0, 1.0 + 1 / height)
+    for (name, (_, color)), start, place in zip(ends.items(), own, places, strict=True):
+        line = [1, 1 + 2.5 / width], [start, place]
+        axes.plot(*line, transform=axes.transAxes, color=color, lw=HAIR, clip_on=False)
+        axes.text(1 + 3.1 / width, place, name, transform=axes.transAxes, color=color, va="center_baseline")
+
+
+# ---- the damping budget -------------------------------------------------------------------------------------------
+
+
+BudgetLine = tuple[Array, str, float, Any]  # values, colour, width, dashes
+
+
+@dataclass(frozen=True)
+class BudgetPanel:
+    """One setting of a scene: its title and its budget as the manifest keeps it."""
+
+    title: str
+    budget: Mapping[str, Any]
+
+
+def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
+    """Draw total damping ratio over dt, split into its parts, with the limits, one panel a setting."""
+    columns = min(len(panels), BUDGET_PANELS)
+    bands = -(-len(panels) // columns)
+    with house_style():
+        margins = Margins(right=24.0, top=8.0, bottom=9.5)
+        titles, extra = wrapped_titles([panel.title for panel in panels], columns, margins)
+        panels = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
+        margins = replace(margins, top=margins.top + extra)
+        figure, rows = axes_grid([(40.0, 15.0 + extra)] * bands, columns, margins)
+        for band in range(bands):
+            some = panels[band * columns : (band + 1) * columns]
+            for axes, panel in zip(rows[band], some, strict=False):
+                _budget_axes(axes, panel)
+            for axes in rows[band][1:]:
+                axes.tick_params(labelleft=False)
+            for axes in rows[band][len(some) :]:
+                axes.set_axis_off()
+            rows[band][0].set_ylabel("Damping ratio ξ [%]")
+            _budget_labels(rows[band][len(some) - 1], some[-1].budget)
+    return figure
+
+
+def _values(listed: Sequence[float | None]) -> Array:
+    return np.array([math.nan if value is None else value for value in listed])
+
+
+def _lines(budget: Mapping[str, Any]) -> dict[str, BudgetLine]:
+    """Lines of a panel: label -> values, colour, width, dashes; parts only where there is kinetic damping."""
+    found: dict[str, BudgetLine] = {}
+    colors = {"first axial": STYLES["dda"].color, "contact": CONTACT_COLOR}
+    for name, curves in budget["modes"].items():
+        total, own, kinetic = (_values(curves[part]) for part in ("total", "algorithmic", "kinetic"))
+        found[name] = (total, colors[name], 1.3, "-")
+        if name == "first axial" and min(np.nanmax(part, initial=0.0) for part in (own, kinetic)) > LEAST_RATIO:
+            found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
+            found["kinetic part"] = (kinetic, colors[name], 0.9, (0, (1, 1.5)))
+    return found
+
+
+def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
+    dt = np.array(panel.budget["dt"])
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(dt[0], dt[-1])
+    axes.set_ylim(100 * LEAST_RATIO, 1e3)
+    axes.set_title(panel.title, pad=9.0)
+    axes.axhspan(100, 1e3, color="#f0f0f0", zorder=0)
+    if panel.budget["limits"].get("overdamped below"):
+        axes.text(0.97, 0.97, "overdamped", transform=axes.transAxes, va="top", ha="right", color=GREY, fontsize=6)
+    for values, color, width, dash in _lines(panel.budget).values():
+        y = 100 * np.where(values > LEAST_RATIO / 10, values, math.nan)
+        axes.plot(dt, y, color=color, lw=width, ls=dash, zorder=4)
+        ends = np.flatnonzero(np.isfinite(y))
+        if ends.size and ends[-1] < dt.size - 1:
+            axes.plot(dt[ends[-1]], y[ends[-1]], "o", ms=2.6, mfc="white", mec=color, mew=0.7, zorder=6)
+    if all(np.nanmax(values, initial=0.0) < LEAST_RATIO for values, *_ in _lines(panel.budget).values()):
+        axes.text(0.5, 0.5, "no damping", transform=axes.transAxes, ha="center", color=GREY)
+    if floor := panel.budget["floor"]:
+        clear = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        said = f"ω₁ = {floor:.3f} × bar"
+        axes.text(
+            0.97, 0.05, said, transform=axes.transAxes, ha="right", color=GREY, fontsize=5.5, bbox=clear, zorder=5
+        )
+    _limit_lines(axes, panel.budget)
+    for step in panel.budget["steps"]:
+        axes.plot(step, 100 * LEAST_RATIO, "^", ms=3.4, color="black", clip_on=False, zorder=8)
+    axes.xaxis.set_major_locator(LogLocator(numticks=4))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.set_xlabel("dt [s]", labelpad=1.5)
+
+
+def _limit_lines(axes: Axes, budget: Mapping[str, Any]) -> None:
+    """Draw the limits as vertical hairlines, named above the axes."""
+    names = {"real roots": f"ω₁dt = {budget['real roots at']:.3g}", "wave transit": "a/c"}
+    for name, step in budget["limits"].items():
+        text = names.get(name, "")
+        axes.axvline(step, color=GREY, lw=HAIR, ls=(0, (2, 2)) if name != "wave transit" else "-", zorder=1)
+        if text:
+            side = "left" if name == "real roots" else "right"
+            axes.text(
+                step, 1.01, text, transform=axes.get_xaxis_transform(), color=GREY, fontsize=6, ha=side, va="bottom"
+            )
+
+
+def _budget_labels(axes: Axes, budget: Mapping[str, Any]) -> None:
+    ends = {}
+    for name, (values, color, *_) in _lines(budget).items():
+        good = values[np.isfinite(values) & (values > LEAST_RATIO)]
+        if good.size:
+            ends[name] = (100 * float(good[-1]), color)
+    _colored_ends(axes, ends)

@@ -1,0 +1,88 @@
+"""Maps of correct digits, side by side in one scale, and steps to settle over the stiffness of the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from validation.report.figures.curves import style_of
+from validation.report.figures.histories import WIDTH, house_style, label_ends
+from validation.runs.history import Array
+
+CELL, LEFT, TOP, BOTTOM, GAP = 4.6, 16.0, 6.0, 9.0, 6.0  # mm
+
+
+@dataclass(frozen=True)
+class DigitMap:
+    """A map: relative errors by rows and columns, NaN where no run answers."""
+
+    title: str
+    error: Array
+
+
+def digits_of(error: Array) -> Array:
+    """Return -log10 of the error, cut to 0 .. 16; NaN stays NaN."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: Array = np.clip(-np.log10(np.maximum(error, 1e-16)), 0.0, 16.0) + 0.0
+    return found
+
+
+def digit_maps(
+    maps: Sequence[DigitMap], rows: Sequence[str], columns: Sequence[str], x_label: str, y_label: str
+) -> Figure:
+    """Draw maps of whole correct digits in one row; colour and number say the same, an empty cell has no run."""
+    across = (WIDTH - LEFT - 2.0 - GAP * (len(maps) - 1)) / len(maps)
+    height = TOP + CELL * len(rows) + BOTTOM
+    with house_style():
+        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
+        for k, shown in enumerate(maps):
+            left = LEFT + k * (across + GAP)
+            axes = figure.add_axes((left / WIDTH, BOTTOM / height, across / WIDTH, CELL * len(rows) / height))
+            digits = digits_of(shown.error)
+            axes.imshow(digits, cmap="cividis", vmin=0, vmax=16, aspect="auto")
+            for (i, j), value in np.ndenumerate(digits):
+                if np.isfinite(value):
+                    color = "black" if value > 8 else "white"
+                    axes.text(j, i, f"{np.floor(value):.0f}", ha="center", va="center", color=color)
+            axes.set_title(shown.title)
+            axes.set_xticks(range(len(columns)), list(columns))
+            axes.set_yticks(range(len(rows)), list(rows) if k == 0 else [""] * len(rows))
+            axes.tick_params(length=0)
+            axes.set_xlabel(x_label)
+            if k == 0:
+                axes.set_ylabel(y_label)
+    return figure
+
+
+@dataclass(frozen=True)
+class Settling:
+    """Steps to settle over p/E; NaN where a history never does within its steps."""
+
+    name: str
+    ratios: Array
+    steps: Array
+
+
+def settling_figure(lines: Sequence[Settling], longest: float) -> Figure:
+    """Draw steps to settle over p/E, both logarithmic; a hollow mark at the top has not settled within the run."""
+    with house_style():
+        figure = Figure(figsize=(WIDTH / 25.4, 62.0 / 25.4))
+        axes = figure.add_axes((16.0 / WIDTH, 10.0 / 62.0, (WIDTH - 70.0) / WIDTH, 48.0 / 62.0))
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        for line in lines:
+            style = style_of(line.name)
+            shown = np.where(np.isfinite(line.steps), line.steps, longest)
+            axes.plot(line.ratios, shown, color=style.color, lw=style.width, ls=(0, style.dash) if style.dash else "-")
+            never = ~np.isfinite(line.steps)
+            axes.plot(line.ratios[~never], shown[~never], "o", ms=3, color=style.color)
+            axes.plot(line.ratios[never], shown[never], "o", ms=4, mfc="white", mec=style.color)
+        axes.set_ylim(10, 1.6 * longest)
+        axes.set_xlabel("p / E")
+        axes.set_ylabel("Steps to settle within $10^{-4}$")
+        ends = {line.name: float(line.steps[-1]) if np.isfinite(line.steps[-1]) else longest for line in lines}
+        label_ends(axes, ends)
+    return figure

@@ -1,0 +1,65 @@
+"""Blocks set as PDF by typst."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import typst
+
+from validation.errors import InputError
+from validation.report.blocks import Block
+from validation.runs.files import write_atomically
+
+TEMPLATE = Path(__file__).with_name("report.typ")
+PIXELS_PER_INCH = 200.0
+
+
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
+    """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    if not out.parent.is_dir():
+        raise InputError(f"{out}: cannot be written: {out.parent} is no directory; choose another place")
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name)
+        pdf = _typeset(root, blocks_of(root))
+    write_atomically(out, lambda stream: stream.write(pdf))
+    return out
+
+
+def _typeset(root: Path, blocks: Sequence[Block]) -> bytes:
+    """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
+    shutil.copyfile(TEMPLATE, root / "report.typ")
+    data = {
+        "title": "Discontinuous Deformation Analysis against finite elements",
+        "subtitle": "Cross-validation on the two-block model",
+        "blocks": [{"block": type(block).__name__} | asdict(block) for block in blocks],
+    }
+    (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
+    pdf = typst.compile(str(root / "report.typ"), root=str(root), format="pdf", ignore_system_fonts=True)
+    return bytes(pdf)
+
+
+def _png(svg: Path) -> Path:
+    """Write a PNG of an SVG file beside it, rendered as in the report."""
+    page = f'#set page(width: auto, height: auto, margin: 2mm)\n#image("{svg.name}")\n'
+    with tempfile.TemporaryDirectory() as name:
+        shutil.copyfile(svg, Path(name) / svg.name)
+        (Path(name) / "page.typ").write_text(page, encoding="utf-8")
+        image = bytes(
+            typst.compile(
+                str(Path(name) / "page.typ"), root=name, format="png", ppi=PIXELS_PER_INCH, ignore_system_fonts=True
+            )
+        )
+    path = svg.with_suffix(".png")
+    write_atomically(path, lambda stream: stream.write(image))
+    return path

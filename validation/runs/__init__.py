@@ -1,0 +1,4 @@
+"""What comes out of a solver: histories, outcomes, modes, and the results directory that keeps them.
+
+Nothing about scenes, solvers or judging comes in.
+"""

@@ -1,0 +1,103 @@
+"""Files: written whole or not at all, histories as CSV tables."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import Array, History
+
+
+@contextmanager
+def atomic_path(path: Path) -> Iterator[Path]:
+    """Yield a temporary path of the same ending beside `path`; it takes the name when the block ends well.
+
+    Raises
+    ------
+    InputError
+        The directory or the file cannot be written.
+    """
+    temporary = ""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
+        os.close(handle)
+        yield Path(temporary)
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except BaseException as error:
+        if temporary:
+            Path(temporary).unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise InputError(f"{path}: cannot be written: {error.strerror}; choose another place") from None
+        raise
+
+
+def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
+    """Write a file under a temporary name and rename it, so that no half-written file is ever seen.
+
+    Raises
+    ------
+    InputError
+        The directory or the file cannot be written.
+    """
+    with atomic_path(path) as temporary, temporary.open("wb") as stream:
+        write(stream)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def write_csv(history: History, path: Path) -> None:
+    """Write a history as CSV with full double precision, header ``time,displacement,...``."""
+    table = np.column_stack([history.time, *history.columns.values()])
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", *history.columns])
+    writer.writerows([repr(value) for value in row] for row in table.tolist())
+    write_atomically(path, lambda stream: stream.write(text.getvalue().encode()))
+
+
+def read_csv(path: Path) -> History:
+    """Read a history that `write_csv` wrote.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not such a table.
+    """
+    names, table = read_table(path)
+    return History(table[:, 0], dict(zip(names[1:], table.T[1:], strict=True)))
+
+
+def read_table(path: Path) -> tuple[list[str], Array]:
+    """Read a CSV table of numbers under a header that begins with time: names and values, a row a time.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not such a table.
+    """
+    try:
+        with path.open(encoding="utf-8", newline="") as stream:
+            names = [name.strip() for name in next(csv.reader(stream), [])]
+            lines = [line for line in stream if line.strip()]
+            table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except (ValueError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: must be a table of numbers under a header: {error}") from None
+    if not names or names[0] != "time" or table.shape[1] != len(names):
+        raise InputError(f"{path}: header must begin with time and name every column, got {','.join(names)!r}")
+    return names, table

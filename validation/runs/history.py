@@ -1,0 +1,43 @@
+"""Histories: columns over time, one value a step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"
+
+
+@dataclass(frozen=True)
+class History:
+    """Columns over time, one value per step from the first step on.
+
+    Attributes
+    ----------
+    time
+        Times of the steps [s], shape (steps,).
+    columns
+        Column name to values, each of shape (steps,): displacement [m], contact_pressure [Pa], others.
+    """
+
+    time: Array
+    columns: Mapping[str, Array]
+
+    @property
+    def displacement(self) -> Array:
+        """Vertical displacement v of the centroid point [m]."""
+        return self.columns[DISPLACEMENT]
+
+    @property
+    def contact_pressure(self) -> Array:
+        """Mean contact pressure [Pa], positive in compression."""
+        return self.columns[PRESSURE]
+
+    def until(self, duration: float) -> History:
+        """Return the part up to a time [s]; the last step may exceed it by rounding only."""
+        keep = self.time <= duration * (1 + 1e-9)
+        return History(self.time[keep], {name: values[keep] for name, values in self.columns.items()})

@@ -1,0 +1,42 @@
+"""Modes of a discrete model and of its one-step operator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode of a discrete model and of its one-step operator.
+
+    Attributes
+    ----------
+    frequency
+        Natural circular frequency w of (K, M) [rad/s].
+    share
+        Share (phi'F)^2 / (w^2 F'D_static) of the static response [1].
+    eigenvalues
+        The two eigenvalues of the one-step operator that are not identically zero [1].
+    contact_share
+        Static contact pressure that the mode carries over the applied pressure [1]; None where not reported.
+    """
+
+    frequency: float
+    share: float
+    eigenvalues: tuple[complex, complex]
+    contact_share: float | None = None
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest modulus of the eigenvalues [1]."""
+        return max(abs(value) for value in self.eigenvalues)
+
+
+def contact_index(modes: Sequence[Mode]) -> int | None:
+    """Index of the contact mode: of the modes after the first axial one, that with most of the contact pressure."""
+    if len(modes) < 2 or modes[0].contact_share is None:
+        return None
+    return 1 + int(np.argmax([abs(mode.contact_share or 0.0) for mode in modes[1:]]))

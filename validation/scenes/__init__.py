@@ -1,0 +1,4 @@
+"""What is simulated: scene files, their tables and what they may state.
+
+Problem data only; no solver comes in.
+"""

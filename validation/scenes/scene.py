@@ -1,0 +1,307 @@
+"""Scenes: what is simulated, as TOML in SI units, checked with pydantic; unknown keys are refused.
+
+A scene holds problem data only; no solver is imported here. Every defect of a scene file is reported as one
+:class:`InputError` line that names the file, the field, the rule and the value.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import Field, ValidationError, model_validator
+
+from validation.errors import InputError as InputError
+from validation.scenes.tables import (
+    BlockSection,
+    ContactSection,
+    FemSection,
+    GateSection,
+    LoadSection,
+    RunSection,
+    Section,
+    TimeSection,
+)
+
+SCENE_DIRECTORY = Path(__file__).parent / "library"
+LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
+
+
+class Scene(Section):
+    """A scene as its file states it; `expand` resolves the sweep into single cases."""
+
+    name: str = "scene"
+    title: str = ""
+    block: BlockSection
+    contact: ContactSection
+    load: LoadSection
+    time: TimeSection
+    fem: FemSection = FemSection()
+    run: RunSection = RunSection()
+    sweep: dict[str, Any] = Field(default_factory=dict)
+    gate: tuple[GateSection, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for field, values in self._swept().items():
+            if not (isinstance(values, list) and values):
+                raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
+            if field not in _sweepable():
+                raise ValueError(f'sweep: unknown key, must be one of a table as in "time.step", got {field!r}')
+        mode, lists = self.sweep.get("mode", "product"), self._swept()
+        if mode not in ("product", "zip"):
+            raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
+        if mode == "zip" and len({len(v) for v in lists.values()}) > 1:
+            raise ValueError(f"sweep: lists of a zip must have one length, got {[*map(len, lists.values())]}")
+        count = max(map(len, lists.values()), default=1) if mode == "zip" else math.prod(map(len, lists.values()))
+        if count > MOST_CASES:
+            raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
+        if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
+            raise ValueError(
+                f"fem: patch_width must be at most half the base length "
+                f"{self.block.base_length / 2:g}, got {self.fem.patch_width:g}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _check_pressed_part(self) -> Self:
+        (x1, y1), (x2, y2) = self.block.edge(self.block.top)
+        half = math.hypot(x2 - x1, y2 - y1) / 2
+        if self.load.eccentricity and abs(self.load.eccentricity) >= half:
+            raise ValueError(
+                f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
+            )
+        return self
+
+    def _swept(self) -> dict[str, list[Any]]:
+        return {field: values for field, values in self.sweep.items() if field != "mode"}
+
+    @property
+    def beyond_two_blocks(self) -> str | None:
+        """Why solvers that are written for one block under a centred pressure do not apply; None if they do."""
+        if self.block.subdivide is not None:
+            return "the block is cut into sub-blocks"
+        return None if self.load.centred else "the solver is written for a centred pressure alone"
+
+    def expand(self) -> tuple[Scene, ...]:
+        """Return one scene per value of the sweep, named ``name[field=value,...]``.
+
+        Raises
+        ------
+        InputError
+            A swept field or value is not allowed, or a case repeats.
+        """
+        lists = self._swept()
+        if not lists:
+            return (self,)
+        rows = (
+            zip(*lists.values(), strict=True) if self.sweep.get("mode") == "zip" else itertools.product(*lists.values())
+        )
+        return tuple(self._cases(lists, rows))
+
+    def _cases(self, lists: dict[str, list[Any]], rows: Iterable[tuple[Any, ...]]) -> Iterator[Scene]:
+        names = set()
+        for row in rows:
+            case = self.with_values(dict(zip(lists, row, strict=True)), label=True)
+            if case.name in names:
+                raise InputError(f"{self.name}: sweep: must not repeat a case, got {case.name} twice")
+            names.add(case.name)
+            yield case
+
+    def with_values(self, values: dict[str, Any], label: bool = False) -> Scene:
+        """Return a copy with dotted keys replaced.
+
+        A key that is set leaves the sweep, and so does a key that it excludes.
+
+        Raises
+        ------
+        InputError
+            A key is no key of a scene, a value is not allowed, or two of the keys exclude each other.
+        """
+        data = self.definition()
+        for field, value in values.items():
+            if both := [other for other in _EXCLUSIVE.get(field, ()) if other in values]:
+                raise InputError(f"{self.name}: {field} and {both[0]} exclude each other, got both")
+            _set_dotted(data, field, value, self.name)
+        gone = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
+        sweep = {f: v for f, v in self.sweep.items() if f not in gone}
+        data["sweep"] = sweep if set(sweep) - {"mode"} else {}
+        if label:
+            inside = ",".join(f"{field}={_short(value)}" for field, value in values.items())
+            data["name"] = f"{self.name}[{inside}]"
+        return parse_scene(data, self.name)
+
+    def definition(self) -> dict[str, Any]:
+        """Return the scene as plain data (what a file would state)."""
+        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True))
+        return data
+
+
+def _short(value: object) -> str:
+    """Return a value for a name; digits beyond six are kept, since names must tell cases apart."""
+    if isinstance(value, list | tuple):
+        return "x".join(map(_short, value))
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:g}" if float(f"{value:g}") == value else repr(value)
+
+
+def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> None:
+    """Set ``section.key`` in place; exclusive partners of the key are taken out."""
+    section, _, key = field.partition(".")
+    if not key:
+        section, key = "", section
+    if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
+        raise InputError(f"{where}: {field}: must be a key as in time.step=0.001, got {field!r}")
+    table = data.setdefault(section, {}) if section else data
+    if not isinstance(table, dict):
+        raise InputError(f"{where}: {field}: must be section.key, got {field!r}")
+    for partner in _EXCLUSIVE.get(field, ()):
+        table.pop(partner.partition(".")[2], None)
+    table[key] = value
+
+
+def _sweepable() -> set[str]:
+    """Return the dotted keys of the tables that a sweep may vary."""
+    tables = {name: field.annotation for name, field in Scene.model_fields.items() if name != "run"}
+    sections = {n: t for n, t in tables.items() if isinstance(t, type) and issubclass(t, Section)}
+    return {f"{name}.{key}" for name, table in sections.items() for key in table.model_fields}
+
+
+_FILES = ("fem.mesh", "load.base_motion")
+_EXCLUSIVE = {
+    "time.gg": ("time.gg_rate",),
+    "time.gg_rate": ("time.gg",),
+    "fem.elements": ("fem.mesh",),
+    "fem.mesh": ("fem.elements",),
+    "block.side": ("block.width", "block.height", "block.vertices", "block.base", "block.top"),
+    "block.vertices": ("block.side", "block.width", "block.height"),
+    "block.width": ("block.side", "block.vertices"),
+    "block.height": ("block.side", "block.vertices"),
+}
+
+
+def parse_scene(data: dict[str, Any], source: str) -> Scene:
+    """Check plain data and return the scene.
+
+    Raises
+    ------
+    InputError
+        With one line: source, field, rule and value of the first defect.
+    """
+    try:
+        return Scene.model_validate(data)
+    except ValidationError as error:
+        raise InputError(_one_line(error, source)) from None
+    except RecursionError:
+        raise InputError(f"{source}: scene: must not be nested so deeply, got too many levels") from None
+
+
+def _one_line(error: ValidationError, source: str) -> str:
+    """Return the first defect of a pydantic report as ``source: field: rule, got value``."""
+    first = error.errors(include_url=False)[0]
+    field = ".".join(str(part) for part in first["loc"])
+    where = f"{source}: {field}" if field else source  # a rule on the whole scene begins with its field
+    rule = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    if first["type"] == "extra_forbidden":
+        rule = "unknown key"
+    elif first["type"] == "missing":
+        return f"{where}: is required, got nothing"
+    elif rule == first["msg"].removeprefix("Input should be ") and "Input should be" in first["msg"]:
+        rule = f"must be {rule}"
+    elif first["type"].endswith(("too_short", "too_long")):
+        rule = f"must{rule.partition('should')[2].partition(' after')[0]}"
+    if ", got " not in rule:
+        rule = f"{rule}, got {_clip(first['input'])}"
+    more = error.error_count() - 1
+    return f"{where}: {rule}" + (f" (and {more} more)" if more else "")
+
+
+def _clip(value: object, width: int = 60) -> str:
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # too many levels, or an integer of too many digits
+        text = f"a {type(value).__name__} too large to print"
+    return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+def scene_names() -> list[str]:
+    """Return the names of the built-in scenes."""
+    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
+
+
+def load_scene(source: str | Path) -> Scene:
+    """Return the scene of a TOML file or of a built-in name.
+
+    Parameters
+    ----------
+    source
+        Path of a scene file, or a name that `scene_names` lists.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not TOML, or states something that is not allowed.
+    """
+    path = Path(source)
+    if path.suffix != ".toml" and str(source) in scene_names():
+        path = SCENE_DIRECTORY / f"{source}.toml"
+    data = _read_toml(path)
+    if "name" in data:
+        raise InputError(f"{path.name}: name: unknown key, got {_clip(data['name'])}")
+    _beside(path.parent, data)
+    return parse_scene({"name": path.stem} | data, path.name)
+
+
+def _beside(directory: Path, data: dict[str, Any]) -> None:
+    """Let the files that a scene names, in a table or in the sweep, stand beside the scene's own file."""
+
+    def beside(value: object) -> object:
+        return str(directory / value) if isinstance(value, str) else value
+
+    for field in _FILES:
+        section, _, key = field.partition(".")
+        table, sweep = data.get(section), data.get("sweep")
+        if isinstance(table, dict) and key in table:
+            table[key] = beside(table[key])
+        if isinstance(sweep, dict) and isinstance(sweep.get(field), list):
+            sweep[field] = [beside(value) for value in sweep[field]]
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        if path.is_file() and path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path}: must be at most {LARGEST_FILE} bytes, got {path.stat().st_size}")
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except FileNotFoundError:
+        known = ", ".join(scene_names())
+        raise InputError(f"{path}: no such scene file; built-in scenes: {known}") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
+        raise InputError(f"{path}: must be TOML: {' '.join(str(error).split())}") from None
+
+
+def parse_assignment(text: str) -> tuple[str, Any]:
+    """Split ``key=value`` of the command line; the value is TOML, or else a plain word.
+
+    Raises
+    ------
+    InputError
+        There is no ``=`` or no key.
+    """
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise InputError(f"--set: must be key=value, got {text!r}")
+    try:
+        parsed = tomllib.loads(f"value = {value}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        parsed = value
+    return key.strip(), parsed

@@ -1,0 +1,246 @@
+"""The tables of a scene file: their fields, units and rules, checked with pydantic; unknown keys are refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from validation.scenes.outline import Point, check_polygon, convex_quadrilateral
+
+FINE_ELEMENTS = 16
+
+
+def _real(value: object) -> float:
+    """Accept a finite TOML number and nothing that merely converts to one."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("must be a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError("must be a finite number")
+    return number
+
+
+def _count(value: object) -> int:
+    """Accept a TOML integer that fits 64 bits."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError("must be a whole number")
+    if abs(value) >= 2**63:
+        raise ValueError("must fit 64 bits")
+    return value
+
+
+def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Accept words that do not repeat."""
+    if len(set(words)) < len(words):
+        raise ValueError("must not repeat a word")
+    return words
+
+
+Real = Annotated[float, BeforeValidator(_real)]
+Positive = Annotated[Real, Field(gt=0)]
+NonNegative = Annotated[Real, Field(ge=0)]
+Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
+Flag = Annotated[bool, Field(strict=True)]
+Words = Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_distinct)]
+
+
+class Section(BaseModel):
+    """A table of a scene file: immutable, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
+
+
+class BlockSection(Section):
+    """The loaded block A: outline and material.
+
+    The outline is a square (`side`), an upright rectangle (`width`, `height`) with its lower left corner at the
+    origin, or a counter-clockwise polygon (`vertices` with the indices of its `base` and `top` edges).
+    """
+
+    side: Positive | None = None  # m
+    width: Positive | None = None  # m
+    height: Positive | None = None  # m
+    vertices: tuple[tuple[Real, Real], ...] | None = None  # m, counter-clockwise
+    base: Annotated[int, BeforeValidator(_count)] = 0  # edge i runs from vertex i to i + 1
+    top: Annotated[int, BeforeValidator(_count)] = 2
+    density: Positive  # kg/m3
+    young: Positive  # Pa
+    poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
+    hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
+    subdivide: tuple[Count, Count] | None = None  # sub-blocks along the base and upwards
+    pattern: Literal["squares", "triangles"] = "squares"  # triangles: each square cut from lower left to upper right
+    glue_ratio: Positive = 1.0e6  # stiffness of each end spring of a joint over young, m
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self._check_one_outline()
+        self._check_subdivision()
+        if self.hypothesis == "plane strain" and self.poisson >= 0.5:
+            raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
+        if self.vertices is not None:
+            check_polygon(self.vertices, self.base, self.top)
+        return self
+
+    def _check_one_outline(self) -> None:
+        given = {
+            "side": self.side is not None,
+            "width and height": self.width is not None or self.height is not None,
+            "vertices": self.vertices is not None,
+        }
+        names = [name for name, present in given.items() if present]
+        if len(names) > 1:
+            raise ValueError(f"{names[0]} and {names[1]} exclude each other, got both")
+        if not names:
+            raise ValueError("one of side, width and height, or vertices must be given, got none")
+        if given["width and height"] and (self.width is None or self.height is None):
+            raise ValueError("width and height must be given together, got one")
+        if self.vertices is None and self.model_fields_set & {"base", "top"}:
+            raise ValueError("base and top go with vertices only, got them with a rectangle")
+
+    def _check_subdivision(self) -> None:
+        alone = self.model_fields_set & {"pattern", "glue_ratio"}
+        if self.subdivide is None and alone:
+            raise ValueError(f"{min(alone)} goes with subdivide only, got it alone")
+        if self.subdivide is not None and not convex_quadrilateral(self.outline):
+            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
+
+    @property
+    def outline(self) -> tuple[Point, ...]:
+        """Vertices [m], counter-clockwise."""
+        if self.vertices is not None:
+            return self.vertices
+        w, h = (self.side, self.side) if self.side is not None else (self.width, self.height)
+        return ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))  # type: ignore[return-value]
+
+    @property
+    def base_length(self) -> float:
+        """Length a of the base edge [m]."""
+        (x1, y1), (x2, y2) = self.edge(self.base)
+        return math.hypot(x2 - x1, y2 - y1)
+
+    def edge(self, index: int) -> tuple[Point, Point]:
+        """Return the end points of an edge [m]."""
+        points = self.outline
+        return points[index], points[(index + 1) % len(points)]
+
+
+class ContactSection(Section):
+    """Locked corner springs at the two ends of the base edge."""
+
+    stiffness: Positive  # p, N/m per corner spring
+    shear_stiffness: Positive | None = None  # N/m; p if absent
+
+    @property
+    def shear(self) -> float:
+        """Shear stiffness of a corner spring [N/m]."""
+        return self.stiffness if self.shear_stiffness is None else self.shear_stiffness
+
+
+class LoadSection(Section):
+    """What acts from t = 0 on: loads that are switched on, and the motion of the base; each alone or together."""
+
+    pressure: Real = 0.0  # q, Pa, downwards on the top edge
+    eccentricity: Real = 0.0  # m, shift towards +x of the middle of the pressed part, whose length is L - 2 |e|
+    traction: Real = 0.0  # Pa, towards +x on the whole top edge
+    gravity: Real = 0.0  # m/s2, downwards
+    base_motion: str | None = None  # CSV file with the header time,x or time,y or time,x,y (s, m)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not self.model_fields_set & {"pressure", "traction", "gravity", "base_motion"}:
+            raise ValueError("one of pressure, traction, gravity or base_motion is required, got none")
+        if self.eccentricity != 0 and self.pressure == 0:
+            raise ValueError(f"eccentricity goes with a pressure only, got {self.eccentricity:g} without one")
+        return self
+
+    @property
+    def centred(self) -> bool:
+        """Whether a centred pressure is all there is."""
+        return self.eccentricity == self.traction == self.gravity == 0 and self.base_motion is None
+
+
+class TimeSection(Section):
+    """The Newmark scheme of equations (6) and (7) and its steps."""
+
+    step: Positive  # s
+    steps: Count
+    alpha: NonNegative = 0.5
+    delta: NonNegative = 1.0
+    gg: Annotated[Real, Field(ge=0, le=1)] | None = None  # kinetic discount per step
+    gg_rate: NonNegative | None = None  # 1/s: gg = exp(-gg_rate * step)
+    start: Literal["zero", "consistent"] = "zero"  # initial acceleration
+    allow_unstable: Flag = False
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.gg is not None and self.gg_rate is not None:
+            raise ValueError("gg and gg_rate exclude each other, got both")
+        return self
+
+    @property
+    def discount(self) -> float:
+        """Factor gg on the velocity at the start of each step."""
+        if self.gg_rate is not None:
+            return math.exp(-self.gg_rate * self.step)
+        return 1.0 if self.gg is None else self.gg
+
+    @property
+    def duration(self) -> float:
+        """Simulated time [s]."""
+        return self.step * self.steps
+
+
+class FemSection(Section):
+    """The finite-element pair: mesh and foundation."""
+
+    elements: Count | None = None  # per side
+    mesh: str | None = None  # file with tagged edges base, top
+    degree: Annotated[int, BeforeValidator(_count), Field(ge=1, le=2)] = 2
+    foundation: Literal["distributed", "patch", "corner", "nodes"] = "distributed"
+    cells: Literal["quadrilaterals", "triangles"] = "quadrilaterals"  # of a structured mesh
+    patch_width: Positive | None = None  # m
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.elements is not None and self.mesh is not None:
+            raise ValueError("elements and mesh exclude each other, got both")
+        if self.mesh is not None and self.cells != "quadrilaterals":
+            raise ValueError(f"cells goes with a structured mesh only, got {self.cells!r} and a mesh file")
+        if (self.foundation == "patch") != (self.patch_width is not None):
+            raise ValueError(
+                'patch_width goes with foundation = "patch" and only with it, '
+                f"got foundation {self.foundation!r} and patch_width {self.patch_width}"
+            )
+        return self
+
+    @property
+    def per_side(self) -> int:
+        """Elements per side of a structured mesh."""
+        return FINE_ELEMENTS if self.elements is None else self.elements
+
+
+class RunSection(Section):
+    """What to run and what to keep."""
+
+    solvers: Words = ("dda", "fem", "bar")
+    columns: Words = ("displacement", "contact_pressure")
+
+
+class GateSection(Section):
+    """A user's own gate on a pair of solvers (or one solver)."""
+
+    pair: Annotated[Words, Field(max_length=2)]
+    metric: str
+    band: tuple[Real, Real]
+    reason: Annotated[str, Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.band[0] > self.band[1]:
+            raise ValueError(f"band must be [low, high] with low <= high, got {list(self.band)}")
+        return self

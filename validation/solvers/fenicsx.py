@@ -1,0 +1,222 @@
+"""Adapter of FEniCSx: finds an interpreter that has dolfinx and asks the worker there.
+
+The worker is `fem_reference/fenicsx_worker.py`; dolfinx is never imported here, nor by anything but that file.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import History
+from validation.runs.modes import Mode
+from validation.runs.run import Outcome, Run
+from validation.scenes.record import base_record
+from validation.scenes.scene import Scene
+from validation.solvers.contract import NotReported, Solver
+from validation.solvers.fem import FiniteElements
+from validation.solvers.translation import check_columns, no_fields, pulls
+from validation.solvers.worker import ask
+
+VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
+NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
+HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
+WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx_worker.py")  # type: ignore[union-attr,arg-type]
+# One thread a rank; more ranks than cores and root in a container are the user's own choice.
+ENVIRONMENT = {
+    "OMP_NUM_THREADS": "1",
+    "PYTHONSAFEPATH": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+}
+
+
+def candidates() -> Iterator[str]:
+    """Yield interpreters that may have dolfinx: the one that is named, or this one and those on the PATH."""
+    if named := os.environ.get(VARIABLE):
+        yield named
+        return
+    yield sys.executable
+    for directory in os.get_exec_path():
+        names = (path.name for path in Path(directory).glob("python3*")) if Path(directory).is_dir() else ()
+        for name in sorted(names):
+            if re.fullmatch(r"python3(\.\d+)?", name) and (found := shutil.which(name, path=directory)):
+                yield found
+
+
+@functools.cache
+def has_dolfinx(python: str) -> bool:
+    """Whether an interpreter finds dolfinx, petsc4py and mpi4py."""
+    try:
+        done = subprocess.run([python, "-c", HAS_DOLFINX], capture_output=True, timeout=60)
+    except (OSError, subprocess.SubprocessError):
+        return False
+    return done.returncode == 0
+
+
+def interpreter() -> str | None:
+    """Return the first interpreter that has dolfinx, or None."""
+    return next(filter(has_dolfinx, candidates()), None)
+
+
+def launcher(python: str) -> str | None:
+    """Return the mpirun that belongs to an interpreter: the one beside it, else the one on the PATH."""
+    beside = os.pathsep.join([str(Path(python).parent), os.environ.get("PATH", os.defpath)])
+    return shutil.which("mpirun", path=beside) or shutil.which("mpiexec", path=beside)
+
+
+class FEniCSx(Solver):
+    """The same block by FEniCSx, in another interpreter, on one rank or more."""
+
+    name = "fenicsx"
+    sections = ("block", "contact", "load", "time", "run", "fem")
+    sources = ("fem_reference.fenicsx_worker", "validation.solvers.fenicsx", "validation.solvers.worker")
+
+    def __init__(self) -> None:
+        self.ranks = 1
+        self._answer: tuple[str, dict[str, Any]] | None = None
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return COLUMNS
+
+    def option(self, text: str) -> Solver:
+        """Return the solver for ``fenicsx:N``, N ranks."""
+        if not text.isdecimal() or int(text) < 1:
+            raise InputError(f"solver: fenicsx:N takes a number of ranks from 1 on, got {text!r}")
+        self.ranks = int(text)
+        self.name = "fenicsx" if self.ranks == 1 else f"fenicsx:{self.ranks}"
+        return self
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or which springs this solver does not take."""
+        if scene.fem.foundation == "nodes":
+            return "it takes springs spread over edges or at the corners, and none at nodes"
+        return None
+
+    def missing(self) -> str | None:
+        """Return None, or what is not installed and how to get it."""
+        python = interpreter()
+        if python is None:
+            named = os.environ.get(VARIABLE)
+            return f"{NEEDED}; {named}, which {VARIABLE} names, has none)" if named else f"{NEEDED})"
+        if self.ranks > 1 and launcher(python) is None:
+            return f"needs mpirun for {self.ranks} ranks (how to get it: apt-get install openmpi-bin)"
+        return None
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene on its whole mesh; it has no savings, so `full` changes nothing."""
+        no_fields(self.name, scene, fields)
+        check_columns(scene, COLUMNS)
+        FiniteElements().check_stable(scene)
+        if missing := self.missing():
+            return Run(Outcome.NOT_RUN, notes=(missing,))
+        answer = self._ask(scene)
+        if "refused" in answer:
+            raise InputError(f"{scene.name}: {answer['refused']}")
+        if "raised" in answer:
+            return Run(Outcome.RAISED, notes=(str(answer["raised"]),))
+        if "inapplicable" in answer:
+            return Run(Outcome.NOT_APPLICABLE, notes=(str(answer["inapplicable"]),))
+        return self._run(scene, answer)
+
+    def _run(self, scene: Scene, answer: Mapping[str, Any]) -> Run:
+        columns = {name: np.asarray(values, float) for name, values in answer["columns"].items()}
+        history = History(np.asarray(answer["time"], float), columns)
+        counters = ("unknowns", "nonzeros", "factorisations", "solves")
+        work = {name: int(answer[name]) for name in counters} | {"steps": scene.time.steps, "ranks": self.ranks}
+        seconds = {part: float(answer[f"{part}_seconds"]) for part in ("setup", "stepping")}
+        where = f"dolfinx {answer['version']}, {answer['memory'] / 1e6:.0f} MB at the peak over all ranks"
+        return Run(Outcome.COMPLETED, history, work, seconds, (where, *pulls(history)))
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution, which the worker gives with every history."""
+        if self.missing() is None and "static" in (answer := self._ask(scene)):
+            return dict(answer["static"])
+        raise NotReported("fenicsx has no static solution here")
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Raise: the worker computes no modes."""
+        raise NotReported("fenicsx reports no modes")
+
+    def _ask(self, scene: Scene) -> dict[str, Any]:
+        """Return the worker's answer; the last one is kept."""
+        key = scene.model_dump_json()
+        if self._answer is None or self._answer[0] != key:
+            self._answer = key, ask(self._command(), os.environ | ENVIRONMENT, request(scene))
+        return self._answer[1]
+
+    def _command(self) -> list[str]:
+        python = interpreter() or sys.executable
+        mpi = [launcher(python) or "mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
+        return [*mpi, python, str(WORKER)]
+
+
+def request(scene: Scene) -> dict[str, Any]:
+    """Return a scene as the worker takes it; a mesh file becomes points and cells."""
+    b, c, t, f, q = scene.block, scene.contact, scene.time, scene.fem, scene.load
+    record, moved = base_record(scene), None
+    if record is not None:
+        instants = t.step * np.arange(t.steps + 1.0)
+        moved = np.column_stack([np.interp(instants, record.time, part) for part in (record.x, record.y)]).tolist()
+    return {
+        "vertices": b.outline,
+        "base": b.base,
+        "top": b.top,
+        "density": b.density,
+        "young": b.young,
+        "poisson": b.poisson,
+        "hypothesis": b.hypothesis,
+        "stiffness": c.stiffness,
+        "shear_stiffness": c.shear,
+        "pressure": q.pressure,
+        "eccentricity": q.eccentricity,
+        "traction": q.traction,
+        "gravity": q.gravity,
+        "moved": moved,
+        "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
+        "degree": f.degree,
+        "foundation": f.foundation,
+        "patch_width": f.patch_width,
+        "elements": f.per_side,
+        "cells": f.cells,
+        "alpha": t.alpha,
+        "delta": t.delta,
+        "gg": t.discount,
+        "step": t.step,
+        "start": t.start,
+        "steps": t.steps,
+        "columns": scene.run.columns,
+        **(_mesh_of(scene) if f.mesh else {}),
+    }
+
+
+def _mesh_of(scene: Scene) -> dict[str, Any]:
+    """Read points and cells of a mesh file through meshio."""
+    import meshio
+
+    path = str(scene.fem.mesh)
+    try:
+        data = meshio.read(path)
+    except (OSError, KeyError, meshio.ReadError, SystemExit) as error:
+        raise InputError(f"{scene.name}: fem.mesh: must be a readable mesh, {path!r}: {error}") from None
+    kinds = [kind for kind in ("triangle", "quad") if kind in data.cells_dict]
+    if len(kinds) != 1:
+        raise InputError(f"{scene.name}: fem.mesh: must hold straight triangles or quadrilaterals, got {kinds}")
+    cells = data.cells_dict[kinds[0]]
+    used, local = np.unique(cells, return_inverse=True)
+    return {"points": data.points[used, :2].tolist(), "cells": local.reshape(cells.shape).tolist()}

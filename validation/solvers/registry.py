@@ -1,0 +1,107 @@
+"""The registry of solvers, which imports none of them."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import importlib.metadata
+from collections.abc import Mapping
+
+from validation.errors import InputError
+from validation.runs.run import Run
+from validation.scenes.scene import Scene
+from validation.solvers import memory
+from validation.solvers.contract import Solver
+
+BUILT_IN = {
+    "dda": "validation.solvers.dda:DDA",
+    "dda-textbook": "validation.solvers.dda:Textbook",
+    "fem": "validation.solvers.fem:FiniteElements",
+    "fenicsx": "validation.solvers.fenicsx:FEniCSx",
+    "bar": "validation.solvers.bar:ExactBar",
+    "continuum": "validation.solvers.bar:Continuum",
+    "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
+    "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
+    "bar-60": "validation.solvers.sixty_digits.adapters:PreciseBar",
+}
+DISTRIBUTED = ("fenicsx",)  # solvers whose option is a number of ranks
+REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
+GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
+
+
+@functools.cache
+def entry_points() -> Mapping[str, str]:
+    """Return the solvers that installed packages bring, name to ``module:attribute``."""
+    found = importlib.metadata.entry_points(group=GROUP)
+    return {point.name: point.value for point in sorted(found, key=lambda p: p.name) if point.name not in BUILT_IN}
+
+
+def solver_names() -> list[str]:
+    """Return the names of all solvers: the built-in ones and those of installed packages."""
+    return [*BUILT_IN, *entry_points()]
+
+
+def is_solver(name: str) -> bool:
+    """Whether a name is a solver's, with or without an option, or names one as ``module:attribute``."""
+    plain, _, attribute = name.partition(":")
+    return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
+
+
+def _is_target(module: str, attribute: str) -> bool:
+    return all(part.isidentifier() for text in (module, attribute) for part in text.split("."))
+
+
+def get_solver(name: str) -> Solver:
+    """Return a solver by name, importing its adapter now.
+
+    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own.
+
+    Raises
+    ------
+    InputError
+        There is no such solver, or it does not take the option.
+    """
+    plain, colon, option = name.partition(":")
+    if plain not in BUILT_IN and is_solver(name):
+        from validation.solvers.user import UserSolver
+
+        return UserSolver(name, entry_points().get(name, name))
+    if plain not in BUILT_IN:
+        raise InputError(f"solver: must be one of {', '.join(solver_names())}, or module:attribute, got {name!r}")
+    module, _, attribute = BUILT_IN[plain].partition(":")
+    solver: Solver = getattr(importlib.import_module(module), attribute)()
+    return solver.option(option) if colon else solver
+
+
+def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
+    """Run one scene with one solver.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep; pick a case with `Scene.expand` or `Scene.with_values`.
+    solver
+        A solver or its name.
+    full
+        Switch the numerical savings off.
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep, the solver is unknown or refuses the scene.
+
+    Examples
+    --------
+    >>> from validation import load_scene, solve
+    >>> run = solve(load_scene("figures-3-4").expand()[0], "dda")
+    >>> round(float(run.displacement[-1]), 6)
+    -0.01
+    """
+    chosen = get_solver(solver) if isinstance(solver, str) else solver
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if reason := chosen.applicable(scene):
+        raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
+    memory.check(scene, chosen.name)
+    return chosen.solve(scene, full=full)

@@ -1,0 +1,122 @@
+"""Sixty-digit references as ordinary solvers: `dda-60`, `bar-60` and `fem-60`.
+
+They take the doubles of a scene as exact (`fem-60` those of the mesh's matrices) and share no step with the solvers
+that they judge. Their histories are rounded to doubles at the end and cost milliseconds to a second.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import Array, History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.bar import BAR_COLUMNS, ExactBar
+from validation.solvers.dda import DDA
+from validation.solvers.fem import FiniteElements
+from validation.solvers.sixty_digits.block import Number
+from validation.solvers.translation import check_columns
+
+LARGEST = float(np.finfo(float).max)
+MOST_UNKNOWNS = 60  # beyond it sixty digits would take minutes
+
+
+def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
+    """Round the columns to doubles; what a double cannot hold is infinite from there on."""
+    check_columns(scene, BAR_COLUMNS)
+    began = time.perf_counter()
+    columns = {name: _doubles(values) for name, values in compute().items()}
+    seconds = {"setup": 0.0, "stepping": time.perf_counter() - began}
+    times = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    work = {"steps": scene.time.steps}
+    return Run(Outcome.COMPLETED, History(times, columns), work, seconds, ("sixty-digit arithmetic",))
+
+
+def _doubles(values: list[Number]) -> Array:
+    found: Array = np.fromiter((float(v) if abs(v) <= LARGEST else np.inf for v in values), np.float64, len(values))
+    found[~np.logical_and.accumulate(np.isfinite(found))] = np.inf
+    return found
+
+
+class PreciseDDA(DDA):
+    """The two-block model in sixty-digit arithmetic."""
+
+    name = "dda-60"
+    sources = ("validation.solvers.sixty_digits",)
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return BAR_COLUMNS
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why the scene is not the two-block model under a pressure."""
+        return scene.beyond_two_blocks
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        from validation.solvers.sixty_digits import block as precise_block
+
+        return _run(scene, lambda: precise_block.history(scene, scene.run.columns))
+
+
+class PreciseBar(ExactBar):
+    """The bar under the Newmark scheme in sixty-digit arithmetic."""
+
+    name = "bar-60"
+    sources = (
+        "validation.solvers.sixty_digits.adapters",
+        "validation.solvers.sixty_digits.bar",
+        "validation.solvers.sixty_digits.block",
+    )
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene; there is nothing to save, so `full` changes nothing."""
+        from validation.solvers.sixty_digits import bar as precise_bar
+
+        return _run(scene, lambda: precise_bar.history(scene, scene.run.columns))
+
+
+class PreciseFiniteElements(FiniteElements):
+    """The mesh's own double matrices, taken as exact, in sixty-digit arithmetic."""
+
+    name = "fem-60"
+    sources = (
+        "fem_reference",
+        "validation.solvers.sixty_digits.adapters",
+        "validation.solvers.sixty_digits.matrices",
+        "validation.solvers.sixty_digits.block",
+    )
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return BAR_COLUMNS
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why sixty digits are out of reach for the mesh or for the load."""
+        if not scene.load.centred:
+            return "the solver is written for a centred pressure alone"
+        return _too_large(len(self.equations(scene).F))
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
+        from validation.solvers.sixty_digits import matrices as precise_matrices
+
+        model = self.equations(scene, full)
+        if reason := _too_large(len(model.F)):
+            raise InputError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
+        rows = {name: model.observers[name] for name in scene.run.columns}
+        return _run(
+            scene,
+            lambda: precise_matrices.history(scene, model.M, model.K, model.F, rows, self.problem(scene).load_size),
+        )
+
+
+def _too_large(unknowns: int) -> str | None:
+    if unknowns <= MOST_UNKNOWNS:
+        return None
+    return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"

@@ -1,0 +1,90 @@
+"""What every adapter needs: results into runs, refusals with the scene's name, columns that are known."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import PRESSURE, History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Solver
+
+
+def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = ()) -> Run:
+    """Translate the `Result` of a solver package; the two packages share no class, only the names of the fields."""
+    history = History(result.time, {name: result.columns[name] for name in scene.run.columns})
+    work = {
+        "unknowns": result.unknowns,
+        "nonzeros": result.nonzeros,
+        "factorisations": result.factorisations,
+        "solves": result.solves,
+        "steps": scene.time.steps,
+    }
+    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
+    tension = pulls(history)
+    return Run(
+        Outcome.COMPLETED,
+        history,
+        work,
+        seconds,
+        (*notes, *result.notes, *tension),
+        getattr(result, "estimate", None),
+    )
+
+
+Solve = Callable[[Any, Scene, bool, Path | None], Run]
+
+
+def named(solve: Solve) -> Callable[..., Run]:
+    """Give what a solver package refuses, a ValueError, the name of the scene: a InputError."""
+
+    @functools.wraps(solve)
+    def wrapped(self: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        try:
+            return solve(self, scene, full, fields)
+        except InputError:
+            raise
+        except ValueError as error:
+            raise InputError(f"{scene.name}: {error}") from None
+
+    return wrapped
+
+
+def pulls(history: History) -> tuple[str, ...]:
+    """A locked contact hides tension: say where it pulls."""
+    pressure = history.columns.get(PRESSURE)
+    if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
+        return ()
+    least = int(np.argmin(pressure))
+    return (f"the locked contact pulls: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
+
+
+def check_columns(scene: Scene, known: tuple[str, ...]) -> None:
+    """Refuse columns that a solver does not have.
+
+    Raises
+    ------
+    InputError
+        `[run] columns` names an unknown one.
+    """
+    unknown = [name for name in scene.run.columns if name not in known]
+    if unknown:
+        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
+
+
+def no_fields(name: str, scene: Scene, fields: Path | None) -> None:
+    """Refuse to write fields where a solver has no mesh.
+
+    Raises
+    ------
+    InputError
+        A file for the fields is asked for.
+    """
+    if fields is not None:
+        raise InputError(f"{scene.name}: --fields: needs the solver fem, which has a mesh, got {name}")

@@ -1,0 +1,134 @@
+"""Adapter of solvers that users bring: ``module:attribute``, or a name of the entry-point group.
+
+The solver runs in a process of its own, so that one that hangs, exits or crashes is a row with a name.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.metrics.values import norm
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.runs.modes import Mode
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import NotReported, Solver
+from validation.solvers.dda import DDA
+from validation.solvers.translation import no_fields, pulls
+from validation.solvers.worker import WorkerDied, WorkerHangs, ask
+
+LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case, and what sets it
+UNITS = {  # what a value in another unit is, over the value in SI
+    "time": {1e3: "milliseconds", 1e6: "microseconds"},
+    DISPLACEMENT: {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"},
+    PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
+}
+NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
+ALIKE = 0.8  # correlation from which two histories are one but for their unit
+
+
+class UserSolver(Solver):
+    """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
+
+    cached = False  # what it is made of cannot be known, so it always runs afresh
+
+    def __init__(self, name: str, target: str) -> None:
+        self.name, self.target = name, target
+        self._answer: dict[str, Any] = {}
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Run the scene in the solver's own process."""
+        no_fields(self.name, scene, fields)
+        limit = float(os.environ.get(VARIABLE, LIMIT))
+        command = [
+            sys.executable,
+            "-m",
+            "validation.solvers.user_worker",
+            self.target,
+            os.getcwd(),
+            *filter(None, sys.path),
+        ]
+        try:
+            self._answer = ask(command, os.environ, {"scene": scene.definition()}, limit)
+        except WorkerHangs:
+            return Run(Outcome.TIMEOUT, notes=(f"hangs: no history within {limit:g} s",))
+        except WorkerDied as error:
+            return Run(Outcome.RAISED, notes=(f"crashed: {error}",))
+        if "raised" in self._answer:
+            return Run(Outcome.RAISED, notes=(str(self._answer["raised"]),))
+        return _judged(scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution that the solver reports."""
+        if self._answer.get("static") is None:
+            raise NotReported(f"{self.name} reports no static solution")
+        return dict(self._answer["static"])
+
+    def assumed_static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution that settling is measured from where the solver reports none: the block's."""
+        return DDA().static(scene)
+
+    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+        """Return the modes that the solver reports."""
+        if not self._answer.get("modes"):
+            raise NotReported(f"{self.name} reports no modes")
+        return tuple(Mode(w, share, (complex(*a), complex(*b))) for w, share, (a, b, *_) in self._answer["modes"])
+
+
+def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
+    """Return the run of columns, or the outcome that names what is wrong with them."""
+    steps = scene.time.steps
+    if DISPLACEMENT not in columns:
+        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {DISPLACEMENT}, got {', '.join(columns) or 'nothing'}",))
+    expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
+    history = History(columns.pop("time", expected), columns)
+    for name, values in {"time": history.time, **columns}.items():
+        if values.shape != (steps,):
+            zero = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
+            return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){zero}",))
+    if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
+        if wrong := _wrong_units(scene, history, expected):
+            return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
+        if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
+            return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
+    work = {"steps": steps}
+    return Run(Outcome.COMPLETED, history, work, notes=pulls(history))
+
+
+def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
+    """Name the first column that is the built-in solution in another unit or with another sign."""
+    if (told := _factor("time", history.time, expected, scene)) is not None:
+        return told
+    reference = DDA().solve(scene.with_values({"time.allow_unstable": True})).history
+    for name, values in history.columns.items():
+        if reference is not None and name in UNITS and name in reference.columns:
+            sound = reference.columns[name]
+            if np.isfinite(sound).all() and (told := _factor(name, values, sound, scene)) is not None:
+                return told
+    return None
+
+
+def _factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
+    """Say by which known factor a column differs from what is expected, if by one."""
+    sizes = norm(values), norm(sound)
+    if min(sizes) == 0 or not np.isfinite(sizes).all():
+        return None
+    alike = float((values / sizes[0]) @ (sound / sizes[1]))
+    if abs(alike) < ALIKE:
+        return None
+    ratio = sizes[0] / sizes[1]
+    for factor, unit in UNITS[name].items():
+        if abs(ratio / factor - 1) < NEAR:
+            return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
+    if alike < 0:
+        return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
+    width = scene.block.base_length
+    if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:
+        return f"wrong units: {name} is {width:g} times what is expected, the length of the base: a force?"
+    return None

@@ -1,0 +1,101 @@
+"""The process in which a user's solver runs: ``python -m validation.solvers.user_worker module:attribute``.
+
+A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
+them, or "raised" with the error.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from validation.runs.history import History
+from validation.runs.run import Run
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.worker import serve
+
+FORMS = (
+    "must return a History, a Run, a mapping of columns, (displacement, contact_pressure), "
+    "(time, displacement, contact_pressure), or a table of these columns"
+)
+NAMES = ("time", "displacement", "contact_pressure")
+
+
+def load(name: str) -> Any:
+    """Import what ``module:attribute`` names; a class is made into an object."""
+    module, _, attribute = name.partition(":")
+    found = importlib.import_module(module)
+    for part in (attribute or "solve").split("."):
+        found = getattr(found, part)
+    return found() if isinstance(found, type) else found
+
+
+def columns_of(value: Any) -> dict[str, Any]:
+    """Return the columns of whatever a solver returned.
+
+    Raises
+    ------
+    TypeError
+        It is none of the forms that are understood.
+    """
+    if isinstance(value, Run):
+        value = value.history
+    if isinstance(value, History):
+        return {"time": value.time, **value.columns}
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, np.ndarray) and value.ndim == 2 and value.shape[1] in (2, 3):
+        value = tuple(value.T)
+    if isinstance(value, tuple | list) and len(value) in (2, 3):
+        return dict(zip(NAMES[-len(value) :], value, strict=True))
+    raise TypeError(f"the solver {FORMS}, got {type(value).__name__}")
+
+
+def plain(values: Any) -> list[Any]:
+    """Return numbers of any shape as lists."""
+    listed: list[Any] = np.asarray(values, dtype=float).tolist()
+    return listed
+
+
+def optional(solver: Any, part: str, scene: Scene) -> Any:
+    """Return what a solver reports beside its history, or None."""
+    function: Callable[[Scene], Any] | None = getattr(solver, part, None)
+    try:
+        return None if function is None else function(scene)
+    except LookupError:  # NotReported among them
+        return None
+
+
+def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
+    """Run a scene and return the answer."""
+    scene = parse_scene(request["scene"], "scene")
+    found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
+    static, modes = optional(solver, "static", scene), optional(solver, "modes", scene) or ()
+    return {
+        "columns": {name: plain(values) for name, values in found.items()},
+        "static": None if static is None else {name: float(value) for name, value in static.items()},
+        "modes": [[m.frequency, m.share, [[z.real, z.imag] for z in map(complex, m.eigenvalues)]] for m in modes],
+    }
+
+
+def main(name: str, paths: list[str]) -> None:
+    """Answer requests with one solver."""
+    sys.path[:] = paths + [path for path in sys.path if path not in paths]
+    kept: list[Any] = []
+
+    def answer(request: dict[str, Any]) -> dict[str, Any]:
+        try:
+            kept.extend([] if kept else [load(name)])
+            return run(kept[0], request)
+        except (Exception, SystemExit) as error:
+            return {"raised": f"{type(error).__name__}: {error}"}
+
+    serve(answer)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2:])

@@ -1,0 +1,6 @@
+"""The declarations of the suite: scenes, solvers, gates, and what is derived from their rows.
+
+Nothing is run or drawn here.
+"""
+
+from validation.engine.study import Study as Study

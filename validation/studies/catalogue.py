@@ -1,0 +1,157 @@
+"""The studies of the suite, and the study of a single scene."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from validation.engine.case import FULL
+from validation.errors import InputError
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import METRICS
+from validation.metrics.pairs import PAIRS
+from validation.scenes.scene import Scene, load_scene, scene_names
+from validation.solvers.registry import get_solver, is_solver, solver_names
+
+if TYPE_CHECKING:
+    pass
+from validation.engine.study import Derived, Study
+
+STUDIES = {
+    "core": "validation.studies.core:CORE",
+    "two-codes": "validation.studies.second_fem_code:TWO_CODES",
+    "paper": "validation.studies.paper.study:PAPER",
+    "limits": "validation.studies.limits:STUDY",
+    "stiff-contact": "validation.studies.stiff_contact:STUDY",
+    "stability-small": "validation.studies.stability:small",
+    "stability": "validation.studies.stability:full",
+    "subblocks": "validation.studies.subblocks:SUBBLOCKS",
+    "work-precision": "validation.studies.work.study:WORK_PRECISION",
+}
+
+
+@functools.cache
+def get_study(name: str) -> Study:
+    """Return a study of the suite by name; one of many scenes is declared by a function."""
+    module, _, attribute = STUDIES[name].partition(":")
+    declared: Study | Callable[[], Study] = getattr(importlib.import_module(module), attribute)
+    return declared if isinstance(declared, Study) else declared()
+
+
+def judged_studies() -> list[str]:
+    """Return the names of the studies whose gates the tests judge, which are not the long ones."""
+    return [name for name in STUDIES if not get_study(name).long]
+
+
+def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
+    """Return the study of one scene, built-in or a file, with the gates that belong to it.
+
+    Raises
+    ------
+    InputError
+        The scene, a solver, a column or a gate in it is not allowed.
+    """
+    scene = load_scene(source)
+    scene = scene.with_values(dict(assignments)) if assignments else scene
+    check_words(scene, source)
+    own = tuple(gate for case in scene.expand() for gate in own_gates(case))
+    return Study(
+        scene.name,
+        scene.title or scene.name,
+        f"The scene {scene.name}.",
+        [scene],
+        extra=built_in_extra(scene),
+        gates=lambda: own + built_in_gates(scene),
+        derived=lambda: built_in_derived(scene),
+    )
+
+
+def check_words(scene: Scene, source: str) -> None:
+    """Check the words of a scene that name solvers, columns, metrics and pairs, before anything runs.
+
+    Raises
+    ------
+    InputError
+        A solver or a metric is unknown, a column is one that none of the solvers has, or a gate's pair does not fit.
+    """
+    for name in scene.run.solvers:
+        if not is_solver(name.removesuffix(FULL)):
+            raise InputError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {name!r}")
+    known = [get_solver(name.removesuffix(FULL)).columns() for name in scene.run.solvers]
+    served = dict.fromkeys(column for columns in known for column in columns or scene.run.columns)
+    for column in scene.run.columns:
+        if column not in served:
+            raise InputError(f"{source}: run.columns: must be among {', '.join(served)}, got {column!r}")
+    _check_gates(scene, source)
+
+
+def _check_gates(scene: Scene, source: str) -> None:
+    for number, section in enumerate(scene.gate):
+        if section.metric not in METRICS:
+            raise InputError(
+                f"{source}: gate.{number}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}"
+            )
+        missing = [name for name in section.pair if name not in scene.run.solvers]
+        if missing:
+            raise InputError(
+                f"{source}: gate.{number}.pair: must be solvers that run.solvers lists, got {missing[0]!r}"
+            )
+        if section.metric in PAIRS and len(section.pair) < 2:
+            raise InputError(
+                f"{source}: gate.{number}.pair: must name a solver and a reference for {section.metric}, "
+                f"got {list(section.pair)}"
+            )
+
+
+def own_gates(case: Scene) -> tuple[Gate, ...]:
+    """Return the gates that a scene file states for one of its cases."""
+    return tuple(Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate)
+
+
+def is_built_in(scene: Scene) -> bool:
+    """Whether a scene is a built-in one, unchanged."""
+    return scene.name in scene_names() and scene == load_scene(scene.name)
+
+
+def built_in_gates(scene: Scene) -> tuple[Gate, ...]:
+    """Return the suite's own gates for the cases of a scene, where it is the built-in one unchanged."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(gate for study in judged_studies() for gate in get_study(study).gates() if gate.scene in names)
+
+
+def built_in_derived(scene: Scene) -> tuple[Derived, ...]:
+    """Return the derived rows of the cases of a scene, where it is the built-in one unchanged."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(row for study in judged_studies() for row in get_study(study).derived() if row.scene in names)
+
+
+def built_in_extra(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Return the further runs that the suite's gates on a built-in scene compare with."""
+    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
+    return tuple(pair for study in judged_studies() for pair in get_study(study).extra if pair[0] in names)
+
+
+def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:
+    """Return the studies that the command line names: studies (`all` of them), scenes or scene files.
+
+    Raises
+    ------
+    InputError
+        A name is neither, or values are set on a study.
+    """
+    studies = []
+    for target in STUDIES if list(targets) == ["all"] else targets:
+        if target in STUDIES and not assignments:
+            studies.append(get_study(target))
+        elif target in STUDIES:
+            raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
+        elif target in scene_names() or target.endswith(".toml"):
+            studies.append(scene_study(target, assignments))
+        else:
+            raise InputError(
+                f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
+                f"({', '.join(scene_names())}) or a scene file ending in .toml"
+            )
+    return studies

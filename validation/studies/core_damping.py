@@ -1,0 +1,143 @@
+"""Damping of DDA, finite elements and bar in every scene of the core study: compared, and judged by gates.
+
+A derived row `damping` of each case holds, for every solver, the distance of its one-step operator from the scheme's
+closed form at the operator's own frequency, and that of the ratio measured on its history from the operator's.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from validation.engine.study import Derived
+from validation.gates import closed_forms
+from validation.gates.gate import Gate
+from validation.runs.results import Row, Value
+from validation.scenes.scene import Scene, load_scene
+
+if TYPE_CHECKING:
+    from validation.engine.finished import Finished
+
+NAME = "damping"
+SOLVERS = ("dda", "fem", "bar")
+UNDAMPED = 1e-12
+# Damping ratio of DDA over that of the elements, minus one, where no closed form holds: case -> (value, half band).
+OWN = {
+    "poisson": (0.0467, 1e-4),
+    "poisson-statics[contact.stiffness=1e+09]": (0.0475, 2e-4),
+    "poisson-statics[contact.stiffness=1e+10]": (0.0973, 2e-4),
+    "poisson-statics[contact.stiffness=1e+11]": (0.1078, 2e-4),
+    "corner-springs[fem.elements=4]": (0.5084, 5e-4),
+    "corner-springs[fem.elements=8]": (0.6810, 5e-4),
+    "corner-springs[fem.elements=16]": (0.8308, 5e-4),
+    "corner-springs[fem.elements=32]": (0.9660, 5e-4),
+    "corner-springs[fem.elements=64]": (1.0908, 5e-4),
+}
+
+
+@functools.cache
+def cases(scenes: tuple[str, ...]) -> tuple[Scene, ...]:
+    """Return the cases of built-in scenes."""
+    return tuple(case for name in scenes for case in load_scene(name).expand())
+
+
+def solvers(scene: Scene) -> list[str]:
+    """Return the solvers of a scene whose damping is compared."""
+    bar = scene.block.poisson == 0 and scene.fem.foundation == "distributed"
+    return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
+
+
+def derived(scenes: tuple[str, ...]) -> tuple[Derived, ...]:
+    """Return the derived row of every case."""
+    return tuple(
+        Derived(
+            scene.name,
+            NAME,
+            tuple((scene.name, solver) for solver in solvers(scene)),
+            functools.partial(compare, scene=scene),
+        )
+        for scene in cases(scenes)
+    )
+
+
+def compare(finished: Finished, scene: Scene) -> Mapping[str, Value]:
+    """Return the distances of every solver, and the largest of each kind."""
+    rows = {solver: finished.rows[scene.name, solver] for solver in solvers(scene)}
+    operator = {f"{solver}.operator": operator_distance(scene, row) for solver, row in rows.items()}
+    history = {f"{solver}.history": history_distance(row) for solver, row in rows.items()}
+    return operator | history | {"operator": _worst(operator), "history": _worst(history)}
+
+
+def _worst(values: Mapping[str, Value]) -> Value:
+    """Return the largest value, or the first that is none."""
+    missing = [value for value in values.values() if not isinstance(value, float)]
+    return missing[0] if missing else max(v for v in values.values() if isinstance(v, float))
+
+
+def operator_distance(scene: Scene, row: Row) -> Value:
+    """Distance of spectral radius and damping ratio of the first axial mode from the closed form at its frequency."""
+    w, radius, xi = (row.metrics.get(f"mode1.{part}") for part in ("frequency", "spectral_radius", "damping"))
+    if not (isinstance(w, float) and isinstance(radius, float)):
+        return "not reported"
+    exact = closed_forms.roots(scene, w)
+    distance = abs(radius - max(map(abs, exact)))
+    if abs(exact[0].imag) < 1e-6:
+        return distance
+    return max(distance, abs(xi - closed_forms.damping_ratio(scene, w))) if isinstance(xi, float) else "undefined"
+
+
+def history_distance(row: Row) -> Value:
+    """Distance of the damping ratio measured on the history from the operator's."""
+    measured, xi = row.metrics.get("mode1.measured_damping"), row.metrics.get("mode1.damping")
+    return abs(measured - xi) if isinstance(measured, float) and isinstance(xi, float) else "undefined"
+
+
+def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
+    """Yield three gates a case: operator, history, and DDA against the elements."""
+    for scene in cases(scenes):
+        yield Gate(
+            scene.name,
+            (NAME,),
+            "operator",
+            0,
+            1e-12,
+            "|lambda| and xi of each solver's own step against trace and determinant at its frequency; band: rounding",
+        )
+        yield Gate(
+            scene.name,
+            (NAME,),
+            "history",
+            0,
+            1e-6,
+            "matrix pencil on each solver's displacement against its operator: the histories hold the mode to 1e-6",
+        )
+        yield from ratio(scene)
+
+
+def ratio(scene: Scene) -> Iterator[Gate]:
+    """Yield the gate on the damping ratio of DDA over that of the elements, where they are damped."""
+    pair, metric = ("dda", "fem"), "mode1.damping"
+    name = scene.name if scene.name in OWN else scene.name.partition("[")[0]
+    if name in OWN:
+        value, half = OWN[name]
+        why = "the mesh has no limit on point springs" if name.startswith("corner") else "the mesh error is below"
+        reason = f"model form, physics: a stiffer block is damped more at the same dt; own value, {why}"
+        yield Gate(scene.name, pair, metric, value - half, value + half, reason, "own last value", half)
+        return
+    frequency = closed_forms.bar_frequency(scene)
+    error = closed_forms.mesh_frequency_error(scene)
+    dda = closed_forms.damping_ratio(scene, closed_forms.dda_frequency(scene))
+    fem = closed_forms.damping_ratio(scene, frequency * (1 + error))
+    if min(abs(dda), abs(fem)) < UNDAMPED:
+        return
+    value = dda / fem - 1
+    half = 1e-9 + error
+    yield Gate(
+        scene.name,
+        pair,
+        metric,
+        value - half,
+        value + half,
+        "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error",
+    )

@@ -1,0 +1,184 @@
+"""The reference pack: what an author of a DDA code in any language needs to check it without this package."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from validation.engine.case import Case
+from validation.engine.measure import attempt, check
+from validation.errors import InputError
+from validation.gates.gate import Gate
+from validation.runs.files import write_atomically, write_csv
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.studies.catalogue import get_study
+
+STUDY = "core"
+JUDGED = "dda"
+ALSO_DDA = ("dda-textbook",)  # bands against another form of the same code say nothing to a third one
+SAME_MODEL = 1e-6  # of the maximum: the corrected recursion in double precision keeps this in every scene of the pack
+OWN = ("displacement.max", "pressure.max")  # a code against the exact history of the same model
+FIELDS = ("scene", "metric", "low", "high", "reference", "until", "reference_kind", "reason", "id")
+
+README = """\
+# Reference pack for codes of Discontinuous Deformation Analysis
+
+Made by dda-validation (`dda-validate export-pack`). Nothing of it needs to be installed to use this pack.
+
+| what | where |
+|---|---|
+| scenes, SI units | `scenes/NAME.toml` |
+| histories, one row a step from the first step on | `histories/NAME.SOLVER.csv` |
+| bands | `bands.csv`, and the same as `bands.json` |
+
+One block of unit thickness stands on two locked corner springs (normal stiffness `contact.stiffness`, shear stiffness
+the same unless `shear_stiffness` is given) and is loaded from t = 0 on by `load.pressure`, downwards on its top edge.
+It starts at rest and unstrained; there is no gravity unless a scene says so. The scheme is Newmark's with
+`time.alpha`, `time.delta`; `time.gg` multiplies the velocity at the start of each step; `time.start = "zero"` starts
+from A0 = 0, `"consistent"` from M A0 = F.
+
+Columns: `time` [s]; `displacement`, vertical, of the centroid [m], upwards positive; `contact_pressure`, minus the sum
+of the normal spring forces over the length of the base [Pa], compression positive.
+
+`NAME.dda.csv` is the six-unknown block under the same scheme, to some 1e-12 of the maximum: **your history should be
+this one**. The other histories are exact solutions (`bar`: exact in space, the same scheme in time) and differ by
+model form, as the bands say.
+
+## The bands
+
+A row holds `scene`, `metric`, `low`, `high`, `reference`, `until`, `reference_kind`, `reason`, `id`. With x your
+column and r that of `reference` (a file in `histories/`), over the steps up to the time `until` (all, if empty):
+
+- `*.l2` = norm(x - r) / norm(r), Euclidean over the steps; `*.max` = max|x - r| / max|r|
+- `*.final` last value; `*.minimum` least value
+- `*.settling_step`: first step n >= 1 from which |x / static - 1| <= 0.01 for ever after
+- `*.static`: static solution, where your code gives one
+- `mode1.frequency`: first axial natural frequency [rad/s], where your code gives one
+- `mode1.damping` or, fitted to the displacement, `mode1.measured_damping`: xi = -Re(ln l) / |ln l| of the first axial
+  mode, l the eigenvalue of one step
+
+A metric of one run that names a reference is compared as value / value of the reference - 1. Both edges are inside.
+"""
+
+
+@dataclass(frozen=True)
+class Written:
+    """How much a pack holds."""
+
+    scenes: int
+    histories: int
+    bands: int
+
+
+def write_pack(directory: Path) -> Written:
+    """Write the pack into a directory, which is made.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+    study = get_study(STUDY)
+    cases = {case.scene.name: case.scene for case in study.cases() if case.solver == JUDGED}
+    gates = [g for g in study.gates() if g.pair[0] == JUDGED and not set(g.pair) & set(ALSO_DDA)]
+    for part in ("scenes", "histories"):
+        _make(directory / part)
+    for scene in cases.values():
+        _write(directory / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+    wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
+    for name, solver in wanted:
+        write_csv(_history(cases[name], solver), directory / "histories" / history_file(name, solver))
+    bands = [*(own_band(scene, metric) for scene in cases.values() for metric in OWN), *map(band, gates)]
+    _write(directory / "bands.csv", _as_csv(bands))
+    _write(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
+    _write(directory / "README.md", README)
+    return Written(len(cases), len(wanted), len(bands))
+
+
+def slug(name: str) -> str:
+    """Return a case's name as a file's."""
+    return re.sub(r"[^\w.+-]+", "_", name).strip("_")
+
+
+def history_file(name: str, solver: str) -> str:
+    """Return the name of a history's file."""
+    return f"{slug(name)}.{solver}.csv"
+
+
+def own_band(scene: Scene, metric: str) -> dict[str, Any]:
+    """Return the band of a code against the same model's own history."""
+    return {
+        "scene": slug(scene.name),
+        "metric": metric,
+        "low": 0.0,
+        "high": SAME_MODEL,
+        "reference": history_file(scene.name, JUDGED),
+        "until": None,
+        "reference_kind": "exact",
+        "reason": "same model, same scheme: what is left is the rounding of the recursion in double precision",
+        "id": f"{scene.name}:{JUDGED}:{metric}",
+    }
+
+
+def band(gate: Gate) -> dict[str, Any]:
+    """Return a gate as a row of the pack."""
+    paired = len(gate.pair) == 2
+    return {
+        "scene": slug(gate.scene),
+        "metric": gate.metric,
+        "low": gate.low,
+        "high": gate.high,
+        "reference": history_file(gate.against or gate.scene, gate.pair[1]) if paired else None,
+        "until": gate.until,
+        "reference_kind": gate.reference_kind,
+        "reason": gate.reason,
+        "id": gate.id,
+    }
+
+
+def as_toml(scene: Scene) -> str:
+    """Return a single case as a scene file."""
+    data = {key: value for key, value in scene.definition().items() if key not in ("name", "sweep", "gate", "run")}
+    lines = [f"{key} = {_value(value)}" for key, value in data.items() if not isinstance(value, dict)]
+    for section, table in data.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{section}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _value(value: object) -> str:
+    """Return a value in TOML, which writes numbers, words and lists as JSON does."""
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _history(scene: Scene, solver: str) -> Any:
+    run: Run = check(attempt(Case(scene, solver).make_solver(), scene, False), scene)
+    if run.outcome is not Outcome.COMPLETED or run.history is None:
+        raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
+    return run.history
+
+
+def _as_csv(rows: Iterable[dict[str, Any]]) -> str:
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, FIELDS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)  # a float is written with all its digits
+    return text.getvalue()
+
+
+def _make(path: Path) -> None:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be made: {error.strerror}; choose another place") from None
+
+
+def _write(path: Path, text: str) -> None:
+    write_atomically(path, lambda stream: stream.write(text.encode()))

@@ -1,0 +1,171 @@
+"""The register of the paper's statements and slips: what it says, how that is tested, what comes out.
+
+A claim is data: the cases that it needs, the numbers measured on them, and bands for these numbers. It is *confirmed*
+where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that carry the
+condition, and *refuted* otherwise. The expected verdict is a gate of the study `paper`.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from validation.engine.study import Derived
+from validation.gates.gate import Gate, rounded
+from validation.metrics.columns import settling_step
+from validation.metrics.values import QUANTITIES
+from validation.runs.history import Array
+from validation.runs.results import Value
+from validation.scenes.scene import Scene, load_scene
+
+if TYPE_CHECKING:
+    from validation.engine.finished import Finished
+
+REGISTER = "claims"  # the name under which gates find the register's rows
+Needs = tuple[tuple[str, str], ...]
+
+
+class Finding(enum.IntEnum):
+    """What comes out of a test of a claim."""
+
+    REFUTED = 0
+    CONDITIONAL = 1
+    CONFIRMED = 2
+
+    @property
+    def words(self) -> str:
+        """The verdict in words."""
+        return ("refuted", "confirmed under a condition", "confirmed")[self]
+
+
+@dataclass(frozen=True)
+class Band:
+    """A band for a measured number, both edges inside."""
+
+    number: str
+    low: float
+    high: float
+
+    def holds(self, numbers: Mapping[str, float]) -> bool:
+        """Whether the number was measured and lies inside."""
+        return self.low <= numbers.get(self.number, np.nan) <= self.high
+
+
+class Evidence:
+    """The finished cases, as the measures of claims read them."""
+
+    def __init__(self, finished: Finished) -> None:
+        self.finished = finished
+
+    def number(self, case: str, metric: str, solver: str = "dda") -> float:
+        """Return a metric of a case; NaN where it is no number."""
+        value = self.finished.rows[case, solver].metrics.get(metric)
+        return float(value) if isinstance(value, float | int) else np.nan
+
+    def scaled(self, case: str, quantity: str, solver: str = "dda") -> Array:
+        """Return a history over its static value."""
+        history = self.finished.history(case, solver)
+        if history is None:
+            return np.zeros(0)
+        return history.columns[QUANTITIES[quantity]] / self.number(case, f"{quantity}.static", solver)
+
+    def settles(self, case: str, quantity: str, tolerance: float = 0.01) -> float:
+        """Return the first step from which a quantity stays within a tolerance of static; NaN if never."""
+        found = settling_step(self.scaled(case, quantity), 1.0, tolerance)
+        return found if isinstance(found, float) else np.nan
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement of the paper, in our words, and its test.
+
+    Attributes
+    ----------
+    id, place, says
+        Stable id, place in the paper, the statement.
+    needs
+        The (case, solver) pairs that it is tested on.
+    measure
+        Function of the evidence that returns named numbers.
+    printed
+        Bands that hold if the statement holds as printed.
+    expected, why
+        The verdict that is expected, and why in one sentence.
+    condition, conditional
+        The condition under which it holds, and the bands that hold then.
+    """
+
+    id: str
+    place: str
+    says: str
+    needs: Needs
+    measure: Callable[[Evidence], dict[str, float]]
+    printed: tuple[Band, ...]
+    expected: Finding
+    why: str
+    condition: str = ""
+    conditional: tuple[Band, ...] = ()
+
+    def finding(self, numbers: Mapping[str, float]) -> Finding:
+        """Return the verdict on measured numbers."""
+        if all(band.holds(numbers) for band in self.printed):
+            return Finding.CONFIRMED
+        holds = bool(self.conditional) and all(band.holds(numbers) for band in self.conditional)
+        return Finding.CONDITIONAL if holds else Finding.REFUTED
+
+    def row(self) -> Derived:
+        """Return the derived row that holds the verdict and the measured numbers."""
+        return Derived(REGISTER, self.id, self.needs, self._compute)
+
+    def _compute(self, finished: Finished) -> Mapping[str, Value]:
+        numbers = self.measure(Evidence(finished))
+        known: dict[str, Value] = {k: float(v) if np.isfinite(v) else "undefined" for k, v in numbers.items()}
+        return {"verdict": float(self.finding(numbers))} | known
+
+    def gate(self) -> Gate:
+        """Return the gate that holds the verdict to the expected one."""
+        reason = f"expected verdict: {self.expected.words}, since {self.why}"
+        return Gate(REGISTER, (self.id,), "verdict", float(self.expected), float(self.expected), reason)
+
+
+def named(*scenes: str) -> dict[str, Scene]:
+    """Return the cases of built-in scenes by name."""
+    return {case.name: case for scene in scenes for case in load_scene(scene).expand()}
+
+
+def by_dda(cases: Iterable[str]) -> Needs:
+    """Return the needs of a claim that looks at DDA alone."""
+    return tuple((case, "dda") for case in cases)
+
+
+# ---- the page -----------------------------------------------------------------------------------------------------
+
+
+def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return the register as a Markdown page, from the derived rows of the study `paper`."""
+    measured = {row["name"]: row["metrics"] for row in rows}
+    parts = [
+        "# The paper's statements and slips",
+        "Every line is computed: the verdict follows from the measured numbers and is a gate of the study `paper`. "
+        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run.",
+    ]
+    for claim in claims:
+        numbers = measured[claim.id]
+        listed = "; ".join(f"{k} {_said(v)}" for k, v in numbers.items() if k != "verdict")
+        verdict = Finding(int(numbers["verdict"])).words
+        condition = f" ({claim.condition})" if verdict == Finding.CONDITIONAL.words else ""
+        parts += [
+            f"## {claim.id}: {verdict}{condition}",
+            f"**The paper** ({claim.place}): {claim.says}",
+            f"**Measured:** {listed}.",
+            f"**Why:** {claim.why}.",
+        ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _said(value: Value) -> str:
+    return f"{rounded(value):g}" if isinstance(value, float | int) else str(value)

@@ -1,0 +1,142 @@
+"""The slips of the paper's equations in the register: (13), (16), (20), (21), (29) and (32)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
+from validation.studies.paper.register import MAP, SOFT
+
+LATERAL = next(iter(named("poisson-statics")))  # mu = 0.3, p = 1E
+OBLONG = {"block.width": 1.0, "block.height": 2.0}
+
+
+def model(case: str, **values: float) -> Any:
+    """Return the DDA model of a built-in case, with values set."""
+    from validation.solvers.dda import DDA
+
+    scene = named(case.partition("[")[0])[case]
+    return DDA().model(scene.with_values(dict(values)) if values else scene)
+
+
+def radius(e: Evidence) -> dict[str, float]:
+    """Return |lambda| over sqrt(1 + h) on both sides of w dt = 4."""
+    pairs = []
+    for name, s in MAP.items():
+        for mode in ("mode1", "contact"):
+            square = (s.time.step * e.number(name, f"{mode}.frequency")) ** 2
+            h = (0.5 - s.time.delta) * square / (1 + s.time.alpha * square)
+            pairs.append((math.sqrt(square), e.number(name, f"{mode}.spectral_radius") / math.sqrt(1 + h)))
+    omega, ratio = np.array(sorted(pairs)).T
+    return {
+        "largest |lambda| / sqrt(1 + h) - 1 below w dt = 4": float(np.abs(ratio[omega < 4] - 1).max()),
+        "largest above": float(np.abs(ratio[omega > 4] - 1).max()),
+    }
+
+
+def inertia(e: Evidence) -> dict[str, float]:
+    """Return entries (3, 6) and (6, 6) of the inertia matrix of a 1 m x 2 m block, over rho."""
+    found = model(SOFT, **OBLONG)
+    mass = found.mass / found.block.material.density
+    return {"entry (3, 6)": float(mass[2, 5]), "entry (6, 6)": float(mass[5, 5])}
+
+
+def energy(e: Evidence) -> dict[str, float]:
+    """Return the strain energy of ey = 1 over s/2 times the area integral of E."""
+    found = model(SOFT)
+    elastic = found.block.elastic()[4, 4]
+    area, young = 4.0, found.block.material.young
+    return {"strain energy over that of (20)": float(elastic / 2 / (area / 2 * young * area))}
+
+
+def modulus(e: Evidence) -> dict[str, float]:
+    """Return entry (4, 4) of the elastic submatrix over the area [Pa], at mu = 0.3."""
+    return {"entry (4, 4) over area, Pa": float(model(LATERAL).block.elastic()[3, 3] / 4.0)}
+
+
+def load(e: Evidence) -> dict[str, float]:
+    """Return the load on v over a q, and the static displacement that it causes."""
+    found = model(SOFT)
+    return {
+        "load on v over a q": float(found.load[1] / (2.0 * found.pressure)),
+        "static displacement, mm": 1e3 * e.number(SOFT, "displacement.static"),
+    }
+
+
+def lateral(e: Evidence) -> dict[str, float]:
+    """Return statics at mu = 0.3, p = 1E: ours, and without the shear springs' stretch, where sigma_x = 0."""
+    s = named("poisson-statics")[LATERAL]
+    a, E, q = s.block.base_length, s.block.young, s.load.pressure
+    return {
+        "static displacement, mm": 1e3 * e.number(LATERAL, "displacement.static"),
+        "with (32) as printed, mm": -1e3 * (a * q / (2 * s.contact.stiffness) + a / 2 * q / E),
+    }
+
+
+SLIPS = (
+    Claim(
+        "S13",
+        "equation (13), Figure 1",
+        "The spectral radius is sqrt(1 + h) for every w dt.",
+        by_dda(MAP),
+        radius,
+        (Band("largest |lambda| / sqrt(1 + h) - 1 below w dt = 4", 0, 1e-9), Band("largest above", 0, 1e-9)),
+        Finding.CONDITIONAL,
+        "the root of the determinant is the modulus of a complex pair only; real roots lie on both sides of it",
+        "complex pair, w dt below 4 for constant acceleration",
+        (Band("largest |lambda| / sqrt(1 + h) - 1 below w dt = 4", 0, 1e-9),),
+    ),
+    Claim(
+        "S16",
+        "equation (16)",
+        "Entries (3, 6) and (6, 6) of the inertia matrix are (s2 - s2)/2 and (s2 + s2)/4.",
+        by_dda((SOFT,)),
+        inertia,
+        (Band("entry (3, 6)", 0, 0), Band("entry (6, 6)", 0.3333, 0.3334)),
+        Finding.REFUTED,
+        "they are (s1 - s2)/2 and (s1 + s2)/4; for a square s1 = s2 and the slip does not show",
+    ),
+    Claim(
+        "S20",
+        "equation (20)",
+        "The strain energy is s/2 times an integral over the area.",
+        by_dda((SOFT,)),
+        energy,
+        (Band("strain energy over that of (20)", 1 - 1e-12, 1 + 1e-12),),
+        Finding.REFUTED,
+        "the area is counted twice: the energy is s/2 times the integrand",
+    ),
+    Claim(
+        "S21",
+        "equation (21)",
+        "The elastic submatrix is s times a matrix of 1, mu and (1 - mu)/2.",
+        by_dda((LATERAL,)),
+        modulus,
+        (Band("entry (4, 4) over area, Pa", 1, 1),),
+        Finding.REFUTED,
+        "the factor E/(1 - mu^2) of plane stress is missing, in plane strain E and mu change as well",
+    ),
+    Claim(
+        "S29",
+        "equation (29)",
+        "The load on the top edge is (0, q).",
+        by_dda((SOFT,)),
+        load,
+        (Band("load on v over a q", 1, 1),),
+        Finding.REFUTED,
+        "it is (0, -q), as the result of (29) has it",
+    ),
+    Claim(
+        "S32",
+        "equation (32)",
+        "The right-hand side f2 of the lateral strain holds stress and inertia only.",
+        by_dda((LATERAL,)),
+        lateral,
+        (Band("static displacement, mm", -10.001, -9.999),),
+        Finding.REFUTED,
+        "it lacks the stretch of the shear springs, -(a^2 p/2) ex accumulated, and settles at a wrong place for mu > 0",
+    ),
+)

@@ -1,0 +1,81 @@
+"""Two finite-element codes of different families on one mesh: scikit-fem and FEniCSx, on one rank and on two."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from validation.engine.study import Study
+from validation.gates.gate import Gate
+from validation.scenes.scene import Scene, load_scene
+
+SQUARES = ("two-codes-constant", "two-codes-average")
+POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh
+SCENES = (*SQUARES, *POLYGONS)
+SAME = 1e-10  # of the maximum
+APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
+
+
+def cases() -> Iterator[Scene]:
+    """Yield the cases of the study."""
+    for name in SCENES:
+        yield from load_scene(name).expand()
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return the gates: both codes give one history, rounding apart, and every code stands in equilibrium."""
+    return (*equal(), *equilibrium())
+
+
+def carried(scene: Scene) -> float:
+    """Static contact pressure [Pa]: the vertical load q L on the top, resolved normal to the base, over its length."""
+    (x0, y0), (x1, y1) = scene.block.edge(scene.block.top)
+    (ax, _), (bx, _) = scene.block.edge(scene.block.base)
+    length = scene.block.base_length
+    return scene.load.pressure * math.hypot(x1 - x0, y1 - y0) * (bx - ax) / length**2
+
+
+def equilibrium() -> Iterator[Gate]:
+    """Yield the gates on the static contact pressure of polygons, which no elasticity enters."""
+    for scene in (load_scene(name) for name in POLYGONS):
+        value = carried(scene)
+        for solver in scene.run.solvers:
+            yield Gate(
+                scene.name,
+                (solver,),
+                "pressure.static",
+                value * (1 - SAME),
+                value * (1 + SAME),
+                "equilibrium: the springs carry the load's part normal to the base; band: rounding",
+            )
+
+
+def equal() -> Iterator[Gate]:
+    """Yield the gates on the histories of the two codes."""
+    yield from (
+        Gate(
+            scene.name,
+            (solver, "fem:full"),
+            metric,
+            APART,
+            SAME,
+            "same mesh, degree, quadrature and scheme: what is left is rounding, some eps times the condition of "
+            "M + alpha dt^2 K and the steps",
+            reference_kind="other code",
+        )
+        for scene in cases()
+        for solver in scene.run.solvers
+        if solver.startswith("fenicsx")
+        for metric in ("displacement.max", "pressure.max")
+    )
+
+
+TWO_CODES = Study(
+    name="two-codes",
+    title="Two finite-element codes on one mesh",
+    purpose="The same mesh, degree and scheme by scikit-fem and by FEniCSx: own nodes, own weak forms, own Newmark "
+    "loop, own linear algebra, on one rank and on two.",
+    scenes=SCENES,
+    measures=("history",),
+    gates=gates,
+)

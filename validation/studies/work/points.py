@@ -1,0 +1,134 @@
+"""What the results of the study `work-precision` say of error and cost: points, fronts, the cheapest answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from validation.report.chapters.data import base_name
+from validation.runs.results import Results, Row, Value
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, parse_scene
+
+QUANTITIES = {
+    "displacement": "displacement.l2",
+    "contact pressure": "pressure.l2",
+    "first frequency": "mode1.numerical_frequency",
+    "damping ratio": "mode1.damping",
+}
+METHODS = {("dda", 1): "dda", ("fem", 1): "fem, linear", ("fem", 2): "fem, quadratic", ("bar", 1): "bar"}
+ROUNDING = 1e-9  # uncertainty of the exact references: histories of a sum of modes
+
+
+@dataclass(frozen=True)
+class Point:
+    """One run: its method, its cost, its errors by (quantity, reference)."""
+
+    method: str
+    scene: Scene
+    row: Row
+    errors: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    @property
+    def seconds(self) -> float:
+        """Set-up and stepping [s]."""
+        return sum(self.row.seconds.values())
+
+    @property
+    def work(self) -> float:
+        """Unknowns times steps."""
+        return float(self.row.work.get("unknowns", 0) * self.row.work.get("steps", 0))
+
+
+def points(results: Results, manifest: Mapping[str, Any], prefix: str) -> list[Point]:
+    """Return the completed runs of the scenes whose name begins so, in the order of the study."""
+    rows = results.rows()
+    compared = {(c["scene"], c["solver"], c["reference"]): c["metrics"] for c in manifest["comparisons"]}
+    by_case = {(case["scene"], case["solver"]): rows[case["key"]] for case in manifest["cases"] if case["key"] in rows}
+    found = []
+    for case in manifest["cases"]:
+        row = by_case.get((case["scene"], case["solver"]))
+        scene = parse_scene(case["definition"], case["scene"])
+        method = METHODS.get((case["solver"], scene.fem.degree if case["solver"] == "fem" else 1))
+        quadratic_copy = case["solver"] != "fem" and "quadratic" in case["scene"]
+        wanted = base_name(case["scene"]).startswith(prefix) and method is not None and not quadratic_copy
+        if wanted and row is not None and row.outcome is Outcome.COMPLETED:
+            found.append(Point(str(method), scene, row, _errors(case, row, by_case, compared)))
+    return found
+
+
+def _errors(
+    case: Mapping[str, Any],
+    row: Row,
+    rows: Mapping[tuple[str, str], Row],
+    compared: Mapping[tuple[str, str, str], Mapping[str, Value]],
+) -> dict[tuple[str, str], float]:
+    """Return the errors of a run against the bar (model form and mesh) and the continuum (everything)."""
+    found = {}
+    for reference in ("bar", "continuum"):
+        other = rows.get((case["scene"], reference))
+        metrics = compared.get((case["scene"], case["solver"], reference))
+        for name, metric in QUANTITIES.items():
+            value: Value = None
+            if metrics is not None and metric in metrics:
+                value = metrics[metric]
+            elif metrics is not None and other is not None:
+                value = _difference(row.metrics.get(metric), other.metrics.get(metric), relative="frequency" in name)
+            if isinstance(value, int | float) and math.isfinite(value):
+                found[name, reference] = abs(float(value))
+    return found
+
+
+def _difference(value: Value, reference: Value, relative: bool) -> Value:
+    if not isinstance(value, int | float) or not isinstance(reference, int | float):
+        return None
+    return (value - reference) / reference if relative and reference else value - reference
+
+
+def front(candidates: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the (cost, error) pairs that no other beats in both, cheapest first."""
+    best, kept = math.inf, []
+    for cost, error in sorted(candidates):
+        if error < best:
+            best = error
+            kept.append((cost, error))
+    return kept
+
+
+def floor(found: Iterable[Point], quantity: str, reference: str) -> float | None:
+    """Return the error of DDA at the finest step: its model form."""
+    own = [p for p in found if p.method == "dda" and (quantity, reference) in p.errors]
+    return min(own, key=lambda p: p.scene.time.step).errors[quantity, reference] if own else None
+
+
+def cheapest(found: Sequence[Point], error: float, reference: str = "continuum") -> Point | None:
+    """Return the run of least seconds whose displacement and contact pressure are both within an error."""
+    good = [
+        p
+        for p in found
+        if all(p.errors.get((name, reference), math.inf) <= error for name in ("displacement", "contact pressure"))
+    ]
+    return min(good, key=lambda p: p.seconds, default=None)
+
+
+def table(results: Results, manifest: Mapping[str, Any]) -> list[dict[str, Value]]:
+    """Return one flat record for each case of any study: what was run, metrics, work, seconds, comparisons."""
+    rows = results.rows()
+    lines = []
+    for case in manifest["cases"]:
+        row = rows[case["key"]]
+        line: dict[str, Value] = {"scene": case["scene"], "solver": case["solver"], "outcome": str(row.outcome)}
+        line |= {f"work.{name}": value for name, value in row.work.items()}
+        line |= {f"seconds.{name}": value for name, value in row.seconds.items()}
+        line |= {"seconds.total": sum(row.seconds.values()), "estimate": row.estimate} | dict(row.metrics)
+        for c in manifest["comparisons"]:
+            if (c["scene"], c["solver"]) == (case["scene"], case["solver"]):
+                line |= {f"{c['reference']}:{name}": value for name, value in c["metrics"].items()}
+        lines.append(line | {"notes": "; ".join(row.notes)})
+    return lines
+
+
+Cost = Callable[[Point], float]
+COSTS: dict[str, Cost] = {"seconds": lambda p: p.seconds, "unknowns × steps": lambda p: p.work}
