@@ -36,8 +36,8 @@ elements = 4
 
 
 TOGETHER = (  # modules whose tests share what takes long to make
-    "test_chapter_subblocks",
-    "test_ci",
+    "test_subblocks_chapter",
+    "test_changes",
     "test_claims",
     "test_compare",
     "test_confusion",
@@ -102,7 +102,7 @@ def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProc
 
 def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, where not the process is the point: no start-up."""
-    from validation.cli.main import main
+    from validation.cli import main
 
     said, complained, words = io.StringIO(), io.StringIO(), [str(argument) for argument in arguments]
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):

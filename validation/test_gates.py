@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 
 from validation.engine.case import Case
-from validation.engine.finished import Finished
+from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
-from validation.engine.study import Derived, Study
+from validation.engine.study import Study
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
+from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.studies.catalogue import get_study, judged_studies
@@ -61,7 +62,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each gate; with ``--dda-solver`` of those on `dda` only."""
     user = metafunc.config.getoption("--dda-solver", None)
     names = [name for name in _gates() if user is None or _applies(name)]
-    marks = {name: pytest.mark.xdist_group(_gates()[name][1].scene.partition("[")[0]) for name in names}
+    marks = {name: pytest.mark.xdist_group(scene_of(_gates()[name][1].scene)) for name in names}
     metafunc.parametrize("name", [pytest.param(name, marks=marks[name], id=name) for name in names])
 
 

@@ -23,6 +23,7 @@ def solve(
     columns: tuple[str, ...] = ("displacement", "contact_pressure"),
     full: bool = False,
     fields: str | Path | None = None,
+    model: Model | None = None,
 ) -> Result:
     """Integrate the block from rest under its loads.
 
@@ -38,6 +39,8 @@ def solve(
         Solve the whole block step by step, without any saving.
     fields
         Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
+    model
+        The model of `problem` (and `full`) where it was built before.
 
     Raises
     ------
@@ -46,7 +49,7 @@ def solve(
     """
     check_request(steps, tuple(columns))
     began = time.perf_counter()
-    model = build(problem, full)
+    model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
     writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
     ready = time.perf_counter()
@@ -120,9 +123,9 @@ def run(
     return history
 
 
-def static(problem: Problem, full: bool = False) -> dict[str, float]:
+def static(problem: Problem, full: bool = False, model: Model | None = None) -> dict[str, float]:
     """Value of every column at rest under the constant loads, on the base's last position: K^-1 F observed."""
-    model = build(problem, full)
+    model = build(problem, full) if model is None else model
     moved = np.zeros(2) if problem.motion is None else problem.motion(np.array([np.inf]))[0]
     D = Work().factor(model.K)(model.F + model.base_force @ moved)
     values = {name: float(problem.load_size * (model.observers[name] @ D)) for name in COLUMNS}

@@ -30,10 +30,10 @@ class Diagnostics:
     """Largest w dt [-]."""
 
 
-def diagnostics(problem: Problem, scheme: Scheme, full: bool = False) -> Diagnostics:
+def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Model | None = None) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the step."""
-    model = build(problem, full)
-    omegas = _frequencies(problem, model, full) * scheme.step
+    model = build(problem, full) if model is None else model
+    omegas = _frequencies(problem, model) * scheme.step
     S = effective_matrix(model.M, model.K, scheme)
     b = scheme.step**2 * model.F
     x = Work().factor(S)(b)
@@ -48,11 +48,11 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False) -> Diagnos
     )
 
 
-def _frequencies(problem: Problem, model: Model, full: bool) -> Array:
+def _frequencies(problem: Problem, model: Model) -> Array:
     """All frequencies of a small mesh, the lowest ones and the highest of a large one [rad/s]."""
     if len(model.F) <= DENSE:
         squares: Array = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)
     else:
-        squares = np.append(lowest(model, 6)[0], highest_frequency(problem, full) ** 2)
+        squares = np.append(lowest(model, 6)[0], highest_frequency(problem, model=model) ** 2)
     found: Array = np.sqrt(np.abs(squares))
     return found

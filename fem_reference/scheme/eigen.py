@@ -17,7 +17,9 @@ DENSE = 400
 """Unknowns up to which all modes are found by a dense solver."""
 
 
-def modes(problem: Problem, scheme: Scheme, count: int = 12, full: bool = False) -> tuple[Mode, ...]:
+def modes(
+    problem: Problem, scheme: Scheme, count: int = 12, full: bool = False, model: Model | None = None
+) -> tuple[Mode, ...]:
     """Natural modes, greatest share of the static response first.
 
     Parameters
@@ -28,13 +30,15 @@ def modes(problem: Problem, scheme: Scheme, count: int = 12, full: bool = False)
         Number of lowest modes computed; doubled until the first axial mode is certainly among them.
     full
         Use the whole block instead of the model with exact savings.
+    model
+        The model of `problem` (and `full`) where it was built before.
 
     Returns
     -------
     tuple of Mode
         The first one is the first axial mode.
     """
-    model = build(problem, full)
+    model = build(problem, full) if model is None else model
     F = model.F if np.any(model.F) else model.base_force.sum(axis=1)
     D = Work().factor(model.K)(F)
     while True:
@@ -82,9 +86,9 @@ def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
     return roots[np.argsort(-np.abs(roots), kind="stable")]
 
 
-def highest_frequency(problem: Problem, full: bool = False) -> float:
+def highest_frequency(problem: Problem, full: bool = False, model: Model | None = None) -> float:
     """Largest natural frequency of the mesh [rad/s], which limits a conditionally stable scheme."""
-    model = build(problem, full)
+    model = build(problem, full) if model is None else model
     size = len(model.F)
     if size <= DENSE:
         return float(np.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1]))

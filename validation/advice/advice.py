@@ -250,7 +250,7 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
 
     The window is the scene's own duration, whatever dt is, cut where it would take more than `longest` steps.
     """
-    from validation.metrics.pairs import pair
+    from validation.metrics.catalogue import pair
 
     steps = max(2, min(longest, round(scene.time.duration / solution.step)))
     columns = ["displacement", "contact_pressure"]

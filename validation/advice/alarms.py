@@ -14,21 +14,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
-from validation.metrics.pairs import pair as pair_metric
+from validation.metrics.catalogue import pair as pair_metric
+from validation.runs.case_name import scene_of
 from validation.runs.history import History
-from validation.runs.results import Row
+from validation.runs.records import AlarmRecord
+from validation.runs.row import Row
 from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, role
 
 AGREEMENT, TENSION, RINGING, DISCOUNT = "agreement by damping", "hidden tension", "contact ringing", "fixed discount"
 REMOVED = 0.5  # of the first mode's motion over the window
 FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps more than 0.9 of itself
-REPEATS = ("dda-textbook", "dda-60", "fem-60", "bar-60")  # the same answer by other arithmetic
-REFERENCES = ("bar", "fem")  # under the same scheme as DDA
 
 
 class Cases(Protocol):
@@ -51,10 +53,10 @@ class Alarm:
     sentence: str
     values: Mapping[str, float] = field(default_factory=dict)
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> AlarmRecord:
         """Return plain data, numbers rounded well above the last bits."""
         rounded = {key: float(f"{value:.4g}") for key, value in self.values.items()}
-        return asdict(self) | {"values": rounded}
+        return {"kind": self.kind, "scene": self.scene, "sentence": self.sentence, "values": rounded}
 
 
 def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
@@ -79,20 +81,25 @@ def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | No
     square over the window of the first mode's amplitude |lambda|^n, without what physical damping would remove: the
     continuum has the kinetic damping -ln(gg) / dt, so that only the algorithmic part counts.
     """
-    dda = finished.rows.get((scene.name, "dda"))
-    if dda is None or (scene.name, "continuum") not in finished.rows:
-        return None
-    exact, own = finished.history(scene.name, "continuum"), finished.history(scene.name, "dda")
-    name = next((r for r in REFERENCES if finished.history(scene.name, r) is not None), None)
-    reference = None if name is None else finished.history(scene.name, name)
+    judged, own = _first(scene, finished, Role.JUDGED)
+    _, reference = _first(scene, finished, Role.REFERENCE)
+    _, exact = _first(scene, finished, Role.TRUTH)
     if own is None or exact is None or reference is None:
         return None
     agreement = pair_metric("displacement.l2", own, reference)
     error = pair_metric("displacement.l2", reference, exact)
-    radius = dda.metrics.get("mode1.spectral_radius")
+    radius = finished.rows[scene.name, judged].metrics.get("mode1.spectral_radius")
     if not (isinstance(agreement, float) and isinstance(error, float) and isinstance(radius, float)):
         return None
     return {"agreement": agreement, "removed": removed_motion(scene, radius), "time error": error}
+
+
+def _first(scene: Scene, finished: Cases, wanted: Role) -> tuple[str, History | None]:
+    """Return the solver of the highest rank of a role that has a history of the scene, and that history."""
+    for name in by_role(wanted):
+        if (history := finished.history(scene.name, name)) is not None:
+            return name, history
+    return "", None
 
 
 def removed_motion(scene: Scene, radius: float) -> float:
@@ -123,7 +130,11 @@ def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     for solver, row in solvers.items():
         found = [row.metrics.get(f"pressure.{part}") for part in ("minimum", "minimum_time", "tension_time")]
         least, when, duration = (v if isinstance(v, float) else math.nan for v in found)
-        if ":" in solver or solver in REPEATS or not (least < -1e-6 * abs(scene.load.pressure) and duration > 0):
+        if (
+            ":" in solver
+            or role(solver) is Role.REPEAT
+            or not (least < -1e-6 * abs(scene.load.pressure) and duration > 0)
+        ):
             continue
         values |= {f"{solver}.minimum": least, f"{solver}.time": when, f"{solver}.duration": duration}
         said.append(f"in {solver} by {-least / 1e6:.3g} MPa at t = {when:.4g} s and for {duration:.3g} s in all")
@@ -132,7 +143,7 @@ def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
 
 
 def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
-    row = solvers.get("dda")
+    row = next((solvers[name] for name in by_role(Role.JUDGED) if name in solvers), None)
     root, radius = (
         None if row is None else row.metrics.get(f"contact.{part}") for part in ("least_root", "spectral_radius")
     )
@@ -149,7 +160,7 @@ def fixed_discount(scenes: Sequence[Scene]) -> Iterator[Alarm]:
     groups: dict[tuple[str, float], set[float]] = {}
     for scene in scenes:
         if scene.time.gg_rate is None and 0 < scene.time.discount < 1:
-            groups.setdefault((scene.name.partition("[")[0], scene.time.discount), set()).add(scene.time.step)
+            groups.setdefault((scene_of(scene.name), scene.time.discount), set()).add(scene.time.step)
     for (name, gg), steps in groups.items():
         if len(steps) > 1:
             said = (

@@ -7,15 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import numpy as np
 
 from validation.advice.spectra import CONTACT, FIRST, dda_modes, radii, ratios
 from validation.errors import InputError
 from validation.gates import closed_forms
+from validation.runs.case_name import scene_of
 from validation.runs.history import Array
 from validation.runs.modes import contact_index
+from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
 
 POINTS = 161
@@ -23,11 +24,11 @@ LOWEST, HIGHEST = 1e-3, 30.0  # range of w dt of the first axial mode
 VARIANTS = 10  # panels of a scene, at most
 
 
-def budgets(scenes: Iterable[Scene]) -> Iterator[dict[str, Any]]:
+def budgets(scenes: Iterable[Scene]) -> Iterator[BudgetRecord]:
     """Yield one budget for each setting of a scene apart from its time steps and meshes."""
     settings: dict[str, dict[str, list[Scene]]] = {}
     for scene in scenes:
-        group = settings.setdefault(scene.name.partition("[")[0], {})
+        group = settings.setdefault(scene_of(scene.name), {})
         group.setdefault(_setting(scene), []).append(scene)
     for group in settings.values():
         for cases in list(group.values())[:VARIANTS]:
@@ -43,7 +44,7 @@ def _setting(scene: Scene) -> str:
     return repr((data["block"], data["contact"], time))
 
 
-def budget(cases: list[Scene]) -> dict[str, Any]:
+def budget(cases: list[Scene]) -> BudgetRecord:
     """Return curves and limits of one setting, as plain data.
 
     Keys: `scene` (name of the first case), `steps` (dt of the cases [s]), `dt` [s], `modes` (name -> total,

@@ -121,20 +121,21 @@ def solve(
 
     Example: [bold]dda-validate solve figures-3-4 --set time.step=0.002 --solver dda --csv history.csv[/bold]
     """
-    from validation.engine.measure import attempt, check
+    from validation.engine.measure import completed
     from validation.errors import InputError
     from validation.runs.files import atomic_path, write_csv
     from validation.runs.run import Outcome
-    from validation.solvers.registry import DISTRIBUTED, get_solver
+    from validation.solvers.registry import FULL, get_solver
 
-    if ranks > 1 and solver not in DISTRIBUTED:
-        raise InputError(f"--ranks: goes with {', '.join(DISTRIBUTED)}, got {solver!r}")
-    solver = solver if ranks == 1 else f"{solver}:{ranks}"
-    case, chosen = one_case(scene, assignments), get_solver(solver.removesuffix(":full"))
+    chosen = get_solver(solver)
+    if ranks > 1 and not chosen.distributed:
+        raise InputError(f"--ranks: goes with solvers that take a number of ranks, such as fenicsx, got {solver!r}")
+    chosen = chosen if ranks == 1 else chosen.option(str(ranks))
+    case, solver = one_case(scene, assignments), solver if ranks == 1 else f"{solver}:{ranks}"
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
     with atomic_path(fields) if fields is not None else nullcontext() as part:
-        done = check(attempt(chosen, case, full or solver.endswith(":full"), part), case)
+        done = completed(chosen, case, full or solver.endswith(FULL), part)
         if done.outcome in (Outcome.REFUSED, Outcome.NOT_APPLICABLE):
             raise InputError("; ".join(done.notes))
     if csv is not None and done.outcome is Outcome.COMPLETED and done.history is not None:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from validation.advice.alarms import DISCOUNT
 from validation.gates.gate import Verdict
+from validation.runs.records import VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 
@@ -85,7 +86,7 @@ def print_alarms(results: Results, studies: list[str]) -> None:
         typer.echo(f"alarms: {said} (see the report)")
 
 
-def after_run(records: list[dict[str, object]], summary: Path | None, baseline: Path | None) -> bool | None:
+def after_run(records: list[VerdictRecord], summary: Path | None, baseline: Path | None) -> bool | None:
     """Write the summary and compare with the baseline; return whether something got worse, None without a baseline."""
     from validation.gates.changes import against, markdown
     from validation.runs.files import write_atomically

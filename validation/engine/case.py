@@ -1,4 +1,4 @@
-"""A case: one scene, one solver, savings on or off; its key."""
+"""A case: one scene, one solver, savings on or off; its key covers everything that decides its row."""
 
 from __future__ import annotations
 
@@ -7,20 +7,24 @@ import hashlib
 import importlib.util
 import json
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
-from validation.solvers.registry import DISTRIBUTED, get_solver
+from validation.solvers.registry import FULL, get_solver
 
-FULL = ":full"  # a solver's name with this ending runs without numerical savings
-JUDGING_SOURCES = (
+SOURCES = (  # of this package: what reads a scene, runs it and measures the run
+    "validation.errors",
+    "validation.runs",
+    "validation.scenes",
+    "validation.metrics",
     "validation.solvers",
     "validation.engine",
-    "validation.metrics",
 )
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "mpmath")
 MEASURES = ("history", "modes")  # what is measured on a run unless a study asks for more or less
 
 
@@ -42,12 +46,24 @@ class Case:
 
     def make_solver(self) -> Solver:
         """Return the solver, importing its adapter."""
-        name = self.solver.removesuffix(FULL)
-        return get_solver(f"{name}:{self.ranks}" if self.ranks > 1 and name in DISTRIBUTED else name)
+        solver = get_solver(self.solver)
+        return solver.option(str(self.ranks)) if self.ranks > 1 and solver.distributed else solver
 
     def key(self) -> str:
-        """Hash of what decides the result: the tables that the solver reads, its options, its sources."""
+        """Hash of what decides the row: the tables that the solver reads, options, measures, sources, versions."""
         solver = self.make_solver()
+        state = {
+            "solver": solver.name,
+            "full": self.full,
+            "scene": self._read(solver),
+            "measures": sorted(self.measures),
+            "sources": {name: source_digest(name) for name in (*solver.sources, *SOURCES)},
+            "versions": {**library_versions(), **solver.versions()},
+        }
+        return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
+
+    def _read(self, solver: Solver) -> dict[str, Any]:
+        """Return the part of the scene that the solver reads, files by their content."""
         data = self.scene.model_dump(mode="json")
         read: dict[str, Any] = {section: dict(data[section]) for section in solver.sections}
         for section, _, key in (name.partition(".") for name in solver.unread):
@@ -57,14 +73,7 @@ class Case:
             read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
         if self.scene.load.base_motion:
             read["base_motion"] = _file_digest(Path(self.scene.load.base_motion), "record of the base's motion")
-        state = [
-            solver.name,
-            self.full,
-            read,
-            *([] if self.measures == MEASURES else self.measures),
-            *(source_digest(name) for name in (*solver.sources, *JUDGING_SOURCES)),
-        ]
-        return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
+        return read
 
 
 def _file_digest(path: Path, what: str) -> str:
@@ -79,7 +88,24 @@ def source_digest(module: str) -> str:
     """Hash of a module's file, or of all files of a package, without importing it."""
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
-        return ""
+        raise InputError(f"{module}: its source cannot be found, so that its results cannot be kept")
     origin = Path(spec.origin)
-    files = sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
-    return hashlib.sha256(b"".join(f.name.encode() + f.read_bytes() for f in files)).hexdigest()
+    root = origin.parent
+    files = sorted(root.rglob("*.py")) if origin.name == "__init__.py" else [origin]
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(f"{file.relative_to(root).as_posix()}\0".encode())
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+@functools.cache
+def library_versions() -> dict[str, str]:
+    """Return the versions of the libraries that rows are computed with."""
+    found = {}
+    for name in LIBRARIES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found

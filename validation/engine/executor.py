@@ -11,11 +11,11 @@ from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.engine.study import Study
 from validation.runs.history import History
-from validation.runs.results import Row
+from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 
-def _executed(
+def executed(
     pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
 ) -> Iterator[tuple[Row, History | None]]:
     """Run the pending cases, in this process where one worker or one case is all there is."""
@@ -36,12 +36,12 @@ def _executed(
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
-    """Run a case in a process of its own: one that kills its worker, for want of memory, is a row like any other."""
+    """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with _pool(None, 1) as pool:
         try:
             return pool.submit(execute, case, key, study.name).result()
         except BrokenExecutor:
-            note = "the process died, for want of memory or by a signal"
+            note = "worker killed (out of memory or a signal)"
             return Row(key, study.name, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
 
 

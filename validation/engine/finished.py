@@ -1,14 +1,37 @@
-"""The finished cases of a study."""
+"""The finished cases of a study, and rows that are derived from them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from validation.engine.study import Derived
 from validation.runs.history import History
-from validation.runs.results import Results, Row
+from validation.runs.results import Results
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A row that is computed from finished cases instead of by a solver; gates address it as any other.
+
+    Attributes
+    ----------
+    scene, name
+        Where gates find it: ``Gate(scene, (name,), metric, ...)``.
+    needs
+        The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
+    compute
+        Function of the finished cases that returns metrics.
+    linear
+        Whether it has a meaning for linear scenes only; gates on it do not exist for others.
+    """
+
+    scene: str
+    name: str
+    needs: tuple[tuple[str, str], ...]
+    compute: Callable[[Finished], Mapping[str, Value]]
+    linear: bool = False
 
 
 @dataclass(frozen=True)

@@ -4,33 +4,23 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 from validation.engine.finished import Finished
 from validation.gates.gate import Gate, Status, Verdict, judge, rounded
-from validation.metrics.pairs import PAIRS, pair
+from validation.metrics.catalogue import CATALOGUE, PAIRS, pair
 from validation.metrics.values import ratio
 from validation.runs.history import History
-from validation.runs.results import Row, Value
+from validation.runs.records import ComparisonRecord
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.registry import rank
 
-ORDER = (
-    "dda",
-    "dda-textbook",
-    "fem",
-    "fem:full",
-    "fenicsx",
-    "fenicsx:2",
-    "bar",
-    "continuum",
-    "dda-60",
-    "fem-60",
-    "bar-60",
-)  # each is compared with the later
 ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 
-def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[dict[str, Any]]:
+def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[ComparisonRecord]:
     """Yield the pair metrics of every solver against every later one in the order of references, or of `pairs`."""
     solvers: dict[str, list[str]] = {}
     for scene, solver in finished.rows:
@@ -45,15 +35,15 @@ def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) 
 
 
 def _ordered(solvers: Iterable[str]) -> list[str]:
-    """Solvers in the order of references; others, which users bring, first."""
-    return sorted(solvers, key=lambda s: ORDER.index(s) if s in ORDER else -1)
+    """Solvers in the order of references; those that users bring come first."""
+    return sorted(solvers, key=rank)
 
 
 def _comparison(
     finished: Finished, scene: str, solver: str, reference: str, histories: Mapping[str, History]
-) -> dict[str, Any]:
+) -> ComparisonRecord:
     history, against, static = histories[solver], histories[reference], finished.rows[scene, solver].metrics
-    values = {m: _plain(pair(m, history, against, static)) for m in PAIRS}
+    values = {m: plain(pair(m, history, against, static)) for m in PAIRS}
     return {
         "scene": scene,
         "solver": solver,
@@ -63,8 +53,22 @@ def _comparison(
     }
 
 
-def _plain(value: Value) -> Value:
+def plain(value: Value) -> Value:
+    """Return a value as it is kept: six digits, well above the last bits."""
     return rounded(value, 6) if isinstance(value, float) else value
+
+
+def existing(gates: Iterable[Gate], scenes: Iterable[Scene], finished: Finished) -> list[Gate]:
+    """Return the gates that have a meaning: those on modes, spectra and statics exist for linear scenes only."""
+    nonlinear = {scene.name for scene in scenes if not features.linear(scene)}
+    return [
+        gate for gate in gates if not (nonlinear & {name for name, _ in gate.cases} and _linear_only(gate, finished))
+    ]
+
+
+def _linear_only(gate: Gate, finished: Finished) -> bool:
+    derived = [finished.derived[name].linear for name in gate.cases if name in finished.derived]
+    return any(derived) or (gate.metric in CATALOGUE and CATALOGUE[gate.metric].linear)
 
 
 def evaluate(gate: Gate, finished: Finished) -> Verdict:

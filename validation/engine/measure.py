@@ -6,20 +6,24 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
+from validation.engine import stability
 from validation.engine.case import Case
 from validation.errors import InputError
 from validation.metrics.catalogue import solo
-from validation.metrics.columns import Measurable
+from validation.metrics.measurable import Measurable
 from validation.runs.history import History
-from validation.runs.results import Row
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers import memory, stability
-from validation.solvers.contract import NotReported, Solver
+from validation.solvers import memory
+from validation.solvers.contract import NotReported, Prepared, Solver
+
+Part = TypeVar("Part")
 
 
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
@@ -29,17 +33,20 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     -------
     The row with the metrics of the run itself, and the history where there is one.
     """
-    solver = case.make_solver()
-    run = _repeated(check(attempt(solver, case.scene, case.full), case.scene), solver, case)
-    if case.scene.time.allow_unstable:
-        run = stability.named(run, solver, case.scene)
+    solver, scene = case.make_solver(), case.scene
+    prepared, run = attempt(solver, scene, case.full)
+    run = _repeated(check(run, scene), solver, case)
     failed: list[str] = []
-    with np.errstate(all="ignore"):
-        measured = _measure(solver, case, run, failed)
+    measured: dict[str, Value] = {}
+    if prepared is not None:
+        if scene.time.allow_unstable:
+            run = stability.named(run, prepared, scene)
+        with np.errstate(all="ignore"):
+            measured = _measure(prepared, solver, case, run, failed)
     row = Row(
         key=key,
         study=study,
-        scene=case.scene.name,
+        scene=scene.name,
         solver=case.solver,
         outcome=run.outcome,
         metrics=measured,
@@ -55,28 +62,35 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
     """Return the run with the least seconds of its repeats, each part apart, and their spread."""
     if not case.repeats or run.outcome is not Outcome.COMPLETED:
         return run
-    timings = [attempt(solver, case.scene, case.full).seconds for _ in range(case.repeats)]
+    timings = [attempt(solver, case.scene, case.full)[1].seconds for _ in range(case.repeats)]
     sums = [sum(timing.values()) for timing in timings]
     least = {part: min(timing[part] for timing in timings) for part in timings[0]}
     spread = f"least seconds of {case.repeats} repeats, spread {max(sums) - min(sums):.1g} s"
     return replace(run, seconds=least, notes=(*run.notes, spread))
 
 
-def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> Run:
-    """Call a solver and turn its errors into outcomes."""
+def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> tuple[Prepared | None, Run]:
+    """Prepare and run a scene, and turn the solver's errors into outcomes; what was prepared, None if nothing was."""
+    prepared: Prepared | None = None
     try:
-        if reason := solver.applicable(scene):
-            return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
-        memory.check(scene, solver.name)
+        if reason := solver.refusal(scene):
+            return None, Run(Outcome.NOT_APPLICABLE, notes=(reason,))
+        memory.check(scene, solver)
         asked, absent = _columns(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of
-            run = solver.solve(asked, full=full, fields=fields)
-        return replace(run, notes=(*run.notes, *notes))
+            prepared = solver.prepare(asked, full)
+            run = prepared.run(fields)
+        return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
-        return Run(Outcome.REFUSED, notes=(str(error),))
+        return prepared, Run(Outcome.REFUSED, notes=(str(error),))
     except Exception as error:  # a solver may be anybody's code: its failure is a row, not the end of the study
-        return Run(Outcome.RAISED, notes=(f"{type(error).__name__}: {error}",))
+        return prepared, Run(Outcome.RAISED, notes=(f"{type(error).__name__}: {error}",))
+
+
+def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    """Return the checked run of a scene, whatever its outcome."""
+    return check(attempt(solver, scene, full, fields)[1], scene)
 
 
 def _columns(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
@@ -110,28 +124,41 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
     return Run(outcome, run.history, run.work, run.seconds, (*run.notes, note), run.estimate)
 
 
-def _measure(solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Any]:
+def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
-    scene, measured = case.scene, dict[str, Any]()
-    if "history" in case.measures and run.history is not None and run.outcome is Outcome.COMPLETED:
-        static = _reported(solver.static, scene, None, failed)
-        assumed = solver.assumed_static(scene) if static is None else static
-        modes = _reported(solver.modes, scene, (), failed) if "modes" in case.measures else ()
-        seen = Measurable(run.history, scene.time.step, assumed, modes, static is not None)
-        measured = solo(seen, "modes" in case.measures)
-    if "stability" in case.measures and run.outcome not in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-        measured |= stability.measure(solver, scene, run)
-    if "energy" in case.measures and run.outcome is Outcome.COMPLETED:
-        measured[stability.DRIFT] = stability.drift(solver, scene, run)
-    if "limit" in case.measures:
-        measured[stability.LIMIT] = stability.limit(solver, scene)
-    return measured
+    asked = _measures(case, run)
+    if not asked:
+        return {}
+    linear, history = features.linear(case.scene), run.history or History(np.zeros(0), {})
+    static = _reported(prepared.static, None, failed) if linear and {"history", "energy"} & asked else None
+    assumed = prepared.assumed_static() if linear and static is None and "history" in asked else static or {}
+    seen = Measurable(
+        history,
+        case.scene.time.step,
+        assumed,
+        _reported(prepared.modes, (), failed) if linear and {"modes", "energy"} & asked else (),
+        static is not None,
+        _reported(prepared.diagnostics, {}, failed) if linear and "stability" in asked else {},
+        run.outcome,
+        lambda: stability.limit(solver, case.scene),
+    )
+    return solo(seen, asked)
 
 
-def _reported(part: Callable[[Scene], Any], scene: Scene, absent: Any, failed: list[str]) -> Any:
+def _measures(case: Case, run: Run) -> set[str]:
+    """Return the parts of the study's measures that this run has."""
+    asked = set(case.measures)
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        asked -= {"history", "modes", "energy"}
+    if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+        asked -= {"stability"}
+    return asked if "history" in asked else asked - {"modes"}
+
+
+def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:
     """Return what a solver reports beside its history, or what stands for its absence."""
     try:
-        return part(scene)
+        return part()
     except NotReported:
         return absent
     except Exception as error:  # anybody's code, as in `attempt`; the history is sound and is kept

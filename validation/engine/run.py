@@ -5,18 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
-from typing import Any
 
-from validation.advice.alarms import Alarm, alarms
-from validation.advice.budget import budgets
 from validation.engine.case import Case
-from validation.engine.executor import _executed
+from validation.engine.executor import executed
 from validation.engine.finished import Finished
-from validation.engine.judge import _plain, compare, evaluate
+from validation.engine.judge import compare, evaluate, existing, plain
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
+from validation.runs.case_name import scene_of
 from validation.runs.provenance import provenance
-from validation.runs.results import Results, Row
+from validation.runs.records import (
+    AlarmRecord,
+    Annotations,
+    CaseRecord,
+    ComparisonRecord,
+    DerivedRecord,
+    Manifest,
+    VerdictRecord,
+)
+from validation.runs.results import Results
+from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 Progress = Callable[[int, int, str], None]
@@ -53,11 +61,12 @@ def run_study(
     """
     cases = study.cases(full, ranks)
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
-    comparisons = list(compare(finished, study.pairs))
-    verdicts = [evaluate(gate, finished) for gate in study.gates()]
-    raised = list(alarms({case.scene.name: case.scene for case in cases}.values(), finished))
-    results.write_json(f"studies/{study.name}.json", _manifest(study, cases, finished, comparisons, raised))
-    results.write_verdicts(study.name, [_record(verdict, study, raised) for verdict in verdicts])
+    scenes = list({case.scene.name: case.scene for case in cases}.values())
+    said = study.annotate(scenes, finished)
+    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), said)
+    verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
+    results.write_json(f"studies/{study.name}.json", manifest)
+    results.write_verdicts(study.name, [_record(verdict, study, said["alarms"]) for verdict in verdicts])
     return verdicts
 
 
@@ -80,7 +89,7 @@ def finish(
             known.pop(key, None)
     pending = {key: case for case, key in keyed if key not in known}
     done = len(keyed) - len(pending)
-    for row, history in _executed(pending, study, jobs, executor):
+    for row, history in executed(pending, study, jobs, executor):
         results.append(row, history)
         known[row.key] = row
         done += 1
@@ -95,46 +104,47 @@ def _named(row: Row, case: Case, study: Study) -> Row:
     return replace(row, scene=case.scene.name, study=study.name)
 
 
-def _record(verdict: Verdict, study: Study, raised: Sequence[Alarm]) -> dict[str, Any]:
-    """Return a verdict as plain data, with the kinds of alarm on its case."""
-    kinds = {
-        alarm.kind for alarm in raised if alarm.scene in (verdict.gate.scene, verdict.gate.scene.partition("[")[0])
-    }
-    return verdict.record(study.name) | {"alarms": sorted(kinds)}
+def _record(verdict: Verdict, study: Study, alarms: Sequence[AlarmRecord]) -> VerdictRecord:
+    """Return a verdict as plain data, with the kinds of alarm on its case or on its whole scene."""
+    case = verdict.gate.scene
+    kinds = {alarm["kind"] for alarm in alarms if alarm["scene"] in (case, scene_of(case))}
+    record = verdict.record(study.name)
+    record["alarms"] = sorted(kinds)
+    return record
 
 
-def _derived_record(finished: Finished, scene: str, name: str) -> dict[str, Any]:
+def _derived_record(finished: Finished, scene: str, name: str) -> DerivedRecord:
     row = finished.row(scene, name)
-    metrics = {} if row is None else {key: _plain(value) for key, value in row.metrics.items()}
+    metrics = {} if row is None else {key: plain(value) for key, value in row.metrics.items()}
     return {"scene": scene, "name": name, "metrics": metrics}
+
+
+def _case_record(case: Case, finished: Finished) -> CaseRecord:
+    return {
+        "scene": case.scene.name,
+        "title": case.scene.title,
+        "solver": case.solver,
+        "key": finished.rows[case.scene.name, case.solver].key,
+        "definition": case.scene.definition(),
+    }
 
 
 def _manifest(
     study: Study,
     cases: Sequence[Case],
     finished: Finished,
-    comparisons: list[dict[str, Any]],
-    raised: Sequence[Alarm],
-) -> dict[str, Any]:
-    listed = [
-        {
-            "scene": case.scene.name,
-            "title": case.scene.title,
-            "solver": case.solver,
-            "key": finished.rows[case.scene.name, case.solver].key,
-            "definition": case.scene.definition(),
-        }
-        for case in cases
-    ]
+    comparisons: list[ComparisonRecord],
+    said: Annotations,
+) -> Manifest:
     return {
         "study": study.name,
         "title": study.title,
         "purpose": study.purpose,
-        "cases": listed,
+        "cases": [_case_record(case, finished) for case in cases],
         "comparisons": comparisons,
         "derived": [_derived_record(finished, *name) for name in finished.derived],
         "data": dict(study.data()),
-        "budgets": list(budgets(case.scene for case in cases if case.solver == "dda")),
-        "alarms": [alarm.record() for alarm in raised],
+        "budgets": said["budgets"],
+        "alarms": said["alarms"],
         "provenance": provenance(),
     }

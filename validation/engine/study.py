@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from validation.engine.case import MEASURES, Case
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
-from validation.runs.results import Value
+from validation.runs.records import Annotations
 from validation.scenes.scene import Scene, load_scene
-
-if TYPE_CHECKING:
-    from validation.engine.finished import Finished
 
 REPEATS = 3  # of each case of a study of timings
 
@@ -29,24 +27,8 @@ def _no_data() -> Mapping[str, Any]:
     return {}
 
 
-@dataclass(frozen=True)
-class Derived:
-    """A row that is computed from finished cases instead of by a solver; gates address it as any other.
-
-    Attributes
-    ----------
-    scene, name
-        Where gates find it: ``Gate(scene, (name,), metric, ...)``.
-    needs
-        The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
-    compute
-        Function of the finished cases that returns metrics.
-    """
-
-    scene: str
-    name: str
-    needs: tuple[tuple[str, str], ...]
-    compute: Callable[[Finished], Mapping[str, Value]]
+def _nothing_to_say(scenes: Sequence[Scene], finished: Finished) -> Annotations:
+    return {"alarms": [], "budgets": []}
 
 
 @dataclass(frozen=True)
@@ -74,9 +56,11 @@ class Study:
     data
         Function that returns plain data which the chapter draws beside the rows, such as closed forms.
     measures
-        What is measured on each run, see `validation.cases`.
+        What is measured on each run, see `validation.engine.case`.
     pairs
         The comparisons that are kept; every solver with every later one where None.
+    annotate
+        Function of the scenes and the finished cases that returns alarms and damping budgets.
     long
         Whether the gates are left to `dda-validate run`; the tests judge the others.
     """
@@ -94,6 +78,7 @@ class Study:
     data: Callable[[], Mapping[str, Any]] = _no_data
     measures: tuple[str, ...] = MEASURES
     pairs: tuple[tuple[str, str], ...] | None = None
+    annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
     long: bool = False
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from validation.errors import InputError
+from validation.runs.records import VerdictRecord
 
-Record = Mapping[str, Any]
+Record = VerdictRecord
 WORDS = ("PASS", "FAIL", "NOT RUN")
 RANK = {"PASS": 0, "NOT RUN": 1, "FAIL": 2}
 ABSENT = "absent"
@@ -46,7 +46,7 @@ class Change:
         return "value" if self.before == self.after else "better"
 
 
-def read_verdicts(source: Path | str) -> list[dict[str, Any]]:
+def read_verdicts(source: Path | str) -> list[VerdictRecord]:
     """Return the verdicts of a ``verdicts.json`` or of a results directory.
 
     Raises
@@ -74,12 +74,16 @@ def changes(before: Iterable[Record], after: Iterable[Record]) -> list[Change]:
     old, new = ({(v["study"], v["id"]): v for v in verdicts} for verdicts in (before, after))
     found = []
     for key in dict.fromkeys([*old, *new]):
-        a, b = old.get(key, {}), new.get(key, {})
-        if (a.get("verdict"), a.get("value")) != (b.get("verdict"), b.get("value")):
-            words = a.get("verdict", ABSENT), b.get("verdict", ABSENT)
-            found.append(Change(*key, *words, a.get("value"), b.get("value")))
+        was, now = _said(old.get(key)), _said(new.get(key))
+        if was != now:
+            found.append(Change(*key, was[0], now[0], was[1], now[1]))
     order = ("worse", "better", "new", "gone", "value")
     return sorted(found, key=lambda c: (order.index(c.kind), c.study, c.id))
+
+
+def _said(v: Record | None) -> tuple[str, object]:
+    """Verdict and value of a gate, absent and nothing where it is not there."""
+    return (ABSENT, None) if v is None else (v["verdict"], v["value"])
 
 
 def against(baseline: Path | str, records: Sequence[Record]) -> list[Change]:

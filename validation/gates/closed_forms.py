@@ -12,6 +12,7 @@ from functools import cache
 
 import numpy as np
 
+from validation.runs.case_name import scene_of
 from validation.runs.history import Array
 from validation.scenes.scene import Scene, load_scene
 
@@ -209,4 +210,4 @@ def mesh_error(scene: str, quantity: str) -> float:
 
 
 def _case(name: str) -> Scene:
-    return next(case for case in load_scene(name.partition("[")[0]).expand() if case.name == name)
+    return next(case for case in load_scene(scene_of(name)).expand() if case.name == name)

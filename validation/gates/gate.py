@@ -5,9 +5,9 @@ from __future__ import annotations
 import enum
 import math
 from dataclasses import dataclass
-from typing import Any
 
-from validation.runs.results import Value
+from validation.runs.records import VerdictRecord
+from validation.runs.row import Value
 
 
 class Status(enum.StrEnum):
@@ -90,7 +90,7 @@ class Verdict:
     status: Status
     why: str = ""
 
-    def record(self, study: str) -> dict[str, Any]:
+    def record(self, study: str) -> VerdictRecord:
         """Return the verdict as plain data, rounded well above the last bits and without seconds."""
         g = self.gate
         value = rounded(self.value) if isinstance(self.value, float) else self.value
@@ -101,13 +101,19 @@ class Verdict:
             "pair": list(g.pair),
             "metric": g.metric,
             "value": value,
-            "band": [g.low, g.high],
+            "band": [_edge(g.low), _edge(g.high)],
             "verdict": str(self.status),
             "reason": g.reason,
             "why": self.why,
             "reference_kind": g.reference_kind,
             "reference_uncertainty": g.reference_uncertainty,
+            "alarms": [],
         }
+
+
+def _edge(value: float) -> float:
+    """Return an edge of a band without its last bits, which depend on the processor."""
+    return float(f"{value:.12g}")
 
 
 def judge(gate: Gate, value: Value) -> Verdict:

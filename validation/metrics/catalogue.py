@@ -1,28 +1,145 @@
-"""The catalogue of metrics."""
+"""The catalogue of metrics: what each is called, its unit, what it needs, and the function that computes it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
 import numpy as np
 
-from validation.metrics.columns import Measurable, _solo_quantity, _tension_metrics
-from validation.metrics.modes import _contact_metrics, _mode_metrics
-from validation.metrics.pairs import PAIRS
-from validation.metrics.values import QUANTITIES, _finite
+from validation.metrics import columns, growth, modes, pairs
+from validation.metrics.measurable import Measurable
+from validation.metrics.pairs import Pairing, relative_l2, relative_max
+from validation.metrics.values import QUANTITIES, UNITS, finite
 from validation.runs.history import History
-from validation.runs.results import Value
-from validation.solvers import stability
+from validation.runs.row import Value
+
+HISTORY, STATIC, MODES, DIAGNOSTICS, REFERENCE = "history", "static", "modes", "diagnostics", "reference"
+LINEAR = frozenset({STATIC, MODES, DIAGNOSTICS})  # what a solver can report of a linear scene only
 
 
-def solo(m: Measurable, modes: bool = True) -> dict[str, Value]:
-    """Return the metrics of one run, those of its first axial mode if asked."""
-    found: dict[str, Value] = {}
+@dataclass(frozen=True)
+class Metric:
+    """One metric: a function of a `Measurable`, or of a `Pairing` where it needs a reference."""
+
+    id: str
+    unit: str  # "1" for a ratio
+    says: str
+    needs: frozenset[str]  # among history, static, modes, diagnostics, reference
+    function: Callable[[Any], Value]
+    measure: str = "history"  # the part of a study's `measures` that asks for it
+
+    @property
+    def linear(self) -> bool:
+        """Whether it has a meaning for linear scenes only."""
+        return bool(self.needs & LINEAR)
+
+
+def _of_columns() -> Iterator[Metric]:
+    own, still = frozenset({HISTORY}), frozenset({HISTORY, STATIC})
+    for name, column in QUANTITIES.items():
+        parts: tuple[tuple[str, str, frozenset[str], Callable[..., Value]], ...] = (
+            ("static", UNITS[name], still, columns.static),
+            ("final", UNITS[name], own, columns.final),
+            ("peak", UNITS[name], still, columns.peak),
+            ("peak_time", "s", still, columns.peak_time),
+            ("settling_step", "step", still, columns.settling),
+            ("fine_settling_step", "step", still, columns.fine_settling),
+            ("minimum", UNITS[name], own, columns.minimum),
+        )
+        for part, unit, needs, function in parts:
+            yield Metric(f"{name}.{part}", unit, _first_line(function), needs, partial(function, column=column))
+    for part, function in (("minimum_time", columns.minimum_time), ("tension_time", columns.tension_time)):
+        yield Metric(f"pressure.{part}", "s", _first_line(function), own, function)
+
+
+def _first_line(function: Callable[..., Value]) -> str:
+    return (function.__doc__ or "").partition("\n")[0].removesuffix(".")
+
+
+def _of_modes() -> Iterator[Metric]:
+    operator, seen = frozenset({MODES}), frozenset({HISTORY, STATIC})
+    named = {
+        "frequency": ("rad/s", "natural circular frequency"),
+        "damping": ("1", "damping ratio of the step's operator"),
+        "numerical_frequency": ("rad/s", "undamped frequency of the step's operator"),
+        "spectral_radius": ("1", "largest modulus of the operator's eigenvalues"),
+        "least_root": ("1", "real part of the eigenvalue next to -1"),
+    }
+    for part in ("frequency", "damping", "numerical_frequency", "spectral_radius"):
+        unit, says = named[part]
+        function = partial(modes.first_axial, part=part)
+        yield Metric(f"mode1.{part}", unit, f"first axial mode: {says}", operator, function, "modes")
+    for part in ("frequency", "damping"):
+        says = f"{part} of the displacement's strongest oscillation"
+        function = partial(modes.measured, part=part)
+        yield Metric(f"mode1.measured_{part}", named[part][0], says, seen, function, "modes")
+    for part in ("frequency", "damping", "spectral_radius", "least_root"):
+        unit, says = named[part]
+        function = partial(modes.contact, part=part)
+        yield Metric(f"contact.{part}", unit, f"contact mode: {says}", operator, function, "modes")
+
+
+def _of_stability() -> Iterator[Metric]:
+    asked = frozenset({DIAGNOSTICS})
+    for name, key, says in (
+        ("radius", "predicted_radius", "spectral radius in closed form"),
+        ("radius_seen", "spectral_radius", "spectral radius of the step itself"),
+        ("condition", "condition_number", "condition number of the step's matrix"),
+        ("residual", "scaled_residual", "scaled residual of one solution"),
+        ("omega", "largest_omega", "largest w dt"),
+    ):
+        yield Metric(f"stability.{name}", "1", says, asked, partial(growth.diagnosed, key=key), "stability")
+    rate = "factor a step by which an unstable run grew"
+    yield Metric("stability.growth", "1", rate, frozenset({HISTORY}), growth.growth_of_run, "stability")
+    largest = "largest w dt that is stepped without growth"
+    yield Metric("stability.limit", "1", largest, asked, growth.limit, "limit")
+    change = "largest relative change of a mode's energy over the run"
+    yield Metric("energy.drift", "1", change, frozenset({HISTORY, STATIC, MODES}), growth.drift, "energy")
+
+
+KIND = Metric(
+    "stability.kind", "word", "what the step makes of a run", frozenset({DIAGNOSTICS}), growth.kind_of_run, "stability"
+)  # a word, which no gate can bound
+
+
+def _of_pairs() -> Iterator[Metric]:
+    both = frozenset({HISTORY, REFERENCE})
+    for name in QUANTITIES:
+        for part, function in (("l2", relative_l2), ("max", relative_max)):
+            says = f"{'root mean square' if part == 'l2' else 'maximum'} error of the {name} over that of the reference"
+            yield Metric(f"{name}.{part}", "1", says, both, partial(pairs.compared, quantity=name, function=function))
+    for name in QUANTITIES:
+        says = f"maximum error of the {name} over the larger of the reference's maximum and the static value"
+        yield Metric(f"{name}.scaled", "1", says, both | {STATIC}, partial(pairs.scaled, quantity=name))
+    yield Metric("worst.max", "1", "the larger of displacement.max and pressure.max", both, pairs.worst)
+
+
+SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability())}
+PAIRS = {metric.id: metric for metric in _of_pairs()}
+CATALOGUE = SOLO | PAIRS
+METRICS = tuple(CATALOGUE)  # the ids
+
+
+def solo(m: Measurable, measures: Iterable[str] = ("history", "modes")) -> dict[str, Value]:
+    """Return the metrics of one run that the parts of a study's `measures` ask for; none of them is ever NaN."""
+    asked = [metric for metric in (*SOLO.values(), KIND) if metric.measure in set(measures)]
     with np.errstate(all="ignore"):
-        for name in QUANTITIES:
-            found |= _solo_quantity(name, m)
-        found |= _tension_metrics(m)
-        found |= _mode_metrics(m) | _contact_metrics(m) if modes else {}
-    return {key: _finite(value) for key, value in found.items()}
+        return {metric.id: finite(metric.function(m)) for metric in asked}
 
 
-SOLO = tuple(solo(Measurable(History(np.zeros(0), {}), 1.0, {}, ())))
-METRICS = (*SOLO, *stability.METRICS, stability.GROWTH, stability.LIMIT, stability.DRIFT, *PAIRS)
+def pair(metric: str, history: History, reference: History, run: Mapping[str, Value] | None = None) -> Value:
+    """Return a metric between a run and its reference, on their common steps.
+
+    Parameters
+    ----------
+    metric
+        An id of `PAIRS`.
+    history, reference
+        The run and what it is compared with.
+    run
+        Metrics of the run, for the static values of `.scaled`.
+    """
+    return PAIRS[metric].function(Pairing(history, reference, run or {}))

@@ -2,26 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 
-from validation.metrics.values import FINELY, NOISE, NOT_REPORTED, QUANTITIES, SETTLED, UNDEFINED, largest
-from validation.runs.history import PRESSURE, Array, History
-from validation.runs.modes import Mode
-from validation.runs.results import Value
+from validation.metrics.measurable import Measurable
+from validation.metrics.values import NOT_REPORTED, UNDEFINED, largest
+from validation.runs.history import PRESSURE, Array
+from validation.runs.row import Value
+
+SETTLED = 0.01  # of the static value
+FINELY = 1e-4  # of the static value: a contact that rings shows here, long after it has settled to one per cent
+NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
 
 
-@dataclass(frozen=True)
-class Measurable:
-    """What the metrics of one run see: history, static solution and modes, the last two where reported."""
+def static(m: Measurable, column: str) -> Value:
+    """Static value that the solver reports."""
+    if m.column(column) is None or column not in m.static or not m.static_reported:
+        return NOT_REPORTED
+    return m.static[column]
 
-    history: History
-    step: float  # s
-    static: Mapping[str, float]
-    modes: tuple[Mode, ...]
-    static_reported: bool = True  # otherwise `static` is another solver's, and settling is measured from that
+
+def final(m: Measurable, column: str) -> Value:
+    """Value at the last step."""
+    x = m.column(column)
+    return NOT_REPORTED if x is None else float(x[-1])
+
+
+def minimum(m: Measurable, column: str) -> Value:
+    """Least value."""
+    x = m.column(column)
+    return NOT_REPORTED if x is None else float(np.min(x))
+
+
+def peak(m: Measurable, column: str) -> Value:
+    """Largest value of the first excursion beyond the static value."""
+    return _at_first_peak(m, column, m.history.columns.get(column))
+
+
+def peak_time(m: Measurable, column: str) -> Value:
+    """Time of that value [s]."""
+    return _at_first_peak(m, column, m.history.time)
+
+
+def _at_first_peak(m: Measurable, column: str, values: Array | None) -> Value:
+    x = m.column(column)
+    if x is None or values is None:
+        return NOT_REPORTED
+    found = first_peak(x, m.static[column]) if column in m.static else None
+    return UNDEFINED if found is None else float(values[found])
+
+
+def settling(m: Measurable, column: str) -> Value:
+    """First step from which the column stays within one per cent of its static value."""
+    return _settling(m, column, SETTLED)
+
+
+def fine_settling(m: Measurable, column: str) -> Value:
+    """First step from which the column stays within 1e-4 of its static value."""
+    return _settling(m, column, FINELY)
+
+
+def _settling(m: Measurable, column: str, tolerance: float) -> Value:
+    x = m.column(column)
+    if x is None or column not in m.static:
+        return NOT_REPORTED
+    return settling_step(x, m.static[column], tolerance)
 
 
 def settling_step(x: Array, static: float, tolerance: float = SETTLED) -> Value:
@@ -45,33 +89,22 @@ def first_peak(x: Array, static: float) -> int | None:
     return start + int(np.argmax(np.abs(x[start : start + int(back[0])])))
 
 
-def _solo_quantity(name: str, m: Measurable) -> dict[str, Value]:
-    """Metrics of one column of one run."""
-    x = m.history.columns.get(QUANTITIES[name])
-    names = ("static", "final", "peak", "peak_time", "settling_step", "fine_settling_step", "minimum")
-    if x is None:
-        return dict.fromkeys((f"{name}.{part}" for part in names), NOT_REPORTED)
-    static = m.static.get(QUANTITIES[name])
-    found: dict[str, Value] = {
-        "static": NOT_REPORTED if static is None or not m.static_reported else static,
-        "final": float(x[-1]),
-        "minimum": float(np.min(x)),
-    }
-    peak = first_peak(x, static) if static is not None else None
-    found["peak"] = UNDEFINED if peak is None else float(x[peak])
-    found["peak_time"] = UNDEFINED if peak is None else float(m.history.time[peak])
-    found["settling_step"] = NOT_REPORTED if static is None else settling_step(x, static)
-    found["fine_settling_step"] = NOT_REPORTED if static is None else settling_step(x, static, FINELY)
-    return {f"{name}.{part}": value for part, value in found.items()}
+def minimum_time(m: Measurable) -> Value:
+    """When a locked contact pulls most [s]; undefined where it never does."""
+    x, pulls = m.column(PRESSURE), _pulls(m)
+    if x is None or pulls is None:
+        return NOT_REPORTED
+    return float(m.history.time[np.argmin(x)]) if pulls.any() else UNDEFINED
 
 
-def _tension_metrics(m: Measurable) -> dict[str, Value]:
-    """When a locked contact pulls most, and for how long it pulls in all [s]; both undefined where it never does."""
-    names = ("pressure.minimum_time", "pressure.tension_time")
-    x = m.history.columns.get(PRESSURE)
-    if x is None or len(x) == 0:
-        return dict.fromkeys(names, NOT_REPORTED)
-    pulls = x < -NOISE * largest(x)
-    if not pulls.any():
-        return dict.fromkeys(names, UNDEFINED)
-    return dict(zip(names, (float(m.history.time[np.argmin(x)]), float(m.step * pulls.sum())), strict=True))
+def tension_time(m: Measurable) -> Value:
+    """For how long a locked contact pulls in all [s]; undefined where it never does."""
+    pulls = _pulls(m)
+    if pulls is None:
+        return NOT_REPORTED
+    return float(m.step * pulls.sum()) if pulls.any() else UNDEFINED
+
+
+def _pulls(m: Measurable) -> np.ndarray | None:
+    x = m.column(PRESSURE)
+    return None if x is None else x < -NOISE * largest(x)

@@ -6,12 +6,11 @@ import math
 
 import numpy as np
 
-from validation.metrics.columns import Measurable
-from validation.metrics.poles import Pole, poles
+from validation.metrics.measurable import Measurable
+from validation.metrics.poles import Pole
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
-from validation.runs.history import DISPLACEMENT
-from validation.runs.modes import contact_index
-from validation.runs.results import Value
+from validation.runs.modes import Mode, contact_index
+from validation.runs.row import Value
 
 
 def operator_damping(eigenvalues: tuple[complex, complex]) -> Value:
@@ -36,42 +35,28 @@ def operator_frequency(eigenvalues: tuple[complex, complex], step: float) -> Val
     return float(abs(np.log(first)) / step) if abs(first.imag) > 1e-14 * abs(first) else UNDEFINED
 
 
-def _mode_metrics(m: Measurable) -> dict[str, Value]:
-    """Metrics of the first axial mode, from the operator and from the history."""
-    names = ("frequency", "damping", "numerical_frequency", "spectral_radius")
-    found: dict[str, Value] = dict.fromkeys(names, NOT_REPORTED)
-    if m.modes:
-        first = m.modes[0]
-        found = {
-            "frequency": first.frequency,
-            "damping": operator_damping(first.eigenvalues),
-            "numerical_frequency": operator_frequency(first.eigenvalues, m.step),
-            "spectral_radius": first.spectral_radius,
-        }
-    pole = _measured_pole(m)
-    found["measured_frequency"] = pole.frequency if isinstance(pole, Pole) else pole
-    found["measured_damping"] = pole.damping if isinstance(pole, Pole) else pole
-    return {f"mode1.{part}": value for part, value in found.items()}
+def of_mode(m: Measurable, mode: Mode, part: str) -> Value:
+    """Return one number of a mode; `least_root` is the real part of the root next to -1."""
+    if part == "damping":
+        return operator_damping(mode.eigenvalues)
+    if part == "numerical_frequency":
+        return operator_frequency(mode.eigenvalues, m.step)
+    if part == "least_root":
+        return min(root.real for root in mode.eigenvalues)
+    return float(getattr(mode, part))
 
 
-def _contact_metrics(m: Measurable) -> dict[str, Value]:
-    """Metrics of the contact mode from the operator; `least_root` is the real part of the root next to -1."""
+def first_axial(m: Measurable, part: str) -> Value:
+    """Return a number of the first axial mode, from the operator."""
+    return of_mode(m, m.modes[0], part) if m.modes else NOT_REPORTED
+
+
+def contact(m: Measurable, part: str) -> Value:
+    """Return a number of the contact mode, from the operator."""
     index = contact_index(m.modes)
-    names = ("frequency", "damping", "spectral_radius", "least_root")
-    if index is None:
-        return {f"contact.{part}": NOT_REPORTED for part in names}
-    mode = m.modes[index]
-    least = min(root.real for root in mode.eigenvalues)
-    values = (mode.frequency, operator_damping(mode.eigenvalues), mode.spectral_radius, least)
-    return {f"contact.{part}": value for part, value in zip(names, values, strict=True)}
+    return NOT_REPORTED if index is None else of_mode(m, m.modes[index], part)
 
 
-def _measured_pole(m: Measurable) -> Pole | str:
-    """Strongest oscillating pole of the displacement about its static value."""
-    x, static = m.history.columns.get(DISPLACEMENT), m.static.get(DISPLACEMENT)
-    if x is None or static is None:
-        return NOT_REPORTED
-    if static == 0 or not np.all(np.isfinite(x)):
-        return UNDEFINED
-    found = poles(x / static - 1, m.step)
-    return found[0] if found else UNDEFINED
+def measured(m: Measurable, part: str) -> Value:
+    """Return frequency or damping of the strongest oscillating pole of the displacement."""
+    return float(getattr(m.pole, part)) if isinstance(m.pole, Pole) else m.pole

@@ -1,67 +1,66 @@
-"""Metrics between a run and its reference."""
+"""Metrics between a run and its reference, on their common steps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from validation.metrics.values import NOT_REPORTED, QUANTITIES, _as_number, _finite, _ratio, largest, norm
+from validation.metrics.values import NOT_REPORTED, QUANTITIES, as_number, finite, largest, norm, quotient
 from validation.runs.history import Array, History
-from validation.runs.results import Value
+from validation.runs.row import Value
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """A run and what it is compared with."""
+
+    history: History
+    reference: History
+    metrics: Mapping[str, Value] = field(default_factory=dict)  # of the run, for its static values
+
+    def columns(self, name: str) -> tuple[Array, Array] | None:
+        """Return a column of both on their common steps, None where one lacks it."""
+        if name not in self.history.columns or name not in self.reference.columns:
+            return None
+        n = min(len(self.history.time), len(self.reference.time))
+        return self.history.columns[name][:n], self.reference.columns[name][:n]
 
 
 def relative_l2(value: Array, reference: Array) -> Value:
     """||value - reference|| / ||reference|| over the history."""
-    return _ratio(norm(value - reference), norm(reference))
+    return quotient(norm(value - reference), norm(reference))
 
 
 def relative_max(value: Array, reference: Array) -> Value:
     """Maximum of |value - reference| over maximum of |reference|, over the history."""
-    return _ratio(largest(value - reference), largest(reference))
+    return quotient(largest(value - reference), largest(reference))
 
 
-PAIR: dict[str, tuple[str, Callable[[Array, Array], Value]]] = {
-    f"{name}.{part}": (column, function)
-    for name, column in QUANTITIES.items()
-    for part, function in (("l2", relative_l2), ("max", relative_max))
-}
-SCALED = {f"{name}.scaled": name for name in QUANTITIES}
-WORST = "worst.max"
-PAIRS = (*PAIR, *SCALED, WORST)
+def compared(p: Pairing, quantity: str, function: Callable[[Array, Array], Value]) -> Value:
+    """Return a function of the columns of both."""
+    both = p.columns(QUANTITIES[quantity])
+    if both is None:
+        return NOT_REPORTED
+    with np.errstate(all="ignore"):
+        return finite(function(*both))
 
 
-def pair(metric: str, history: History, reference: History, static: Mapping[str, Value] | None = None) -> Value:
-    """Return a metric between a run and its reference, on their common steps.
+def scaled(p: Pairing, quantity: str) -> Value:
+    """Maximum error over the larger of the reference's maximum and the run's static value.
 
-    Parameters
-    ----------
-    metric
-        Of `PAIR`; or `<quantity>.scaled`, the maximum error over the larger of the reference's maximum and the static
-        value (a wave that has not arrived leaves nothing to divide by); or `worst.max`, the larger of the two `.max`.
-    history, reference
-        The run and what it is compared with.
-    static
-        Metrics of the run, for the static values of `.scaled`.
+    A wave that has not arrived leaves nothing to divide by.
     """
-    if metric == WORST:
-        both = [pair(f"{name}.max", history, reference) for name in ("displacement", "pressure")]
-        return next((value for value in both if not isinstance(value, float)), max(both, key=_as_number))
-    if metric in SCALED:
-        name = SCALED[metric]
-        still = (static or {}).get(f"{name}.static")
-        return _scaled(QUANTITIES[name], history, reference, still) if isinstance(still, float) else NOT_REPORTED
-    column, function = PAIR[metric]
-    if column not in history.columns or column not in reference.columns:
+    static, both = p.metrics.get(f"{quantity}.static"), p.columns(QUANTITIES[quantity])
+    if not isinstance(static, float) or both is None:
         return NOT_REPORTED
-    n = min(len(history.time), len(reference.time))
+    value, exact = both
     with np.errstate(all="ignore"):
-        return _finite(function(history.columns[column][:n], reference.columns[column][:n]))
+        return finite(quotient(largest(value - exact), max(largest(exact), abs(static))))
 
 
-def _scaled(column: str, history: History, reference: History, static: float) -> Value:
-    if column not in history.columns or column not in reference.columns:
-        return NOT_REPORTED
-    value, exact = history.columns[column], reference.columns[column]
-    with np.errstate(all="ignore"):
-        return _finite(_ratio(largest(value - exact), max(largest(exact), abs(static))))
+def worst(p: Pairing) -> Value:
+    """The larger of the maximum errors of displacement and pressure."""
+    both = [compared(p, name, relative_max) for name in ("displacement", "pressure")]
+    return next((value for value in both if not isinstance(value, float)), max(both, key=as_number))

@@ -1,4 +1,4 @@
-"""Numbers without digits to lose: norms, ratios, and values that have no number."""
+"""Values of metrics: numbers, or the two words for what has no number; norms and ratios without overflow."""
 
 from __future__ import annotations
 
@@ -7,18 +7,16 @@ import math
 import numpy as np
 
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
-from validation.runs.results import Value
+from validation.runs.row import Value
 
-UNDEFINED, NOT_REPORTED = "undefined", "not reported"
-SETTLED = 0.01  # of the static value
-FINELY = 1e-4  # of the static value: a contact that rings shows here, long after it has settled to one per cent
-NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
+UNDEFINED, NOT_REPORTED = "undefined", "not reported"  # no meaning here; the solver does not give it
 QUANTITIES = {
     "displacement": DISPLACEMENT,
     "pressure": PRESSURE,
     "horizontal": "horizontal_displacement",
     "rotation": "rotation",
 }
+UNITS = {"displacement": "m", "pressure": "Pa", "horizontal": "m", "rotation": "rad"}
 
 
 def largest(x: Array) -> float:
@@ -32,20 +30,11 @@ def norm(x: Array) -> float:
     return 0.0 if top == 0 else top * float(np.linalg.norm(x / top))
 
 
-def _ratio(error: float, size: float) -> Value:
+def quotient(error: float, size: float) -> Value:
     """Relative error; undefined for a zero or non-finite signal."""
     if size == 0 or not math.isfinite(size) or not math.isfinite(error):
         return UNDEFINED
     return error / size
-
-
-def _finite(value: Value) -> Value:
-    """Replace what is not a finite number by its name."""
-    return value if not isinstance(value, float) or math.isfinite(value) else UNDEFINED
-
-
-def _as_number(value: Value) -> float:
-    return float(value) if isinstance(value, float) else math.inf
 
 
 def ratio(value: Value, reference: Value) -> Value:
@@ -53,4 +42,14 @@ def ratio(value: Value, reference: Value) -> Value:
     for part in (value, reference):
         if not isinstance(part, float | int):
             return part
-    return _ratio(float(value) - float(reference), float(reference))  # type: ignore[arg-type]
+    return quotient(float(value) - float(reference), float(reference))  # type: ignore[arg-type]
+
+
+def finite(value: Value) -> Value:
+    """Replace what is not a finite number by its name."""
+    return value if not isinstance(value, float) or math.isfinite(value) else UNDEFINED
+
+
+def as_number(value: Value) -> float:
+    """Return a number, infinity for what is none."""
+    return float(value) if isinstance(value, float) else math.inf

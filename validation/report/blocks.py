@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 
 
@@ -87,4 +88,4 @@ class PageBreak:
 
 
 Block = Heading | Paragraph | Table | FigureBlock | Callout | Math | PageBreak
-Chapter = Callable[[Results, dict[str, Any], Path], list[Block]]
+Chapter = Callable[[Results, Manifest, Path], list[Block]]

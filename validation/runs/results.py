@@ -12,9 +12,8 @@ import functools
 import json
 import os
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
@@ -23,42 +22,9 @@ import numpy as np
 from validation.errors import InputError
 from validation.runs.files import write_atomically
 from validation.runs.history import History
+from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.row import Row
 from validation.runs.run import Outcome
-
-Value = float | str | None  # a number, or "undefined", or "not reported"
-
-
-@dataclass(frozen=True)
-class Row:
-    """One finished case: what was run, how it ended, what it measured and what it cost.
-
-    `metrics` holds numbers, ``"undefined"`` (no meaning here) or ``"not reported"`` (the column is absent).
-    """
-
-    key: str
-    study: str
-    scene: str
-    solver: str
-    outcome: Outcome
-    metrics: Mapping[str, Value]
-    work: Mapping[str, int] = field(default_factory=dict)
-    seconds: Mapping[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    estimate: float | None = None
-
-    def line(self) -> str:
-        """Return the row as one line of JSON."""
-        return json.dumps(asdict(self), allow_nan=False)
-
-    @classmethod
-    def parse(cls, line: str) -> Row | None:
-        """Return the row of a line, or None where the line is not whole (a run was killed while writing)."""
-        try:
-            data = json.loads(line)
-            return cls(**data | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
-        except (ValueError, TypeError, KeyError):
-            return None
-
 
 _parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
 
@@ -157,16 +123,17 @@ class Results:
         """Return the names of the studies whose results are here."""
         return sorted(path.stem for path in self.directory.glob("studies/*.json"))
 
-    def manifest(self, study: str) -> dict[str, Any]:
+    def manifest(self, study: str) -> Manifest:
         """Return a study's manifest: title, cases (scene, solver, key, definition) and comparisons."""
-        return dict(self.read_json(f"studies/{study}.json", {}))
+        found: Manifest = self.read_json(f"studies/{study}.json", {})
+        return found
 
-    def verdicts(self, study: str | None = None) -> list[dict[str, Any]]:
+    def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: Iterable[dict[str, Any]] = self.read_json("verdicts.json", [])
+        kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [])
         return [v for v in kept if study is None or v["study"] == study]
 
-    def write_verdicts(self, study: str, verdicts: list[dict[str, Any]]) -> None:
+    def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
         with self._alone():
             others = [v for v in self.verdicts() if v["study"] != study]

@@ -81,13 +81,6 @@ class Scene(Section):
     def _swept(self) -> dict[str, list[Any]]:
         return {field: values for field, values in self.sweep.items() if field != "mode"}
 
-    @property
-    def beyond_two_blocks(self) -> str | None:
-        """Why solvers that are written for one block under a centred pressure do not apply; None if they do."""
-        if self.block.subdivide is not None:
-            return "the block is cut into sub-blocks"
-        return None if self.load.centred else "the solver is written for a centred pressure alone"
-
     def expand(self) -> tuple[Scene, ...]:
         """Return one scene per value of the sweep, named ``name[field=value,...]``.
 

@@ -1,4 +1,4 @@
-"""Adapters of the exact bar: under the Newmark scheme and in continuous time."""
+"""Adapters of the exact bar: under the Newmark scheme, and in continuous time."""
 
 from __future__ import annotations
 
@@ -10,86 +10,118 @@ from typing import TYPE_CHECKING
 
 from validation.runs.modes import Mode
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.contract import NotReported
-from validation.solvers.translation import check_columns, named, no_fields, to_run
+from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
+from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import fem_reference
-    import fem_reference.mesh.model
-from validation.solvers.fem import FiniteElements, _modes
 
 BAR_COLUMNS = ("displacement", "contact_pressure")
 
 
-class ExactBar(FiniteElements):
+def bar_of(scene: Scene) -> fem_reference.Bar:
+    """Return the bar of a scene."""
+    from fem_reference.exact.bar import Bar
+
+    with naming(scene):
+        return Bar.of(problem_of(scene))
+
+
+class NewmarkBar(Prepared):
+    """A bar under the scheme of its scene; there is nothing to save."""
+
+    def __init__(self, scene: Scene, name: str) -> None:
+        self.scene, self.name = scene, name
+        self.bar, self.scheme = bar_of(scene), scheme_of(scene)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        no_fields(self.name, self.scene, fields)
+        check_columns(self.scene, BAR_COLUMNS)
+        with naming(self.scene):
+            return to_run(self.scene, self.history())
+
+    def history(self) -> fem_reference.Result:
+        """Return the history under the Newmark scheme."""
+        return self.bar.solve(self.scheme, self.scene.time.steps, self.scene.run.columns)
+
+    def static(self) -> Mapping[str, float]:
+        """Return the static solution."""
+        return self.bar.static()
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return the lowest modes."""
+        return to_modes(self.bar.modes(self.scheme))
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Raise: the bar has no matrix and modes without end."""
+        raise NotReported("bar: an exact bar has no matrix, and its frequencies have no largest one")
+
+
+class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
+    handles: frozenset[str] = frozenset({features.SUB_BLOCKS})
+    sections = MESH_SECTIONS
+    unread = OF_SUB_BLOCKS
+    sources: tuple[str, ...] = ("fem_reference",)
+    role, rank = Role.REFERENCE, 5.0
+    line: LineStyle | None = LineStyle("#000000", (), 0.8, 3)
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         return BAR_COLUMNS
 
-    def bar(self, scene: Scene) -> fem_reference.Bar:
-        """Return the bar of a scene."""
-        from fem_reference.exact.bar import Bar
-
-        return Bar.of(self.problem(scene))
-
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for this scene."""
         from fem_reference.exact import bar
-        from fem_reference.scheme import modal as bar_scheme
+        from fem_reference.scheme import modal
 
-        return bar.applicable(self.problem(scene)) or bar_scheme.applicable(self.scheme(scene))
+        return bar.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
-    @named
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; there is nothing to save, so `full` changes nothing."""
-        no_fields(self.name, scene, fields)
-        check_columns(scene, BAR_COLUMNS)
-        return to_run(scene, self.bar(scene).solve(self.scheme(scene), scene.time.steps, scene.run.columns))
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the bar."""
+        return NewmarkBar(scene, self.name)
 
-    def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution."""
-        return self.bar(scene).static()
 
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the lowest modes."""
-        return _modes(self.bar(scene).modes(self.scheme(scene)))
+class ContinuousBar(NewmarkBar):
+    """A bar in continuous time; gg is the rate -ln(gg) / dt."""
 
-    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Refuse: the bar has no matrix and modes without end."""
-        raise NotReported("bar: an exact bar has no matrix, and its frequencies have no largest one")
+    def history(self) -> fem_reference.Result:
+        """Return the history, exact in time."""
+        return self.bar.continuum(self.scheme, self.scene.time.steps, self.scene.run.columns)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
+        step = self.scene.time.step
+        half_rate = -math.log(self.scene.time.discount) / step / 2
+        return tuple(Mode(m.frequency, m.share, _sampled(m.frequency, half_rate, step)) for m in super().modes())
+
+
+def _sampled(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
+    """Return the factors by which a damped oscillation changes in a step."""
+    root = cmath.sqrt(half_rate**2 - w**2)
+    return cmath.exp((root - half_rate) * step), cmath.exp((-root - half_rate) * step)
 
 
 class Continuum(ExactBar):
-    """Exact in space and time; gg is the rate -ln(gg) / dt."""
+    """Exact in space and time."""
 
     name = "continuum"
+    role, rank = Role.TRUTH, 6.0
+    line = LineStyle("#999999", (), 0.7, 1)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no closed form for this scene."""
         from fem_reference.exact import bar
 
         stopped = "gg = 0 has no rate -ln(gg) / dt" if scene.time.discount == 0 else None
-        return bar.applicable(self.problem(scene)) or stopped
+        return bar.applicable(problem_of(scene)) or stopped
 
-    @named
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; there is nothing to save, so `full` changes nothing."""
-        no_fields(self.name, scene, fields)
-        check_columns(scene, BAR_COLUMNS)
-        return to_run(scene, self.bar(scene).continuum(self.scheme(scene), scene.time.steps, scene.run.columns))
-
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
-        t = scene.time
-        half_rate = -math.log(t.discount) / t.step / 2
-
-        def pair(w: float) -> tuple[complex, complex]:
-            root = cmath.sqrt(half_rate**2 - w**2)
-            return cmath.exp((root - half_rate) * t.step), cmath.exp((-root - half_rate) * t.step)
-
-        return tuple(Mode(m.frequency, m.share, pair(m.frequency)) for m in super().modes(scene))
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the bar."""
+        return ContinuousBar(scene, self.name)

@@ -1,13 +1,16 @@
-"""The contract that every solver fulfils."""
+"""The contract that every solver fulfils: what it says of itself, and what a prepared scene answers."""
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
 from validation.runs.modes import Mode
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
 
 
@@ -15,25 +18,84 @@ class NotReported(LookupError):
     """A solver does not offer this part of the contract."""
 
 
+class Role(enum.StrEnum):
+    """What a solver is for in a comparison."""
+
+    JUDGED = "judged"  # the method that the suite judges
+    REPEAT = "repeat"  # the answer of another solver by other arithmetic
+    SECOND_CODE = "second code"  # the answer of another solver by another program
+    REFERENCE = "reference"  # the same body under the same scheme, resolved or exact in space
+    TRUTH = "truth"  # exact in space and time
+    OTHER = "other"  # brought by a user
+
+
+@dataclass(frozen=True)
+class LineStyle:
+    """Colour and stroke of a solver's lines, the same in every figure."""
+
+    color: str
+    dash: tuple[float, ...] = ()  # lengths on and off, in line widths; empty is solid
+    width: float = 1.0  # pt
+    layer: int = 2  # higher is drawn later
+
+
+class Prepared:
+    """A scene that a solver has built once; everything is asked of it.
+
+    `run` is required. The others raise `NotReported` where the solver does not offer them, and are asked of linear
+    scenes only: what opens or slips has no modes, no spectrum and no single static solution.
+    """
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene; `fields` names a file for displacement and stress fields."""
+        raise NotImplementedError
+
+    def static(self) -> Mapping[str, float]:
+        """Return the static solution, column name to value."""
+        raise NotReported("no static solution is reported")
+
+    def assumed_static(self) -> Mapping[str, float]:
+        """Return the static solution that settling is measured from where `static` is not reported."""
+        return {}
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return the modes, the one with the largest share of the static response first."""
+        raise NotReported("no modes are reported")
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Return spectral radius, condition number and residual of the step."""
+        raise NotReported("no diagnostics are reported")
+
+
 class Solver:
     """Base of all solvers; a new one is this checklist.
 
     1. `name`: how the command line and the tables call it.
-    2. `sections`: the tables of a scene that it reads, and `unread`: keys in them that it does not; a change
+    2. `handles`: the features of a scene that it takes (`validation.scenes.features`); a scene with another one is
+       refused by name, so that no solver runs it as if the feature were absent.
+    3. `sections`: the tables of a scene that it reads, and `unread`: keys in them that it does not; a change
        elsewhere does not make it run again.
-    3. `sources`: modules or packages whose files enter the key of its results.
-    4. `applicable(scene)`: None, or the reason in words why it cannot run this scene.
-    5. `solve(scene, full)`: a `Run` whose history holds one value per step, from the first step on, for every
-       column in `scene.run.columns`; numerical failure is an outcome, bad input a `InputError`.
-    6. `columns()`: the columns that it has; a scene's further columns are not asked of it.
-    7. Optional: `static(scene)`, `modes(scene)` and `diagnostics(scene)`; `NotReported` where absent.
+    4. `sources`: modules or packages whose files enter the key of its results.
+    5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
+       with those of higher rank) and its look in figures.
+    6. `applicable(scene)`: None, or the reason in words why it cannot run this scene, apart from features.
+    7. `prepare(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
+       on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
+       A solver of one function overrides `solve(scene, full, fields)` instead.
+    8. `columns()`: the columns that it has; a scene's further columns are not asked of it.
     """
 
     name: str = ""
+    handles: frozenset[str] = features.FIRST
     sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
     unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
     cached: bool = True  # whether a finished case is kept for the next run
+    distributed: bool = False  # whether its option is a number of ranks
+    meshed: bool = False  # whether memory goes with the mesh, else with the blocks
+    role: Role = Role.OTHER
+    rank: float = -1.0  # users' solvers come first: every other one is a reference for them
+    line: LineStyle | None = None  # None: a style that depends on the name alone
 
     def option(self, text: str) -> Solver:
         """Return this solver with the option that ``name:option`` gives, such as a number of ranks.
@@ -46,29 +108,66 @@ class Solver:
         raise InputError(f"solver: {self.name} takes no option, got {text!r}")
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why this solver cannot run the scene."""
+        """Return None, or why this solver cannot run the scene, apart from features that it does not handle."""
         return None
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; `full` switches the numerical savings off, `fields` names a file for the fields."""
-        raise NotImplementedError
+    def refusal(self, scene: Scene) -> str | None:
+        """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
+        unknown = [name for name in features.of(scene) if name not in self.handles]
+        return f"it does not handle {', '.join(unknown)}" if unknown else self.applicable(scene)
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
         return None
 
-    def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution, column name to value."""
-        raise NotReported(f"{self.name} reports no static solution")
-
-    def assumed_static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution that settling is measured from where `static` is not reported."""
+    def versions(self) -> Mapping[str, str]:
+        """Return the versions of programs that its results depend on, beyond the suite's own libraries."""
         return {}
 
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the scene's model once; `full` switches the numerical savings off."""
+        if type(self).solve is Solver.solve:
+            raise NotImplementedError(f"{type(self).__name__} must define prepare or solve")
+        return PreparedByFunction(self, scene, full)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        """Prepare the scene and run it."""
+        return self.prepare(scene, full).run(fields)
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        """Return the static solution of a scene (a solver that is one function may override it)."""
+        return self.prepare(scene).static()
+
     def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the modes, the one with the largest share of the static response first."""
-        raise NotReported(f"{self.name} reports no modes")
+        """Return the modes of a scene (a solver that is one function may override it)."""
+        return self.prepare(scene).modes()
 
     def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return spectral radius, condition number and residual."""
-        raise NotReported(f"{self.name} reports no diagnostics")
+        """Return the diagnostics of a scene (a solver that is one function may override it)."""
+        return self.prepare(scene).diagnostics()
+
+
+class PreparedByFunction(Prepared):
+    """A scene for a solver that is one function, with what else it overrides."""
+
+    def __init__(self, solver: Solver, scene: Scene, full: bool) -> None:
+        self.solver, self.scene, self.full = solver, scene, full
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Call the solver's function."""
+        return self.solver.solve(self.scene, full=self.full, fields=fields)
+
+    def static(self) -> Mapping[str, float]:
+        """Return what the solver reports."""
+        return self.solver.static(self.scene) if self._has("static") else super().static()
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return what the solver reports."""
+        return self.solver.modes(self.scene) if self._has("modes") else super().modes()
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Return what the solver reports."""
+        return self.solver.diagnostics(self.scene) if self._has("diagnostics") else super().diagnostics()
+
+    def _has(self, part: str) -> bool:
+        return getattr(type(self.solver), part) is not getattr(Solver, part)

@@ -10,14 +10,15 @@ import numpy as np
 
 from validation.runs.modes import Mode
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
-from validation.solvers.contract import NotReported, Solver
-from validation.solvers.translation import check_columns, named, no_fields, to_run
+from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.limits import check_step
+from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import dda
-from validation.solvers.limits import check_step, conditional
 
 
 def base_motion(scene: Scene) -> dda.BaseMotion | None:
@@ -28,12 +29,129 @@ def base_motion(scene: Scene) -> dda.BaseMotion | None:
     return None if record is None else dda.BaseMotion(record.time, np.column_stack([record.x, record.y]))
 
 
+def model_of(scene: Scene) -> dda.TwoBlockModel:
+    """Return the two-block model of a scene."""
+    import dda
+
+    b, q = scene.block, scene.load
+    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
+    return dda.TwoBlockModel(
+        block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene)
+    )
+
+
+def scheme_of(scene: Scene) -> dda.Scheme:
+    """Return the scheme of a scene."""
+    import dda
+
+    t = scene.time
+    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+
+
+class OneBlock(Prepared):
+    """A whole block on its springs."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        self.scene, self.full = scene, full
+        with naming(scene):
+            self.model, self.scheme = model_of(scene), scheme_of(scene)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import dda
+
+        self.check(fields)
+        with naming(self.scene):
+            return to_run(
+                self.scene,
+                dda.solve(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns, self.full),
+            )
+
+    def check(self, fields: Path | None) -> None:
+        """Refuse fields, columns that DDA does not have, and steps beyond the scheme's limit."""
+        import dda
+
+        no_fields("dda", self.scene, fields)
+        check_columns(self.scene, dda.COLUMNS)
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+
+    def fastest(self) -> float:
+        """Return the largest frequency that the load reaches [rad/s]."""
+        return max(mode.frequency for mode in self.modes())
+
+    def static(self) -> Mapping[str, float]:
+        """Return the static solution."""
+        return self.model.static()
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return the modes that the load reaches."""
+        import dda
+
+        found = dda.modes(self.model, self.scheme)
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Return spectral radius, condition numbers and residual."""
+        import dda
+
+        return vars(dda.diagnostics(self.model, self.scheme))
+
+
+class SubBlocks(OneBlock):
+    """A block cut into glued sub-blocks."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        import dda
+
+        super().__init__(scene, full)
+        b = scene.block
+        with naming(scene):
+            self.system = dda.subdivided(self.model, *b.subdivide or (1, 1), b.glue_ratio * b.young, b.pattern)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import dda
+
+        self.check(fields)
+        with naming(self.scene):
+            return to_run(
+                self.scene,
+                dda.solve_system(self.system, self.scheme, self.scene.time.steps, self.scene.run.columns, self.full),
+            )
+
+    def fastest(self) -> float:
+        """Return the largest frequency that the load reaches [rad/s]."""
+        import dda
+
+        return dda.highest_frequency(self.system)
+
+    def static(self) -> Mapping[str, float]:
+        """Return the static solution."""
+        import dda
+
+        return dda.static_system(self.system)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return the lowest modes that the load reaches."""
+        import dda
+
+        found = dda.system_modes(self.system, self.scheme)
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Raise: diagnostics are those of one whole block."""
+        raise NotReported("dda reports diagnostics of a whole block only")
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
+    handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
     sources: tuple[str, ...] = ("dda",)
-    _kept: tuple[Scene, dda.BlockSystem] | None = None
+    role, rank = Role.JUDGED, 0.0
+    line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
@@ -41,97 +159,38 @@ class DDA(Solver):
 
         return dda.COLUMNS
 
-    def model(self, scene: Scene) -> dda.TwoBlockModel:
-        """Return the two-block model of a scene."""
-        import dda
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the block or its sub-blocks."""
+        return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
-        b = scene.block
-        block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-        contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
-        q = scene.load
-        return dda.TwoBlockModel(
-            block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene)
-        )
 
-    def system(self, scene: Scene) -> dda.BlockSystem | None:
-        """Return the system of sub-blocks of a scene, or None where the block is whole; the last one is kept."""
-        import dda
+class Printed(OneBlock):
+    """A whole block stepped by the printed recursion; there is nothing to save."""
 
-        b = scene.block
-        if b.subdivide is None:
-            return None
-        if self._kept is None or self._kept[0] is not scene:
-            self._kept = scene, dda.subdivided(self.model(scene), *b.subdivide, b.glue_ratio * b.young, b.pattern)
-        return self._kept[1]
-
-    def scheme(self, scene: Scene) -> dda.Scheme:
-        """Return the scheme of a scene."""
-        import dda
-
-        t = scene.time
-        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
-
-    @named
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         import dda
 
-        no_fields(self.name, scene, fields)
-        self._check(scene, dda.COLUMNS)
-        asked = self.scheme(scene), scene.time.steps, scene.run.columns, full
-        system = self.system(scene)
-        return to_run(scene, dda.solve_system(system, *asked) if system else dda.solve(self.model(scene), *asked))
-
-    def _check(self, scene: Scene, known: tuple[str, ...]) -> None:
-        import dda
-
-        check_columns(scene, known)
-        if conditional(scene):
-            system = self.system(scene)
-            fastest = dda.highest_frequency(system) if system else max(mode.frequency for mode in self.modes(scene))
-            check_step(scene, fastest)
-
-    def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution."""
-        import dda
-
-        system = self.system(scene)
-        return dda.static_system(system) if system else self.model(scene).static()
-
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the modes that the load reaches, of sub-blocks the lowest ones."""
-        import dda
-
-        system, scheme = self.system(scene), self.scheme(scene)
-        found = dda.system_modes(system, scheme) if system else dda.modes(self.model(scene), scheme)
-        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
-
-    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return spectral radius, condition numbers and residual of a whole block."""
-        import dda
-
-        if scene.block.subdivide is not None:
-            raise NotReported("dda reports diagnostics of a whole block only")
-        return vars(dda.diagnostics(self.model(scene), self.scheme(scene)))
+        self.check(fields)
+        with naming(self.scene):
+            found = dda.solve_textbook(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns)
+            return to_run(self.scene, found)
 
 
 class Textbook(DDA):
     """The printed recursion, equations (6) to (9), (31) and (32)."""
 
     name = "dda-textbook"
+    handles = frozenset()
+    role, rank = Role.REPEAT, 1.0
+    line = LineStyle("#e69f00", (2.5, 2.5), 1.1, 6)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the printed recursion does not apply."""
         import dda
 
-        return scene.beyond_two_blocks or dda.textbook_applicable(self.model(scene), self.scheme(scene))
+        return dda.textbook_applicable(model_of(scene), scheme_of(scene))
 
-    @named
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; there is nothing to save, so `full` changes nothing."""
-        import dda
-
-        no_fields(self.name, scene, fields)
-        self._check(scene, dda.COLUMNS)
-        model, scheme = self.model(scene), self.scheme(scene)
-        return to_run(scene, dda.solve_textbook(model, scheme, scene.time.steps, scene.run.columns))
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the block."""
+        return Printed(scene, full)

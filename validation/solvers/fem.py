@@ -2,31 +2,150 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.errors import InputError
 from validation.runs.modes import Mode
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Solver
-from validation.solvers.translation import check_columns, named, to_run
+from validation.solvers.contract import LineStyle, Prepared, Role, Solver
+from validation.solvers.limits import check_step
+from validation.solvers.translation import check_columns, naming, to_run
 
 if TYPE_CHECKING:
     import fem_reference
-    import fem_reference.mesh.model
-from validation.solvers.limits import check_step, conditional
+    from fem_reference.mesh.model import Model
+
+MESH_SECTIONS = ("block", "contact", "load", "time", "run", "fem")
+OF_SUB_BLOCKS = ("block.subdivide", "block.pattern", "block.glue_ratio")  # the whole body stands for its parts
+
+
+def problem_of(scene: Scene) -> fem_reference.Problem:
+    """Return the finite-element problem of a scene.
+
+    Raises
+    ------
+    InputError
+        The problem refuses a value.
+    """
+    import fem_reference
+
+    b, f, c, q = scene.block, scene.fem, scene.contact, scene.load
+    record = base_record(scene)
+    motion = None if record is None else fem_reference.Motion(*map(tuple, (record.time, record.x, record.y)))
+    with naming(scene):
+        return fem_reference.Problem(
+            vertices=b.outline,
+            base=b.base,
+            top=b.top,
+            density=b.density,
+            young=b.young,
+            poisson=b.poisson,
+            hypothesis=b.hypothesis,
+            stiffness=c.stiffness,
+            shear_stiffness=c.shear,
+            pressure=q.pressure,
+            elements=f.per_side,
+            degree=f.degree,
+            mesh=f.mesh,
+            foundation=f.foundation,
+            cells=f.cells,
+            patch_width=f.patch_width,
+            eccentricity=q.eccentricity,
+            traction=q.traction,
+            gravity=q.gravity,
+            motion=motion,
+        )
+
+
+def scheme_of(scene: Scene) -> fem_reference.Scheme:
+    """Return the scheme of a scene."""
+    import fem_reference
+
+    t = scene.time
+    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+
+
+def check_stable(scene: Scene, model: Model | None = None) -> None:
+    """Refuse a step beyond the stability limit at the mesh's highest frequency."""
+    import fem_reference
+    from fem_reference.scheme.limits import critical_omega
+
+    check_step(scene, critical_omega, lambda: fem_reference.highest_frequency(problem_of(scene), model=model))
+
+
+def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
+    """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
+    return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
+
+
+class Mesh(Prepared):
+    """A block meshed and assembled once."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        self.scene, self.full = scene, full
+        self.problem, self.scheme = problem_of(scene), scheme_of(scene)
+        self.building = 0.0  # s
+
+    @cached_property
+    def model(self) -> Model:
+        """M D'' + K D = F of the mesh for a pressure of 1 Pa, with every exact saving unless `full`."""
+        from fem_reference.mesh.model import build
+
+        began = time.perf_counter()
+        with naming(self.scene):
+            model = build(self.problem, self.full)
+        self.building = time.perf_counter() - began
+        return model
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import fem_reference
+
+        check_columns(self.scene, fem_reference.COLUMNS)
+        check_stable(self.scene, self.model)
+        steps, columns = self.scene.time.steps, self.scene.run.columns
+        with naming(self.scene):
+            found = fem_reference.solve(
+                self.problem, self.scheme, steps, columns, full=self.full, fields=fields, model=self.model
+            )
+        return to_run(self.scene, found, built=self.building)
+
+    def static(self) -> Mapping[str, float]:
+        """Return the static solution."""
+        import fem_reference
+
+        return fem_reference.static(self.problem, model=self.model)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return modes that the load reaches, the first axial one first."""
+        import fem_reference
+
+        return to_modes(fem_reference.modes(self.problem, self.scheme, model=self.model))
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Return spectral radii, condition number and residual of the mesh's step."""
+        from fem_reference.scheme.diagnostics import diagnostics
+
+        return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
 
 class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    sections = ("block", "contact", "load", "time", "run", "fem")
-    unread = ("block.subdivide", "block.pattern", "block.glue_ratio")
+    handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
+    sections: tuple[str, ...] = MESH_SECTIONS
+    unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
+    meshed = True
+    role, rank = Role.REFERENCE, 2.0
+    line: LineStyle | None = LineStyle("#0072b2", (4.0, 1.5), 1.1, 4)
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
@@ -34,93 +153,6 @@ class FiniteElements(Solver):
 
         return fem_reference.COLUMNS
 
-    def problem(self, scene: Scene) -> fem_reference.Problem:
-        """Return the finite-element problem of a scene."""
-        import fem_reference
-
-        b, f, c, q = scene.block, scene.fem, scene.contact, scene.load
-        record = base_record(scene)
-        motion = None if record is None else fem_reference.Motion(*map(tuple, (record.time, record.x, record.y)))
-        try:
-            return fem_reference.Problem(
-                vertices=b.outline,
-                base=b.base,
-                top=b.top,
-                density=b.density,
-                young=b.young,
-                poisson=b.poisson,
-                hypothesis=b.hypothesis,
-                stiffness=c.stiffness,
-                shear_stiffness=c.shear,
-                pressure=q.pressure,
-                elements=f.per_side,
-                degree=f.degree,
-                mesh=f.mesh,
-                foundation=f.foundation,
-                cells=f.cells,
-                patch_width=f.patch_width,
-                eccentricity=q.eccentricity,
-                traction=q.traction,
-                gravity=q.gravity,
-                motion=motion,
-            )
-        except ValueError as error:
-            raise InputError(f"{scene.name}: {error}") from None
-
-    def equations(self, scene: Scene, full: bool = False) -> fem_reference.mesh.model.Model:
-        """Return M D'' + K D = F of the mesh for a pressure of 1 Pa, with every exact saving unless `full`."""
-        from fem_reference.mesh.model import build
-
-        return build(self.problem(scene), full)
-
-    def scheme(self, scene: Scene) -> fem_reference.Scheme:
-        """Return the scheme of a scene."""
-        import fem_reference
-
-        t = scene.time
-        return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
-
-    def check_stable(self, scene: Scene) -> None:
-        """Refuse a step beyond the stability limit at the mesh's highest frequency."""
-        if conditional(scene):
-            import fem_reference
-
-            check_step(scene, fem_reference.highest_frequency(self.problem(scene)))
-
-    @named
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene."""
-        import fem_reference
-
-        check_columns(scene, fem_reference.COLUMNS)
-        problem = self.problem(scene)
-        self.check_stable(scene)
-        return to_run(
-            scene,
-            fem_reference.solve(
-                problem, self.scheme(scene), scene.time.steps, scene.run.columns, full=full, fields=fields
-            ),
-        )
-
-    def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution."""
-        import fem_reference
-
-        return fem_reference.static(self.problem(scene))
-
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the lowest modes that the load reaches, the first axial one first."""
-        import fem_reference
-
-        return _modes(fem_reference.modes(self.problem(scene), self.scheme(scene)))
-
-    def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return spectral radii, condition number and residual of the mesh's step."""
-        from fem_reference.scheme.diagnostics import diagnostics
-
-        return vars(diagnostics(self.problem(scene), self.scheme(scene)))
-
-
-def _modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
-    """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
-    return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Mesh the block."""
+        return Mesh(scene, full)

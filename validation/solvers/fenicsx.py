@@ -20,12 +20,12 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import History
-from validation.runs.modes import Mode
 from validation.runs.run import Outcome, Run
+from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
-from validation.solvers.contract import NotReported, Solver
-from validation.solvers.fem import FiniteElements
+from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable
 from validation.solvers.translation import check_columns, no_fields, pulls
 from validation.solvers.worker import ask
 
@@ -68,6 +68,14 @@ def has_dolfinx(python: str) -> bool:
     return done.returncode == 0
 
 
+@functools.cache
+def dolfinx_version(python: str) -> str:
+    """Return the version of an interpreter's dolfinx, as its package says it."""
+    code = "import importlib.metadata as m; print(m.version('fenics-dolfinx'))"
+    done = subprocess.run([python, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    return done.stdout.strip() or "unknown"
+
+
 def interpreter() -> str | None:
     """Return the first interpreter that has dolfinx, or None."""
     return next(filter(has_dolfinx, candidates()), None)
@@ -83,12 +91,17 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    sections = ("block", "contact", "load", "time", "run", "fem")
-    sources = ("fem_reference.fenicsx_worker", "validation.solvers.fenicsx", "validation.solvers.worker")
+    handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
+    sections = MESH_SECTIONS
+    unread = OF_SUB_BLOCKS
+    sources = ("fem_reference.fenicsx_worker",)
+    distributed = True
+    meshed = True
+    role, rank = Role.SECOND_CODE, 3.0
+    line = LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4)
 
     def __init__(self) -> None:
         self.ranks = 1
-        self._answer: tuple[str, dict[str, Any]] | None = None
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
@@ -99,7 +112,8 @@ class FEniCSx(Solver):
         if not text.isdecimal() or int(text) < 1:
             raise InputError(f"solver: fenicsx:N takes a number of ranks from 1 on, got {text!r}")
         self.ranks = int(text)
-        self.name = "fenicsx" if self.ranks == 1 else f"fenicsx:{self.ranks}"
+        if self.ranks > 1:
+            self.name, self.rank = f"fenicsx:{self.ranks}", type(self).rank + 0.5
         return self
 
     def applicable(self, scene: Scene) -> str | None:
@@ -118,52 +132,64 @@ class FEniCSx(Solver):
             return f"needs mpirun for {self.ranks} ranks (how to get it: apt-get install openmpi-bin)"
         return None
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene on its whole mesh; it has no savings, so `full` changes nothing."""
-        no_fields(self.name, scene, fields)
-        check_columns(scene, COLUMNS)
-        FiniteElements().check_stable(scene)
-        if missing := self.missing():
-            return Run(Outcome.NOT_RUN, notes=(missing,))
-        answer = self._ask(scene)
-        if "refused" in answer:
-            raise InputError(f"{scene.name}: {answer['refused']}")
-        if "raised" in answer:
-            return Run(Outcome.RAISED, notes=(str(answer["raised"]),))
-        if "inapplicable" in answer:
-            return Run(Outcome.NOT_APPLICABLE, notes=(str(answer["inapplicable"]),))
-        return self._run(scene, answer)
+    def versions(self) -> Mapping[str, str]:
+        """Return the version of dolfinx, where it is installed."""
+        python = interpreter()
+        return {} if python is None else {"dolfinx": dolfinx_version(python)}
 
-    def _run(self, scene: Scene, answer: Mapping[str, Any]) -> Run:
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Take the scene; its model is built where dolfinx is."""
+        return RemoteMesh(self, scene)
+
+    def command(self) -> list[str]:
+        """Return the command that starts the worker."""
+        python = interpreter() or sys.executable
+        mpi = [launcher(python) or "mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
+        return [*mpi, python, str(WORKER)]
+
+
+class RemoteMesh(Prepared):
+    """A scene on its whole mesh, in a worker; there are no savings."""
+
+    def __init__(self, solver: FEniCSx, scene: Scene) -> None:
+        self.solver, self.scene = solver, scene
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        scene = self.scene
+        no_fields(self.solver.name, scene, fields)
+        check_columns(scene, COLUMNS)
+        check_stable(scene)
+        if missing := self.solver.missing():
+            return Run(Outcome.NOT_RUN, notes=(missing,))
+        if "refused" in self.answer:
+            raise InputError(f"{scene.name}: {self.answer['refused']}")
+        if "raised" in self.answer:
+            return Run(Outcome.RAISED, notes=(str(self.answer["raised"]),))
+        if "inapplicable" in self.answer:
+            return Run(Outcome.NOT_APPLICABLE, notes=(str(self.answer["inapplicable"]),))
+        return self._run(self.answer)
+
+    def _run(self, answer: Mapping[str, Any]) -> Run:
         columns = {name: np.asarray(values, float) for name, values in answer["columns"].items()}
         history = History(np.asarray(answer["time"], float), columns)
         counters = ("unknowns", "nonzeros", "factorisations", "solves")
-        work = {name: int(answer[name]) for name in counters} | {"steps": scene.time.steps, "ranks": self.ranks}
+        work = {name: int(answer[name]) for name in counters}
+        work |= {"steps": self.scene.time.steps, "ranks": self.solver.ranks}
         seconds = {part: float(answer[f"{part}_seconds"]) for part in ("setup", "stepping")}
         where = f"dolfinx {answer['version']}, {answer['memory'] / 1e6:.0f} MB at the peak over all ranks"
         return Run(Outcome.COMPLETED, history, work, seconds, (where, *pulls(history)))
 
-    def static(self, scene: Scene) -> Mapping[str, float]:
+    def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""
-        if self.missing() is None and "static" in (answer := self._ask(scene)):
-            return dict(answer["static"])
+        if self.solver.missing() is None and "static" in self.answer:
+            return dict(self.answer["static"])
         raise NotReported("fenicsx has no static solution here")
 
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Raise: the worker computes no modes."""
-        raise NotReported("fenicsx reports no modes")
-
-    def _ask(self, scene: Scene) -> dict[str, Any]:
-        """Return the worker's answer; the last one is kept."""
-        key = scene.model_dump_json()
-        if self._answer is None or self._answer[0] != key:
-            self._answer = key, ask(self._command(), os.environ | ENVIRONMENT, request(scene))
-        return self._answer[1]
-
-    def _command(self) -> list[str]:
-        python = interpreter() or sys.executable
-        mpi = [launcher(python) or "mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
-        return [*mpi, python, str(WORKER)]
+    @functools.cached_property
+    def answer(self) -> dict[str, Any]:
+        """The worker's answer."""
+        return ask(self.solver.command(), os.environ | ENVIRONMENT, request(self.scene))
 
 
 def request(scene: Scene) -> dict[str, Any]:

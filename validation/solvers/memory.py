@@ -8,6 +8,7 @@ from pathlib import Path
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
+from validation.solvers.contract import Solver
 
 NUMBER = 8  # bytes
 COPIES = 4  # of a history while it is made, observed, checked and kept
@@ -17,10 +18,10 @@ MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
 
 
-def needed(scene: Scene, solver: str) -> tuple[float, str]:
+def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    model = _mesh(scene) if solver.partition("-")[0] in ("fem", "fenicsx") else _blocks(scene)
+    model = _mesh(scene) if solver.meshed else _blocks(scene)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
 
 
@@ -59,7 +60,7 @@ def available() -> float:
         return math.inf
 
 
-def check(scene: Scene, solver: str) -> None:
+def check(scene: Scene, solver: Solver) -> None:
     """Refuse a scene whose run cannot fit.
 
     Raises
@@ -73,6 +74,6 @@ def check(scene: Scene, solver: str) -> None:
         section, _, key = field.partition(".")
         value = getattr(getattr(scene, section), key)
         raise InputError(
-            f"{scene.name}: {field}: must fit into memory, {solver} needs about {size / GIGABYTE:.3g} GB and "
+            f"{scene.name}: {field}: must fit into memory, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
             f"{there / GIGABYTE:.3g} GB are there, got {value}"
         )

@@ -6,12 +6,13 @@ import functools
 import importlib
 import importlib.metadata
 from collections.abc import Mapping
+from typing import Any
 
 from validation.errors import InputError
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import memory
-from validation.solvers.contract import Solver
+from validation.solvers.contract import Role, Solver
 
 BUILT_IN = {
     "dda": "validation.solvers.dda:DDA",
@@ -24,8 +25,8 @@ BUILT_IN = {
     "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
     "bar-60": "validation.solvers.sixty_digits.adapters:PreciseBar",
 }
-DISTRIBUTED = ("fenicsx",)  # solvers whose option is a number of ranks
-REFERENCES = ("continuum", "bar", "fem")  # by priority; the continuum where the time error counts as well
+USERS = "validation.solvers.user:UserSolver"
+FULL = ":full"  # a solver's name with this ending runs without numerical savings
 GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
 
 
@@ -61,16 +62,35 @@ def get_solver(name: str) -> Solver:
     InputError
         There is no such solver, or it does not take the option.
     """
-    plain, colon, option = name.partition(":")
+    plain, colon, option = name.removesuffix(FULL).partition(":")
     if plain not in BUILT_IN and is_solver(name):
-        from validation.solvers.user import UserSolver
-
-        return UserSolver(name, entry_points().get(name, name))
+        user: Solver = _imported(USERS)(name, entry_points().get(name, name))
+        return user
     if plain not in BUILT_IN:
         raise InputError(f"solver: must be one of {', '.join(solver_names())}, or module:attribute, got {name!r}")
-    module, _, attribute = BUILT_IN[plain].partition(":")
-    solver: Solver = getattr(importlib.import_module(module), attribute)()
+    solver: Solver = _imported(BUILT_IN[plain])()
     return solver.option(option) if colon else solver
+
+
+def _imported(target: str) -> Any:
+    module, _, attribute = target.partition(":")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def rank(name: str) -> float:
+    """Place among the references of a solver, or of its run without savings, which follows it at once."""
+    return get_solver(name).rank + (0.25 if name.endswith(FULL) else 0.0)
+
+
+def role(name: str) -> Role:
+    """Return the role of a solver; a run without savings repeats the one with them."""
+    return Role.REPEAT if name.endswith(FULL) else get_solver(name).role
+
+
+def by_role(wanted: Role) -> list[str]:
+    """Return the built-in solvers of a role, the highest rank first."""
+    found = [name for name in BUILT_IN if get_solver(name).role is wanted]
+    return sorted(found, key=rank, reverse=True)
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
@@ -101,7 +121,7 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
-    if reason := chosen.applicable(scene):
+    if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
-    memory.check(scene, chosen.name)
+    memory.check(scene, chosen)
     return chosen.solve(scene, full=full)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,13 @@ from validation.errors import InputError
 from validation.runs.history import PRESSURE, History
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Solver
 
 
-def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = ()) -> Run:
-    """Translate the `Result` of a solver package; the two packages share no class, only the names of the fields."""
+def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float = 0.0) -> Run:
+    """Translate the `Result` of a solver package; the two packages share no class, only the names of the fields.
+
+    `built` is the time that was spent on the model before [s].
+    """
     history = History(result.time, {name: result.columns[name] for name in scene.run.columns})
     work = {
         "unknowns": result.unknowns,
@@ -26,7 +28,7 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = ()) -> Run:
         "solves": result.solves,
         "steps": scene.time.steps,
     }
-    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
+    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
     tension = pulls(history)
     return Run(
         Outcome.COMPLETED,
@@ -38,22 +40,15 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = ()) -> Run:
     )
 
 
-Solve = Callable[[Any, Scene, bool, Path | None], Run]
-
-
-def named(solve: Solve) -> Callable[..., Run]:
-    """Give what a solver package refuses, a ValueError, the name of the scene: a InputError."""
-
-    @functools.wraps(solve)
-    def wrapped(self: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        try:
-            return solve(self, scene, full, fields)
-        except InputError:
-            raise
-        except ValueError as error:
-            raise InputError(f"{scene.name}: {error}") from None
-
-    return wrapped
+@contextmanager
+def naming(scene: Scene) -> Iterator[None]:
+    """Give what a solver package refuses, a ValueError, the name of the scene: an InputError."""
+    try:
+        yield
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{scene.name}: {error}") from None
 
 
 def pulls(history: History) -> tuple[str, ...]:

@@ -17,8 +17,9 @@ from validation.metrics.values import norm
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.modes import Mode
 from validation.runs.run import Outcome, Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.contract import NotReported, Solver
+from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
 from validation.solvers.translation import no_fields, pulls
 from validation.solvers.worker import WorkerDied, WorkerHangs, ask
@@ -40,44 +41,56 @@ class UserSolver(Solver):
 
     def __init__(self, name: str, target: str) -> None:
         self.name, self.target = name, target
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return None: what the solver handles is known in its own process only, which says so."""
+        return None
+
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Take the scene; the solver sees it when it is run."""
+        return Asked(self, scene)
+
+
+class Asked(Prepared):
+    """A scene for a user's solver; what it reports beside the history comes with it."""
+
+    def __init__(self, solver: UserSolver, scene: Scene) -> None:
+        self.solver, self.scene = solver, scene
         self._answer: dict[str, Any] = {}
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def run(self, fields: Path | None = None) -> Run:
         """Run the scene in the solver's own process."""
-        no_fields(self.name, scene, fields)
+        no_fields(self.solver.name, self.scene, fields)
         limit = float(os.environ.get(VARIABLE, LIMIT))
-        command = [
-            sys.executable,
-            "-m",
-            "validation.solvers.user_worker",
-            self.target,
-            os.getcwd(),
-            *filter(None, sys.path),
-        ]
+        worker = [sys.executable, "-m", "validation.solvers.user_worker"]
+        command = [*worker, self.solver.target, os.getcwd(), *filter(None, sys.path)]
+        request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
-            self._answer = ask(command, os.environ, {"scene": scene.definition()}, limit)
+            self._answer = ask(command, os.environ, request, limit)
         except WorkerHangs:
             return Run(Outcome.TIMEOUT, notes=(f"hangs: no history within {limit:g} s",))
         except WorkerDied as error:
             return Run(Outcome.RAISED, notes=(f"crashed: {error}",))
+        if "inapplicable" in self._answer:
+            return Run(Outcome.NOT_APPLICABLE, notes=(str(self._answer["inapplicable"]),))
         if "raised" in self._answer:
             return Run(Outcome.RAISED, notes=(str(self._answer["raised"]),))
-        return _judged(scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
+        return _judged(self.scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
 
-    def static(self, scene: Scene) -> Mapping[str, float]:
+    def static(self) -> Mapping[str, float]:
         """Return the static solution that the solver reports."""
         if self._answer.get("static") is None:
-            raise NotReported(f"{self.name} reports no static solution")
+            raise NotReported(f"{self.solver.name} reports no static solution")
         return dict(self._answer["static"])
 
-    def assumed_static(self, scene: Scene) -> Mapping[str, float]:
+    def assumed_static(self) -> Mapping[str, float]:
         """Return the static solution that settling is measured from where the solver reports none: the block's."""
-        return DDA().static(scene)
+        return DDA().prepare(self.scene).static()
 
-    def modes(self, scene: Scene) -> tuple[Mode, ...]:
+    def modes(self) -> tuple[Mode, ...]:
         """Return the modes that the solver reports."""
         if not self._answer.get("modes"):
-            raise NotReported(f"{self.name} reports no modes")
+            raise NotReported(f"{self.solver.name} reports no modes")
         return tuple(Mode(w, share, (complex(*a), complex(*b))) for w, share, (a, b, *_) in self._answer["modes"])
 
 

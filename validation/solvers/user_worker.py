@@ -15,6 +15,7 @@ import numpy as np
 
 from validation.runs.history import History
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.worker import serve
 
@@ -73,6 +74,9 @@ def optional(solver: Any, part: str, scene: Scene) -> Any:
 def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     """Run a scene and return the answer."""
     scene = parse_scene(request["scene"], "scene")
+    unknown = [name for name in request["features"] if name not in getattr(solver, "handles", features.FIRST)]
+    if unknown:
+        return {"inapplicable": f"it does not say that it handles {', '.join(unknown)} (give it `handles`)"}
     found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
     static, modes = optional(solver, "static", scene), optional(solver, "modes", scene) or ()
     return {

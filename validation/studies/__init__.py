@@ -3,4 +3,4 @@
 Nothing is run or drawn here.
 """
 
-from validation.engine.study import Study as Study
+from validation.studies.declaration import Study as Study

@@ -7,17 +7,16 @@ import importlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from validation.engine.case import FULL
 from validation.errors import InputError
 from validation.gates.gate import Gate
-from validation.metrics.catalogue import METRICS
-from validation.metrics.pairs import PAIRS
+from validation.metrics.catalogue import METRICS, PAIRS
 from validation.scenes.scene import Scene, load_scene, scene_names
-from validation.solvers.registry import get_solver, is_solver, solver_names
+from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
 
 if TYPE_CHECKING:
     pass
-from validation.engine.study import Derived, Study
+from validation.engine.finished import Derived
+from validation.studies.declaration import Study
 
 STUDIES = {
     "core": "validation.studies.core:CORE",

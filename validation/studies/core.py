@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
 from validation.studies import core_damping
+from validation.studies.declaration import Study
 
 SCENES = (
     "figures-3-4",

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
-from validation.engine.study import Derived
+from validation.engine.finished import Derived, Finished
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
-from validation.runs.results import Row, Value
+from validation.runs.case_name import scene_of
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene, load_scene
-
-if TYPE_CHECKING:
-    from validation.engine.finished import Finished
 
 NAME = "damping"
 SOLVERS = ("dda", "fem", "bar")
@@ -118,7 +115,7 @@ def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
 def ratio(scene: Scene) -> Iterator[Gate]:
     """Yield the gate on the damping ratio of DDA over that of the elements, where they are damped."""
     pair, metric = ("dda", "fem"), "mode1.damping"
-    name = scene.name if scene.name in OWN else scene.name.partition("[")[0]
+    name = scene.name if scene.name in OWN else scene_of(scene.name)
     if name in OWN:
         value, half = OWN[name]
         why = "the mesh has no limit on point springs" if name.startswith("corner") else "the mesh error is below"

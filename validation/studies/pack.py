@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from validation.engine.case import Case
-from validation.engine.measure import attempt, check
+from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.files import write_atomically, write_csv
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
 from validation.studies.catalogue import get_study
 
 STUDY = "core"
@@ -159,7 +159,7 @@ def _value(value: object) -> str:
 
 
 def _history(scene: Scene, solver: str) -> Any:
-    run: Run = check(attempt(Case(scene, solver).make_solver(), scene, False), scene)
+    run: Run = completed(get_solver(solver), scene)
     if run.outcome is not Outcome.COMPLETED or run.history is None:
         raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
     return run.history

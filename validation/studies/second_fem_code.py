@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.declaration import Study
 
 SQUARES = ("two-codes-constant", "two-codes-average")
 POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh

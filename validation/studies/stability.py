@@ -10,10 +10,10 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.declaration import Study
 
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5))
 STIFFNESS = tuple(10.0**power for power in range(0, 25, 3))  # p [N/m] at E = 1e9 Pa: p/E = 1e-9 to 1e15

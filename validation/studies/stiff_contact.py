@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import load_scene
+from validation.studies.declaration import Study
 
 SCENE = "stiff-contact"
 

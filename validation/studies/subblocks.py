@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
 from validation.studies.core import cases, near
+from validation.studies.declaration import Study
 
 SCENES = (
     "subblocks-column",

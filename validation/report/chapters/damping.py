@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Table
@@ -13,6 +12,7 @@ from validation.report.chapters.data import Group
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories as figures
 from validation.report.figures import paper as figures_paper
+from validation.runs.records import AlarmRecord, BudgetRecord
 
 
 def budget_blocks(group: Group, directory: Path) -> list[Block]:
@@ -35,7 +35,7 @@ def _label(text: str) -> str:
     return ", ".join(part for part in text.split(", ") if not part.startswith(("dt =", "steps =", "n =")))
 
 
-def _caption(budgets: Sequence[Mapping[str, Any]]) -> str:
+def _caption(budgets: Sequence[BudgetRecord]) -> str:
     said = [
         "Damping budget of DDA's first axial and contact mode over the time step (triangles: the cases).",
         "Open circles: the roots of the step turn real and there is no damping ratio beyond; one root returns to −1.",
@@ -68,7 +68,7 @@ def alarm_blocks(group: Group) -> list[Block]:
     return [*blocks, *(Callout(f"{said[:1].upper()}{said[1:]}.", "warn") for said in others)]
 
 
-Alarms = Sequence[Mapping[str, Any]]
+Alarms = Sequence[AlarmRecord]
 Labels = Mapping[str, str]
 
 

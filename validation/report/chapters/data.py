@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from validation.report.chapters.text import case_labels, swept
+from validation.report.chapters.text import case_labels
+from validation.runs.case_name import CaseName, scene_of
 from validation.runs.history import History
-from validation.runs.results import Results, Row
+from validation.runs.records import AlarmRecord, BudgetRecord, CaseRecord, ComparisonRecord, Manifest, VerdictRecord
+from validation.runs.results import Results
+from validation.runs.row import Row
 from validation.scenes.scene import Scene, parse_scene
-
-PICTURE_REFERENCES = ("bar", "fem", "continuum")  # the same Newmark scheme first: pictures show model and code
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,9 @@ class Case:
     @property
     def reference(self) -> str | None:
         """The solver that pictures take differences from."""
-        return next((name for name in PICTURE_REFERENCES if name in self.histories), None)
+        # The same Newmark scheme first: pictures show model and code.
+        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH)]
+        return next((name for name in known if name in self.histories), None)
 
 
 @dataclass(frozen=True)
@@ -44,10 +49,10 @@ class Group:
     name: str
     title: str
     cases: tuple[Case, ...]
-    comparisons: tuple[Mapping[str, Any], ...]
-    verdicts: tuple[Mapping[str, Any], ...]
-    alarms: tuple[Mapping[str, Any], ...] = ()
-    budgets: tuple[Mapping[str, Any], ...] = ()
+    comparisons: tuple[ComparisonRecord, ...]
+    verdicts: tuple[VerdictRecord, ...]
+    alarms: tuple[AlarmRecord, ...] = ()
+    budgets: tuple[BudgetRecord, ...] = ()
 
     @property
     def solvers(self) -> list[str]:
@@ -70,29 +75,24 @@ class Group:
         return None if longest is None else dict(longest["metrics"])
 
 
-def groups(results: Results, manifest: Mapping[str, Any]) -> list[Group]:
+def groups(results: Results, manifest: Manifest) -> list[Group]:
     """Return the scenes of a study in the order of its manifest."""
     rows = results.rows()
     names = list(dict.fromkeys(entry["scene"] for entry in manifest.get("cases", [])))
     verdicts = results.verdicts(manifest.get("study"))
     return [
-        _group(results, rows, manifest, base, [n for n in names if base_name(n) == base], verdicts)
-        for base in dict.fromkeys(map(base_name, names))
+        _group(results, rows, manifest, base, [n for n in names if scene_of(n) == base], verdicts)
+        for base in dict.fromkeys(map(scene_of, names))
     ]
-
-
-def base_name(case: str) -> str:
-    """Return the scene's name without its swept values."""
-    return case.partition("[")[0]
 
 
 def _group(
     results: Results,
     rows: Mapping[str, Row],
-    manifest: Mapping[str, Any],
+    manifest: Manifest,
     base: str,
     names: Sequence[str],
-    verdicts: Sequence[Mapping[str, Any]],
+    verdicts: Sequence[VerdictRecord],
 ) -> Group:
     entries = {name: [e for e in manifest["cases"] if e["scene"] == name] for name in names}
     scenes = [parse_scene(entries[name][0]["definition"], name) for name in names]
@@ -105,16 +105,14 @@ def _group(
         base,
         entries[names[0]][0].get("title") or base,
         cases,
-        tuple(c for c in manifest.get("comparisons", []) if base_name(c["scene"]) == base),
-        tuple(v for v in verdicts if base_name(v["scene"]) == base),
-        tuple(a for a in manifest.get("alarms", []) if base_name(a["scene"]) == base),
-        tuple(b for b in manifest.get("budgets", []) if base_name(b["scene"]) == base),
+        tuple(c for c in manifest.get("comparisons", []) if scene_of(c["scene"]) == base),
+        tuple(v for v in verdicts if scene_of(v["scene"]) == base),
+        tuple(a for a in manifest.get("alarms", []) if scene_of(a["scene"]) == base),
+        tuple(b for b in manifest.get("budgets", []) if scene_of(b["scene"]) == base),
     )
 
 
-def _case(
-    results: Results, rows: Mapping[str, Row], entries: Sequence[Mapping[str, Any]], label: str, scene: Scene
-) -> Case:
+def _case(results: Results, rows: Mapping[str, Row], entries: Sequence[CaseRecord], label: str, scene: Scene) -> Case:
     own = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
     drawn = {solver: row for solver, row in own.items() if not solver.endswith(":full")}  # equal to what they repeat
     histories = {s: history for s, row in drawn.items() if (history := results.history(row.key)) is not None}
@@ -123,4 +121,4 @@ def _case(
 
 def varied_fields(group: Group) -> set[str]:
     """Return the fields that vary between the cases of a scene."""
-    return {field for case in group.cases for field in swept(case.name)}
+    return {field for case in group.cases for field in CaseName.parse(case.name).values}

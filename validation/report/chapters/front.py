@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
 from validation.report.book import CHAPTERS
@@ -14,6 +13,8 @@ from validation.report.chapters.ledger import ledger_lines, ledger_table, part_v
 from validation.report.chapters.scene import ORDER, band, gate_count, value_cell
 from validation.report.chapters.text import percent, plain, span
 from validation.report.figures import histories as figures
+from validation.runs.case_name import scene_of
+from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 
 LEDGER_FIGURE = "error-ledger.svg"
@@ -40,7 +41,7 @@ def front_matter(results: Results, studies: Sequence[str], directory: Path) -> l
     return blocks
 
 
-def headline(found: Sequence[Group], verdicts: Sequence[Mapping[str, Any]]) -> str:
+def headline(found: Sequence[Group], verdicts: Sequence[VerdictRecord]) -> str:
     """Return the report's conclusion in one plain sentence."""
     said = gate_count(verdicts) if verdicts else "no gate was judged"
     gates = said[:1].upper() + said[1:]
@@ -67,7 +68,7 @@ def _shares(found: Sequence[Group], form: float) -> str:
     return f"; of the displacement's difference {' and '.join(said)}{rest}"
 
 
-def _failures(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:
+def _failures(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     bad = [v for v in verdicts if v["verdict"] != "PASS"]
     failed = sum(v["verdict"] == "FAIL" for v in bad)
     blocks: list[Block] = []
@@ -76,9 +77,9 @@ def _failures(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:
     return [*blocks, failure_table(bad)] if bad else blocks
 
 
-def failure_table(verdicts: Sequence[Mapping[str, Any]]) -> Table:
+def failure_table(verdicts: Sequence[VerdictRecord]) -> Table:
     """Return the gates that did not pass by their ids, failures first."""
-    remarks: dict[str, list[Mapping[str, Any]]] = {}
+    remarks: dict[str, list[VerdictRecord]] = {}
     for v in sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)):
         remarks.setdefault(v.get("why") or "", []).append(v)
     columns = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
@@ -99,7 +100,7 @@ def verdict_counts(results: Results, studies: Sequence[str]) -> Table:
     for study in studies:
         per_scene: dict[str, Counter[str]] = {}
         for v in results.verdicts(study):
-            per_scene.setdefault(v["scene"].partition("[")[0], Counter())[v["verdict"]] += 1
+            per_scene.setdefault(scene_of(v["scene"]), Counter())[v["verdict"]] += 1
         total = sum(per_scene.values(), Counter())
         rows.append((study, "all scenes", *_counts(total)))
         listed = {name: c for name, c in per_scene.items() if len(studies) == 1 or set(c) - {"PASS"}}
@@ -119,8 +120,6 @@ def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
     for study in studies:
         manifest = results.manifest(study)
         rows = [(name.capitalize(), _said(value)) for name, value in manifest.get("provenance", {}).items()]
-        if isinstance(manifest.get("seconds"), int | float):
-            rows.append(("Wall time", f"{plain(manifest['seconds'], 3)} s"))
         blocks += [
             Heading(manifest.get("title") or study, 3),
             Table((Column("Item"), Column("Value", "fill")), tuple(rows)),
@@ -137,7 +136,7 @@ def _said(value: object) -> str:
     return "none" if value is None else str(value)
 
 
-def cost_table(results: Results, manifest: Mapping[str, Any]) -> Table:
+def cost_table(results: Results, manifest: Manifest) -> Table:
     """Return runs, work and seconds of each solver of a study."""
     rows = results.rows()
     keys = {entry["key"]: entry["solver"] for entry in manifest.get("cases", []) if entry["key"] in rows}

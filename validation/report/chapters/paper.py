@@ -18,6 +18,7 @@ from validation.report.figures import histories as figures
 from validation.report.figures import paper as figures_paper
 from validation.report.figures.paper import StepPanel
 from validation.runs.history import Array
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 
 SOLVERS = ("continuum", "bar", "fem", "dda")
@@ -60,7 +61,7 @@ COLUMNS = {
 }
 
 
-def paper_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: conclusion, register of claims, figures, and for each scene its alarms and budget."""
     found = {group.name: group for group in groups(results, manifest)}
     rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
@@ -122,7 +123,7 @@ def _number(value: object) -> str:
     return short(float(value)) if isinstance(value, int | float) else str(value or DASH)
 
 
-def figure_1(manifest: Mapping[str, Any], found: Mapping[str, Group], directory: Path) -> list[Block]:
+def figure_1(manifest: Manifest, found: Mapping[str, Group], directory: Path) -> list[Block]:
     """Return Figure 1, with the spectral radii of the study's own constant-acceleration operators."""
     data = manifest.get("data", {})
     if "schemes" not in data:

@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +27,9 @@ from validation.report.chapters.text import (
 from validation.report.figures import histories as figures
 from validation.report.figures.curves import COLUMNS, Panel
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.results import Results, Value
+from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.results import Results
+from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 
@@ -39,7 +40,7 @@ NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
-def scene_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study: its purpose, then a page for each scene."""
     blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
     if manifest.get("purpose"):
@@ -100,7 +101,7 @@ def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list
     return [float(m[metric]) for m in found if m and isinstance(m.get(metric), int | float)]
 
 
-def gate_count(verdicts: Sequence[Mapping[str, Any]]) -> str:
+def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
     """Return how many gates pass, fail or did not run, as part of a sentence."""
     count = {word: sum(v["verdict"] == word for v in verdicts) for word in ORDER}
     if not verdicts:
@@ -299,9 +300,9 @@ def _measured(measure: Measure, value: Value, scene: Scene) -> str:
     return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")
 
 
-def gate_table(verdicts: Sequence[Mapping[str, Any]], labels: Mapping[str, str]) -> Table:
+def gate_table(verdicts: Sequence[VerdictRecord], labels: Mapping[str, str]) -> Table:
     """Return gates with value and band under the reason that they share, failures first."""
-    reasons: dict[str, list[Mapping[str, Any]]] = {}
+    reasons: dict[str, list[VerdictRecord]] = {}
     for v in sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), [*labels, v["scene"]].index(v["scene"]))):
         reasons.setdefault(reason(v), []).append(v)
     columns = (
@@ -316,7 +317,7 @@ def gate_table(verdicts: Sequence[Mapping[str, Any]], labels: Mapping[str, str])
     return Table(columns, tuple(rows), ruled=False)
 
 
-def _gate_row(v: Mapping[str, Any], labels: Mapping[str, str]) -> tuple[str, ...]:
+def _gate_row(v: VerdictRecord, labels: Mapping[str, str]) -> tuple[str, ...]:
     window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
     return (
         v["verdict"],
@@ -333,7 +334,7 @@ def value_cell(value: Value) -> str:
     return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
 
 
-def band(v: Mapping[str, Any]) -> str:
+def band(v: VerdictRecord) -> str:
     """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
     low, high = v["band"]
     middle, half, size = (low + high) / 2, (high - low) / 2, max(abs(low), abs(high))
@@ -343,7 +344,7 @@ def band(v: Mapping[str, Any]) -> str:
     return f"{short(low, digits)} … {short(high, digits)}"
 
 
-def reason(v: Mapping[str, Any]) -> str:
+def reason(v: VerdictRecord) -> str:
     """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
     uncertainty = v.get("reference_uncertainty") or 0.0
     kind = f" [{v['reference_kind']}" + (f" ± {short(uncertainty, 2)}" if uncertainty else "") + "]"

@@ -7,18 +7,19 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from validation.metrics.growth import Stability
 from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
 from validation.report.chapters.text import DASH, short
 from validation.report.figures import histories as figures
 from validation.report.figures import stability as figures_stability
 from validation.runs.history import Array
-from validation.runs.results import Results, Row, Value
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
-from validation.solvers.stability import Stability
 
 QUANTITIES = {"displacement": "Displacement", "pressure": "Contact pressure"}
 MEASURE = {"bar": "scaled"}  # the bar's wave may not have arrived; all others over their own maximum
@@ -40,7 +41,7 @@ class Cell:
     errors: Mapping[str, Value]
 
 
-def cells(results: Results, manifest: Mapping[str, Any]) -> list[Cell]:
+def cells(results: Results, manifest: Manifest) -> list[Cell]:
     """Return the runs of the solvers that are judged, with their errors where there are any."""
     rows = results.rows()
     compared = {(c["scene"], c["solver"]): c["metrics"] for c in manifest.get("comparisons", [])}
@@ -57,7 +58,7 @@ def cells(results: Results, manifest: Mapping[str, Any]) -> list[Cell]:
     return found
 
 
-def stability_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study of extremes."""
     found = cells(results, manifest)
     blocks: list[Block] = [

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,13 +13,14 @@ from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import histories as figures
 from validation.report.figures import stability as figures_stability
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 
 SCHEMES = {0.5: "(1/2, 1)", 0.5625: "(9/16, 1)"}
 QUANTITIES = ("displacement", "pressure")
 
 
-def contact_chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: what rings, for how long, and what does not."""
     (group,) = groups(results, manifest)
     table = by_ratio(group)

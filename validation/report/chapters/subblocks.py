@@ -13,6 +13,7 @@ from validation.report.chapters.scene import scene_chapter
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories as figures
 from validation.report.figures.work import work_figure
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 
 PRACTICE = (
@@ -35,7 +36,7 @@ TURNING = (
 )
 
 
-def chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: conclusions over all scenes, then the pages of the scenes."""
     found = {group.name: group for group in groups(results, manifest)}
     pages = scene_chapter(results, manifest, directory)

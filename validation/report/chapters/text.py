@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-from validation.runs.results import Value
+from validation.runs.case_name import CaseName
+from validation.runs.row import Value
 from validation.scenes.scene import Scene
 
 DASH = "–"
@@ -105,16 +106,9 @@ def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
     return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in met)
 
 
-def swept(name: str) -> dict[str, str]:
-    """Return the swept fields and values of a case name ``scene[field=value,...]``."""
-    inside = re.fullmatch(r"[^\[]*\[(.*)\]", name)
-    pairs = re.findall(r"([\w.]+)=(.*?)(?=,[\w.]+=|$)", inside.group(1)) if inside else []
-    return dict(pairs)
-
-
 def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
     """Return a short label per case of one scene: the swept values in the symbols of the text."""
-    fields = [swept(name) for name in names]
+    fields = [CaseName.parse(name).values for name in names]
     short = [
         _label({f: v for f, v in values.items() if f != "time.steps"}, scene)
         for values, scene in zip(fields, scenes, strict=True)
@@ -124,7 +118,7 @@ def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
     return [_label(values, scene) for values, scene in zip(fields, scenes, strict=True)]
 
 
-def _label(values: dict[str, str], scene: Scene) -> str:
+def _label(values: Mapping[str, str], scene: Scene) -> str:
     parts = []
     for field, value in values.items():
         symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))

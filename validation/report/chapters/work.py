@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
 from validation.report.chapters.scene import band, gate_count
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories as figures
 from validation.report.figures.cost import work_figure
+from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.studies.work.points import Point, cheapest, floor, points
 
@@ -18,7 +18,7 @@ SCHEMES = {"work-constant": "Constant acceleration", "work-average": "Average ac
 ASKED = (0.1, 0.01, 0.001)
 
 
-def chapter(results: Results, manifest: dict[str, Any], directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter."""
     verdicts = results.verdicts(manifest["study"])
     blocks: list[Block] = [Heading(manifest["title"]), Paragraph(manifest["purpose"])]
@@ -108,7 +108,7 @@ def _row(p: Point) -> tuple[str, ...]:
     return (p.method, short(1e3 * p.scene.time.step, 3), mesh, *errors, *work, *spent)
 
 
-def order_blocks(verdicts: Sequence[Mapping[str, Any]]) -> list[Block]:
+def order_blocks(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     """Return the table of fitted orders and of the comparison with the record."""
     rows = tuple(
         (

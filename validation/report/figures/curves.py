@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
+from validation.solvers.contract import LineStyle
+from validation.solvers.registry import get_solver, is_solver
 
 SMALL, HAIR = 7.0, 0.4  # pt
 GREY = "#6b6b6b"
@@ -60,32 +62,15 @@ COLUMNS = {
 }
 
 
-@dataclass(frozen=True)
-class LineStyle:
-    """Colour and stroke of one solver's lines."""
-
-    color: str
-    dash: tuple[float, ...]  # lengths on and off, in line widths; empty is solid
-    width: float  # pt
-    layer: int  # higher is drawn later
-
-
-STYLES = {
-    "dda": LineStyle("#d55e00", (), 1.1, 5),
-    "dda-textbook": LineStyle("#e69f00", (2.5, 2.5), 1.1, 6),
-    "fem": LineStyle("#0072b2", (4.0, 1.5), 1.1, 4),
-    "fenicsx": LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4),
-    "bar": LineStyle("#000000", (), 0.8, 3),
-    "continuum": LineStyle("#999999", (), 0.7, 1),
-}
 _OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
 _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
 
 
 def style_of(name: str) -> LineStyle:
     """Return the style of a solver; an unknown name gets one that depends on the name alone."""
-    if name in STYLES:
-        return STYLES[name]
+    known = get_solver(name).line if is_solver(name) else None
+    if known is not None:
+        return known
     code = zlib.crc32(name.encode())
     color = _OTHER_COLORS[code % len(_OTHER_COLORS)]
     return LineStyle(color, _OTHER_DASHES[code // len(_OTHER_COLORS) % len(_OTHER_DASHES)], 1.0, 2)

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-from validation.report.figures.curves import GREY, HAIR, STYLES, thin
+from validation.report.figures.curves import GREY, HAIR, style_of, thin
 from validation.report.figures.histories import (
     Margins,
     axes_grid,
@@ -23,6 +23,7 @@ from validation.report.figures.histories import (
     wrapped_titles,
 )
 from validation.runs.history import Array
+from validation.runs.records import BudgetRecord
 
 SCHEME_COLORS = ("#009e73", "#5d3a9b", "#cc79a7", "#8c6d1f")  # schemes are no solvers: colours of their own
 CONTACT_COLOR = "#5d3a9b"
@@ -74,7 +75,7 @@ def _mark(axes: Axes, panel: StepPanel) -> None:
         axes.axhline(panel.level, color="#bbbbbb", lw=HAIR, zorder=1)
     if panel.settled is None or panel.settled > axes.get_xlim()[1]:
         return
-    color, right = STYLES["dda"].color, panel.settled > 0.6 * axes.get_xlim()[1]
+    color, right = style_of("dda").color, panel.settled > 0.6 * axes.get_xlim()[1]
     axes.axvline(panel.settled, color=color, lw=HAIR, zorder=1, ls=(0, (2, 2)))
     axes.annotate(
         f"{panel.settled:.0f} steps",
@@ -124,9 +125,9 @@ def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]
                 ends[f"{name.split(' (')[0]}: √(1+h), as printed"] = (float(printed[-1]), color)
         if points:
             x, y = np.array(points).T
-            axes.plot(x, y, "o", ms=2.6, mfc="none", mec=STYLES["dda"].color, mew=0.6, zorder=5)
+            axes.plot(x, y, "o", ms=2.6, mfc="none", mec=style_of("dda").color, mew=0.6, zorder=5)
             axes.annotate(
-                "one-step operators of dda", (0.04, 0.06), xycoords="axes fraction", color=STYLES["dda"].color
+                "one-step operators of dda", (0.04, 0.06), xycoords="axes fraction", color=style_of("dda").color
             )
         axes.axvline(4.0, color=GREY, lw=HAIR, ls=(0, (2, 2)))
         axes.annotate("ω dt = 4", (4.0, 0.02), (3, 0), textcoords="offset points", color=GREY)
@@ -167,7 +168,7 @@ class BudgetPanel:
     """One setting of a scene: its title and its budget as the manifest keeps it."""
 
     title: str
-    budget: Mapping[str, Any]
+    budget: BudgetRecord
 
 
 def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
@@ -197,10 +198,10 @@ def _values(listed: Sequence[float | None]) -> Array:
     return np.array([math.nan if value is None else value for value in listed])
 
 
-def _lines(budget: Mapping[str, Any]) -> dict[str, BudgetLine]:
+def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
     """Lines of a panel: label -> values, colour, width, dashes; parts only where there is kinetic damping."""
     found: dict[str, BudgetLine] = {}
-    colors = {"first axial": STYLES["dda"].color, "contact": CONTACT_COLOR}
+    colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
     for name, curves in budget["modes"].items():
         total, own, kinetic = (_values(curves[part]) for part in ("total", "algorithmic", "kinetic"))
         found[name] = (total, colors[name], 1.3, "-")
@@ -245,7 +246,7 @@ def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
     axes.set_xlabel("dt [s]", labelpad=1.5)
 
 
-def _limit_lines(axes: Axes, budget: Mapping[str, Any]) -> None:
+def _limit_lines(axes: Axes, budget: BudgetRecord) -> None:
     """Draw the limits as vertical hairlines, named above the axes."""
     names = {"real roots": f"ω₁dt = {budget['real roots at']:.3g}", "wave transit": "a/c"}
     for name, step in budget["limits"].items():
@@ -258,7 +259,7 @@ def _limit_lines(axes: Axes, budget: Mapping[str, Any]) -> None:
             )
 
 
-def _budget_labels(axes: Axes, budget: Mapping[str, Any]) -> None:
+def _budget_labels(axes: Axes, budget: BudgetRecord) -> None:
     ends = {}
     for name, (values, color, *_) in _lines(budget).items():
         good = values[np.isfinite(values) & (values > LEAST_RATIO)]

@@ -15,10 +15,12 @@ import numpy as np
 from validation.errors import InputError
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.bar import BAR_COLUMNS, ExactBar
-from validation.solvers.dda import DDA
-from validation.solvers.fem import FiniteElements
+from validation.solvers.bar import BAR_COLUMNS, ExactBar, NewmarkBar
+from validation.solvers.contract import Prepared, Role
+from validation.solvers.dda import DDA, OneBlock
+from validation.solvers.fem import FiniteElements, Mesh
 from validation.solvers.sixty_digits.block import Number
 from validation.solvers.translation import check_columns
 
@@ -43,77 +45,91 @@ def _doubles(values: list[Number]) -> Array:
     return found
 
 
+class PreciseBlock(OneBlock):
+    """A whole block in sixty-digit arithmetic; there is nothing to save."""
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        from validation.solvers.sixty_digits import block
+
+        return _run(self.scene, lambda: block.history(self.scene, self.scene.run.columns))
+
+
 class PreciseDDA(DDA):
     """The two-block model in sixty-digit arithmetic."""
 
     name = "dda-60"
+    handles = frozenset()
     sources = ("validation.solvers.sixty_digits",)
+    role, rank = Role.REPEAT, 7.0
+    line = None
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         return BAR_COLUMNS
 
-    def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why the scene is not the two-block model under a pressure."""
-        return scene.beyond_two_blocks
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the block."""
+        return PreciseBlock(scene, full)
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; there is nothing to save, so `full` changes nothing."""
-        from validation.solvers.sixty_digits import block as precise_block
 
-        return _run(scene, lambda: precise_block.history(scene, scene.run.columns))
+class PreciseNewmarkBar(NewmarkBar):
+    """A bar under the Newmark scheme in sixty-digit arithmetic."""
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        from validation.solvers.sixty_digits import bar
+
+        return _run(self.scene, lambda: bar.history(self.scene, self.scene.run.columns))
 
 
 class PreciseBar(ExactBar):
     """The bar under the Newmark scheme in sixty-digit arithmetic."""
 
     name = "bar-60"
-    sources = (
-        "validation.solvers.sixty_digits.adapters",
-        "validation.solvers.sixty_digits.bar",
-        "validation.solvers.sixty_digits.block",
-    )
+    sources = ("validation.solvers.sixty_digits",)
+    role, rank = Role.REPEAT, 9.0
+    line = None
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene; there is nothing to save, so `full` changes nothing."""
-        from validation.solvers.sixty_digits import bar as precise_bar
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Build the bar."""
+        return PreciseNewmarkBar(scene, self.name)
 
-        return _run(scene, lambda: precise_bar.history(scene, scene.run.columns))
+
+class PreciseMesh(Mesh):
+    """A mesh whose own matrices are stepped in sixty-digit arithmetic."""
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
+        from validation.solvers.sixty_digits import matrices
+
+        model, scene = self.model, self.scene
+        if reason := _too_large(len(model.F)):
+            raise InputError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
+        rows = {name: model.observers[name] for name in scene.run.columns}
+        return _run(scene, lambda: matrices.history(scene, model.M, model.K, model.F, rows, self.problem.load_size))
 
 
 class PreciseFiniteElements(FiniteElements):
     """The mesh's own double matrices, taken as exact, in sixty-digit arithmetic."""
 
     name = "fem-60"
-    sources = (
-        "fem_reference",
-        "validation.solvers.sixty_digits.adapters",
-        "validation.solvers.sixty_digits.matrices",
-        "validation.solvers.sixty_digits.block",
-    )
+    handles = frozenset({features.SUB_BLOCKS})
+    sources = ("fem_reference", "validation.solvers.sixty_digits")
+    role, rank = Role.REPEAT, 8.0
+    line = None
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         return BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why sixty digits are out of reach for the mesh or for the load."""
-        if not scene.load.centred:
-            return "the solver is written for a centred pressure alone"
-        return _too_large(len(self.equations(scene).F))
+        """Return None, or why sixty digits are out of reach for the mesh."""
+        return _too_large(len(PreciseMesh(scene, full=False).model.F))
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
-        from validation.solvers.sixty_digits import matrices as precise_matrices
-
-        model = self.equations(scene, full)
-        if reason := _too_large(len(model.F)):
-            raise InputError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
-        rows = {name: model.observers[name] for name in scene.run.columns}
-        return _run(
-            scene,
-            lambda: precise_matrices.history(scene, model.M, model.K, model.F, rows, self.problem(scene).load_size),
-        )
+    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+        """Mesh the block."""
+        return PreciseMesh(scene, full)
 
 
 def _too_large(unknowns: int) -> str | None:

@@ -10,20 +10,17 @@ from __future__ import annotations
 import enum
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from validation.engine.study import Derived
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate, rounded
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
-from validation.runs.results import Value
+from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-
-if TYPE_CHECKING:
-    from validation.engine.finished import Finished
 
 REGISTER = "claims"  # the name under which gates find the register's rows
 Needs = tuple[tuple[str, str], ...]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.runs.case_name import scene_of
 from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
 from validation.studies.paper.register import MAP, SOFT
 
@@ -16,10 +17,10 @@ OBLONG = {"block.width": 1.0, "block.height": 2.0}
 
 def model(case: str, **values: float) -> Any:
     """Return the DDA model of a built-in case, with values set."""
-    from validation.solvers.dda import DDA
+    from validation.solvers.dda import model_of
 
-    scene = named(case.partition("[")[0])[case]
-    return DDA().model(scene.with_values(dict(values)) if values else scene)
+    scene = named(scene_of(case))[case]
+    return model_of(scene.with_values(dict(values)) if values else scene)
 
 
 def radius(e: Evidence) -> dict[str, float]:

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from validation.engine.study import Derived, Study
+from validation.engine.finished import Derived
 from validation.gates.gate import Gate
+from validation.studies.declaration import Study
 from validation.studies.paper.claims import REGISTER
 from validation.studies.paper.register import CLAIMS as STATEMENTS
 from validation.studies.paper.slips import SLIPS

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
-from validation.report.chapters.data import base_name
-from validation.runs.results import Results, Row, Value
+from validation.runs.case_name import scene_of
+from validation.runs.records import CaseRecord, Manifest
+from validation.runs.results import Results
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, parse_scene
 
@@ -42,7 +43,7 @@ class Point:
         return float(self.row.work.get("unknowns", 0) * self.row.work.get("steps", 0))
 
 
-def points(results: Results, manifest: Mapping[str, Any], prefix: str) -> list[Point]:
+def points(results: Results, manifest: Manifest, prefix: str) -> list[Point]:
     """Return the completed runs of the scenes whose name begins so, in the order of the study."""
     rows = results.rows()
     compared = {(c["scene"], c["solver"], c["reference"]): c["metrics"] for c in manifest["comparisons"]}
@@ -53,14 +54,14 @@ def points(results: Results, manifest: Mapping[str, Any], prefix: str) -> list[P
         scene = parse_scene(case["definition"], case["scene"])
         method = METHODS.get((case["solver"], scene.fem.degree if case["solver"] == "fem" else 1))
         quadratic_copy = case["solver"] != "fem" and "quadratic" in case["scene"]
-        wanted = base_name(case["scene"]).startswith(prefix) and method is not None and not quadratic_copy
+        wanted = scene_of(case["scene"]).startswith(prefix) and method is not None and not quadratic_copy
         if wanted and row is not None and row.outcome is Outcome.COMPLETED:
             found.append(Point(str(method), scene, row, _errors(case, row, by_case, compared)))
     return found
 
 
 def _errors(
-    case: Mapping[str, Any],
+    case: CaseRecord,
     row: Row,
     rows: Mapping[tuple[str, str], Row],
     compared: Mapping[tuple[str, str, str], Mapping[str, Value]],
@@ -113,7 +114,7 @@ def cheapest(found: Sequence[Point], error: float, reference: str = "continuum")
     return min(good, key=lambda p: p.seconds, default=None)
 
 
-def table(results: Results, manifest: Mapping[str, Any]) -> list[dict[str, Value]]:
+def table(results: Results, manifest: Manifest) -> list[dict[str, Value]]:
     """Return one flat record for each case of any study: what was run, metrics, work, seconds, comparisons."""
     rows = results.rows()
     lines = []

@@ -7,14 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Finished
-from validation.engine.study import Derived
+from validation.engine.finished import Derived, Finished
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.results import Value
+from validation.runs.row import Value
 
 PATH = Path(__file__).resolve().parents[1] / "reports" / "record.json"
 REFERENCES = {"dda": "bar", "fem": "bar", "bar": "continuum"}

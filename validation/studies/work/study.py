@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Finished
-from validation.engine.study import Derived, Study
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
-from validation.runs.results import Value
+from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
 SCHEMES = {"constant": (0.5, 1.0), "average": (0.25, 0.5)}

@@ -1,0 +1,87 @@
+"""Fifty histories of known origin: the confusion matrix of the documentation is what the code does, and is gated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from oracles import confusion
+
+from dda.one_block.variants import Variant
+from validation.compare import causes
+from validation.compare.causes import CAUSES
+from validation.compare.diagnosis import compare
+
+pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
+
+
+@pytest.fixture(scope="module")
+def judged():
+    return confusion.judge_all()
+
+
+def test_there_are_fifty_and_every_cause_is_among_them(judged) -> None:
+    assert len(judged) == 50
+    # weight and load are no slips of a code; the example of ntdda and the program of another make have weight
+    assert {one.cause for one, _, _ in judged} == {confusion.SAME, *CAUSES} - {"own-weight", "load-factor"}
+
+
+def test_every_history_is_given_its_own_cause(judged) -> None:
+    wrong = [
+        (i, one.cause, answer.causes)
+        for i, (one, answer, _) in enumerate(judged)
+        if confusion.told(answer) != one.cause
+    ]
+    assert wrong == []
+
+
+def test_the_scheme_is_named_and_the_open_steps_are_found(judged) -> None:
+    for i, (one, answer, history) in enumerate(judged):
+        p = one.program
+        # a fitted number is known to noise / sqrt(rows) over what it does to a history, a tenth or more; without
+        # noise a fit stops where it gains no more than a thousandth of seven digits' misfit
+        allowed = 1e-4 + 2 * one.noise
+        given = (answer.scheme["alpha"], answer.scheme["delta"], answer.scheme["gg"])
+        assert given == pytest.approx((p.alpha, p.delta, p.gg), abs=allowed), i
+        assert (None if answer.opened is None else list(answer.opened)) == history.opened, i
+
+
+def test_a_departure_is_where_a_fault_is(judged) -> None:
+    for i, (one, answer, _) in enumerate(judged):
+        faulty = one.cause != confusion.SAME and not CAUSES[one.cause].benign
+        assert (answer.departure is not None) == faulty, i
+        if answer.departure is not None:
+            assert 1 <= answer.departure.step <= 3, i  # every fault here is there from the start
+
+
+def test_the_matrix_of_the_documentation_is_this_one(judged) -> None:
+    page = confusion.PAGE.read_text()
+    assert confusion.page_with(confusion.matrix(judged), page) == page, "run python tests/confusion.py"
+
+
+def first(cause: str) -> tuple[int, confusion.Known]:
+    return next((i, one) for i, one in enumerate(confusion.known()) if one.cause == cause)
+
+
+def without(unwanted: Callable[[Variant], bool]) -> Callable[..., Callable[..., object]]:
+    """Take some variants out of the search."""
+    return lambda sound: lambda base: [start for start in sound(base) if not unwanted(start[0])]
+
+
+# what is patched, with what, and the history that is then misjudged
+FAULTS = {
+    "no shift is tried": (causes, "_further", without(lambda v: v.shift != 0), "time-shift"),
+    "gg is in both formulas": (causes, "_further", without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
+    "every cause is earned": (causes, "better", lambda sound: lambda *a, **k: True, "same"),
+    "no cause is earned": (causes, "better", lambda sound: lambda *a, **k: False, "start"),
+    "no sign is turned": (compare, "_factors", lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    module, attribute, wrap, cause = FAULTS[name]
+    monkeypatch.setattr(module, attribute, wrap(getattr(module, attribute)))
+    seed, one = first(cause) if cause != "same" else (3, list(confusion.known())[3])
+    answer, _ = one.judged(seed)
+    assert confusion.told(answer) != cause

@@ -1,0 +1,102 @@
+"""Blocked histories: equal to stepped ones, as many digits, logarithmic work."""
+
+import numpy as np
+import pytest
+from oracles import mp_reference
+
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
+from dda.one_block.solution import modal_histories
+from dda.scheme import blocked as blocks
+from dda.scheme.exact import Exact
+from dda.scheme.newmark import stepped_modes
+
+SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
+COLUMNS = ("displacement", "contact_pressure")
+
+
+def model(ratio=1.0, mu=0.3):
+    block = Block.rectangle(1.7, 1.3, Material(2350.0, 4.3e9, mu, "plane strain"))
+    return TwoBlockModel(block, Contact(ratio * 4.3e9, 0.4 * ratio * 4.3e9), 3.7e6)
+
+
+def both(m, scheme, steps):
+    """Return the blocked and the stepped columns."""
+    form = m.gap_form.reduced()
+    modal = modal_form(form)
+    assert blocks.why_stepped(scheme, modal.frequencies) is None
+    rows = m.pressure * np.array([form.observers[name] @ modal.shapes for name in COLUMNS])
+    return [modal_histories(scheme, modal, rows, steps, blocked) for blocked in (True, False)]
+
+
+# Smallest Omega from a motion that hardly begins to a stiff contact: the last one is the issue's hard case of
+# plain blocking, average acceleration at dt = 1 s.
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES[:4])
+@pytest.mark.parametrize(
+    ("ratio", "step", "gg"), [(1e-6, 1e-7, 0.9), (1.0, 1e-3, 1.0), (3.0, 7e-4, 0.0), (1.0, 1.0, 1.0)]
+)
+def test_no_digit_is_lost_that_steps_keep(start, alpha, delta, ratio, step, gg):
+    m, scheme, steps = model(ratio), Scheme(alpha, delta, gg, step, start), 400
+    exact = mp_reference.history(m, scheme, steps)
+    for blocked, stepped, truth in zip(*both(m, scheme, steps), exact, strict=True):
+        assert mp_reference.lost(blocked, truth) <= max(1e-12, 3 * mp_reference.lost(stepped, truth))
+
+
+@pytest.mark.parametrize("omega", [0.97, 0.999999, 1.0])
+def test_a_double_root_is_no_special_case(omega):
+    """Constant acceleration has the double root -1/3 at Omega = 4, gg a positive one at small Omega."""
+    for scheme, w in ((Scheme(0.5, 1.0, 1.0, 1.0), 4 * omega), (Scheme(0.25, 0.5, 0.9, 1.0), 0.0526 * omega)):
+        frequencies, load, rows = np.array([w]), np.array([w * w]), np.eye(1)
+        stepped = stepped_modes(scheme, frequencies, load, 500)
+        blocked = blocks.blocked_modes(scheme, frequencies, rows, 500)
+        # a root of modulus r = 0.9 keeps what the last 1 / (1 - r)^2 steps have rounded
+        assert np.max(np.abs(blocked - stepped)) < 100 * 4 * np.finfo(float).eps
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 127, 128, 129, 5000])
+def test_every_number_of_steps(steps):
+    blocked, stepped = both(model(), Scheme(0.3025, 0.6, 0.98, 1e-3), steps)
+    assert blocked.shape == stepped.shape == (2, steps)
+    np.testing.assert_allclose(blocked, stepped, rtol=0, atol=1e-12 * np.max(np.abs(stepped)))
+
+
+def test_a_million_steps_end_where_the_closed_form_does():
+    """Average acceleration, undamped: D = static (1 - cos(2 n atan(Omega / 2))) from a consistent start."""
+    scheme, frequencies, steps = Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), np.array([344.561]), 10**6
+    found = blocks.blocked_modes(scheme, frequencies, np.eye(1), steps)[0, -1]
+    from mpmath import mp, mpf
+
+    with mp.workdps(40):
+        angle = 2 * steps * mp.atan(mpf(344.561) * mpf(1e-3) / 2)
+        expected = float(1 - mp.cos(angle))
+    assert abs(found - expected) < 20 * 2 * np.finfo(float).eps  # twenty doublings, a rounding or two each
+
+
+def test_work_grows_with_the_logarithm(monkeypatch):
+    squares = []
+    sound = blocks._squared
+    monkeypatch.setattr(blocks, "_squared", lambda step, levels: (squares.append(levels), sound(step, levels))[1])
+    solve(model(mu=0.0), Scheme(0.5, 1, 1, 1e-3), 100_000)
+    assert squares == [17, 17]  # two modes, 2^17 > 1e5
+
+
+@pytest.mark.parametrize(
+    ("scheme", "reason"),
+    [
+        (Scheme(0.0, 0.5, 1.0, 1.0), "the scheme grows"),
+        (Scheme(0.25, 0.4, 1.0, 1e-3), "the scheme grows"),
+        (Scheme(0.5, 1.0, 1.0, 1e-30), "w dt leaves 1e-15 to 1e+15"),
+    ],
+)
+def test_what_cannot_be_blocked_is_stepped_and_says_so(scheme, reason):
+    assert f"stepped: {reason}" in solve(model(), scheme, 40).notes
+    assert "blocked" in solve(model(), Scheme(0.25, 0.5, 1.0, 1e3), 40).notes
+
+
+def test_exact_numbers_follow_the_rules_of_arithmetic():
+    third = Exact.of(1.0) / 3
+    assert float(third) == 1 / 3
+    assert float(1 - third * 3) == pytest.approx(0, abs=1e-57)  # cut at 192 binary places
+    assert float((2 - third) + 0.5 - third) == pytest.approx(2.5 - 2 / 3, rel=1e-15)
+    assert 0 <= third <= 1
+    assert third > 0.25

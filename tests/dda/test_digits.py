@@ -1,0 +1,70 @@
+"""Digits of the robust form against 80-digit arithmetic, over stiff and extreme data."""
+
+import numpy as np
+import pytest
+from oracles import mp_reference
+
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve
+from dda.one_block import modes
+from dda.scheme import spectral
+
+STEPS = 300
+# The bounds that the package promises; worst of some 2000 random rectangles: 4e-12 and 6e-12.
+LIMIT = {"zero": 1e-11, "consistent": 1e-9}
+SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
+
+
+def assert_digits(model, scheme):
+    result = solve(model, scheme, STEPS)
+    exact = mp_reference.history(model, scheme, STEPS)
+    for name, values in zip(("displacement", "contact_pressure"), exact, strict=True):
+        assert mp_reference.lost(result.columns[name], values) < LIMIT[scheme.start], name
+
+
+def bounded_step(model, alpha, delta, gg, step):
+    """Return the step, or one just inside the limit of a conditional scheme."""
+    fastest = max(mode.frequency for mode in modes(model, Scheme(alpha, delta, gg, 1.0)))
+    return min(step, 0.97 * spectral.critical_omega(alpha, delta, gg) / fastest)
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+@pytest.mark.parametrize(("ratio", "step", "gg"), [(1e-9, 1e3, 0.9), (3.0, 7e-4, 0.97), (1e15, 1e-5, 1.0)])
+def test_digits_over_stiffness_step_and_scheme(start, alpha, delta, ratio, step, gg):
+    block = Block.rectangle(1.7, 1.3, Material(2350.0, 4.3e9, 0.31))
+    model = TwoBlockModel(block, Contact(ratio * 4.3e9, 0.4 * ratio * 4.3e9), 3.7e6)
+    step = bounded_step(model, alpha, delta, gg, step)
+    assert_digits(model, Scheme(alpha, delta, gg, step, start))
+
+
+EXTREMES = {
+    "stiff contact, slow mode resolved": ([2, 31], Material(2700.0, 1e9, 0.49), 1.8e19, 7.16e-5),
+    "nearly incompressible": ([2, 2.5], Material(2700.0, 1e9, 0.4999999, "plane strain"), 3e9, 1e-3),
+    "nearly incompressible, long step": ([2, 2.5], Material(2700.0, 1e9, 0.4999999, "plane strain"), 3e9, 3.0),
+    "auxetic": ([2, 1], Material(2700.0, 1e9, -0.9), 2e8, 1e-3),
+    "tall": ([1, 1000], Material(2700.0, 1e9, 0.25), 1e10, 1e-2),
+    "flat": ([1000, 1], Material(2700.0, 1e9, 0.5), 1e10, 1e-4),
+    "tiny": ([1e-6, 1.2e-6], Material(2700.0, 1e9, 0.2), 1e10, 1e-9),
+    "huge": ([1e6, 1.2e6], Material(2700.0, 1e9, 0.2), 1e10, 1e2),
+    "light and hard": ([2, 1], Material(1e-6, 1e15, 0.2), 1e13, 1e-9),
+    "heavy and soft": ([2, 1], Material(1e8, 1.0, 0.2), 10.0, 1e3),
+}
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES[:2])
+@pytest.mark.parametrize("name", EXTREMES)
+def test_digits_at_extremes(start, alpha, delta, name):
+    (width, height), material, p, step = EXTREMES[name]
+    model = TwoBlockModel(Block.rectangle(width, height, material), Contact(p), 1e300)
+    assert_digits(model, Scheme(alpha, delta, 1.0, step, start))
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("p", "step"), [(2e9, 1e-3), (4e18, 1e-2)])
+def test_digits_of_a_general_polygon_far_away(start, p, step):
+    pentagon = np.array([[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]])
+    corners = pentagon + np.array([4096.0, -512.0])
+    block = Block(corners, Material(2100.0, 3e9, 0.28, "plane strain"))
+    model = TwoBlockModel(block, Contact(p, 0.6 * p), 5.5e6, base=0, top=3)
+    assert_digits(model, Scheme(0.3025, 0.6, 0.98, step, start))

@@ -1,0 +1,110 @@
+"""Matrices of the two-block model: printed forms, high precision, contact-gap coordinates."""
+
+import numpy as np
+import pytest
+from mpmath import mp
+from oracles import mp_reference
+
+from dda import Block, Contact, Material, TwoBlockModel, contact_stiffness, spring_vectors
+
+PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
+MATERIALS = [Material(2100.0, 3e9, mu, h) for mu in (-0.6, 0.0, 0.37) for h in ("plane stress", "plane strain")]
+
+
+def rotated(width, height, angle, origin):
+    """Return the corners of a rectangle turned about its first corner."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[0, 0], [width, 0], [width, height], [0, height]]) @ [[c, s], [-s, c]] + origin
+
+
+@pytest.mark.parametrize(("a", "rho"), [(1.7, 2300.0), (0.3, 11.0)])
+def test_inertia_of_a_square_is_eq_17(a, rho):
+    M = Block.rectangle(a, a, Material(rho, 1.0, 0.1)).mass()
+    expected = rho * np.diag([a**2, a**2, a**4 / 6, a**4 / 12, a**4 / 12, a**4 / 24])
+    # The printed zeros cancel to the rounding of s1 and s3.
+    np.testing.assert_allclose(M, expected, rtol=1e-14, atol=1e-15 * rho * a**4)
+
+
+@pytest.mark.parametrize(("a", "p"), [(1.7, 2e9), (0.3, 5e3)])
+def test_springs_of_a_square_are_eq_24_to_27(a, p):
+    block = Block.rectangle(a, a, MATERIALS[0])
+    normal, shear = spring_vectors(block, 0)
+    h, q = a / 2, a / 4
+    np.testing.assert_allclose(normal, [[0, 1, -h, 0, -h, -q], [0, 1, h, 0, -h, q]], rtol=1e-15)
+    np.testing.assert_allclose(shear, [[1, 0, h, -h, 0, -q], [1, 0, h, h, 0, -q]], rtol=1e-15)
+    K = contact_stiffness(block, Contact(p), 0)
+    expected = np.diag([2, 2, a**2, a**2 / 2, a**2 / 2, a**2 / 4])
+    for i, j, value in ((0, 2, a), (0, 5, -h), (1, 4, -a)):
+        expected[i, j] = expected[j, i] = value
+    # (3,6) of the sum cancels exactly: p a^2/4 from the normal springs, -p a^2/4 from the shear ones
+    np.testing.assert_allclose(K, p * expected, rtol=1e-14, atol=1e-15 * p)
+
+
+def test_load_of_the_top_edge_is_eq_29():
+    model = TwoBlockModel(Block.rectangle(3.0, 0.8, MATERIALS[0]), Contact(1.0), 7.0)
+    np.testing.assert_allclose(
+        model.load, [0, -21.0, 0, 0, -3.0 * 0.8 / 2 * 7.0, 0], rtol=1e-14, atol=1e-14
+    )  # rounding of x0
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+def test_matrices_agree_with_high_precision(material):
+    model = TwoBlockModel(Block(PENTAGON, material), Contact(2e9, 0.7e9), 5e6, base=1, top=3)
+    with mp.workdps(mp_reference.DIGITS):
+        M, K, F, _ = mp_reference.matrices(model)
+    for got, exact in ((model.mass, M), (model.stiffness, K), (model.load[:, None], F)):
+        exact = np.array(exact.tolist(), dtype=float)
+        np.testing.assert_allclose(got, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("vertices", [PENTAGON, rotated(3.0, 0.5, 0.7, [10.0, -4.0])])
+def test_gap_coordinates_are_the_same_model(material, vertices):
+    model = TwoBlockModel(Block(vertices, material), Contact(2e9, 0.7e9), 5e6, base=0, top=2)
+    form = model.gap_form
+    K = form.Q.T @ model.stiffness @ form.Q
+    scale = np.sqrt(np.outer(form.K, form.K))
+    # The transformed textbook matrix is the side that rounds: it subtracts spring terms.
+    np.testing.assert_allclose(K / scale, np.eye(6), rtol=0, atol=2e-14)
+    M, m = form.Q.T @ model.mass @ form.Q, np.sqrt(np.diag(form.M))
+    np.testing.assert_allclose(M / np.outer(m, m), form.M / np.outer(m, m), rtol=0, atol=2e-14)
+    F = form.Q.T @ model.load
+    np.testing.assert_allclose(F, model.pressure * form.F, rtol=0, atol=2e-14 * np.abs(F).max())
+
+
+@pytest.mark.parametrize(
+    ("material", "vertices", "kept"),
+    [
+        # loaded in w and e2 alone: a bulge on one side couples the rest through the inertia
+        (Material(1.0, 1.0, 0.0), [[0, 0], [2, 0], [2.5, 1], [2, 2], [0, 2]], ("U", "w", "s", "ex", "e2", "gxy")),
+        (Material(1.0, 1.0, 0.0), rotated(2.0, 0.7, 0.0, [0.1, 0.3]), ("w", "e2")),
+        (Material(1.0, 1.0, 0.2), rotated(2.0, 0.7, 0.0, [0.1, 1e3 + 0.3]), ("w", "ex", "e2")),
+        (Material(1.0, 1.0, 0.2), [[0, 0], [3, 0], [2.1, 1.7], [0.9, 1.7]], ("w", "ex", "e2")),
+        (Material(1.0, 1.0, 0.0), PENTAGON, ("U", "w", "s", "ex", "e2", "gxy")),
+        (Material(1.0, 1.0, 0.0), rotated(2.0, 0.7, 0.4, [0, 0]), ("U", "w", "s", "e2", "gxy")),
+    ],
+)
+def test_unknowns_out_of_reach_are_dropped(material, vertices, kept):
+    top = 3 if vertices[2][0] == 2.5 else 2
+    model = TwoBlockModel(Block(vertices, material), Contact(1.0), 1.0, top=top)
+    assert model.gap_form.reduced().unknowns == kept
+
+
+@pytest.mark.parametrize("q", [5e6, -3.0])
+@pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0])
+def test_static_displacement_is_the_closed_form(q, ratio):
+    a, E, mu = 1.6, 2e9, 0.3
+    p = ratio * E
+    static = TwoBlockModel(Block.rectangle(a, a, Material(1.0, E, mu)), Contact(p), q).static()
+    expected = -(a * q / (2 * p)) * (2 * E**2 + 3 * E * p + (1 - mu**2) * p**2) / (E * (2 * E + p))
+    assert static["displacement"] == pytest.approx(expected, rel=1e-14)
+    assert static["contact_pressure"] == pytest.approx(q, rel=1e-15)
+
+
+def test_nearly_incompressible_moduli_keep_their_digits():
+    mu = 0.4999999
+    material = Material(1.0, 3.0, mu, "plane strain")
+    with mp.workdps(50):
+        m = mp.mpf(mu)
+        exact = 3 * (1 - m) / ((1 + m) * (1 - 2 * m))
+        assert abs(material.constrained_modulus / exact - 1) < 1e-15  # six roundings at most

@@ -1,0 +1,301 @@
+"""The engine: every case once, kept, resumed, judged; failures by name."""
+
+import json
+import multiprocessing
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import _ordered, evaluate
+from validation.engine.measure import attempt, check, execute
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
+from validation.errors import InputError
+from validation.gates.gate import Gate, Status, judge, rounded
+from validation.runs.files import read_csv, write_csv
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.contract import Solver
+from validation.solvers.registry import solver_names
+from validation.studies.catalogue import scene_study
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def study(scene: Scene, *, timed: bool = False) -> Study:
+    gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
+    return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,), timed=timed)
+
+
+def test_a_study_runs_once_and_resumes(scene: Scene, tmp_path: Path) -> None:
+    results, seen = Results(tmp_path / "r"), []
+    for _ in range(2):
+        verdicts = run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
+    assert [v.status for v in verdicts] == [Status.PASS]
+    assert seen == ["small dda", "small bar"]
+    assert len((tmp_path / "r" / "rows.jsonl").read_text().split()) > 0
+    assert len(results.rows()) == 2
+
+
+def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene: Scene, tmp_path: Path) -> None:
+    columns = ["displacement", "contact_pressure", "rotation"]
+    results = Results(tmp_path)
+    run_study(study(scene.with_values({"run.columns": columns})), results)
+    rows = {row.solver: row for row in results.rows().values()}
+    kept = {solver: set(results.history(row.key).columns) for solver, row in rows.items()}
+    assert kept == {"dda": set(columns), "bar": {"displacement", "contact_pressure"}}
+    assert rows["bar"].outcome is Outcome.COMPLETED and "not reported: rotation" in rows["bar"].notes
+
+
+def test_a_study_of_timings_runs_afresh(scene: Scene, tmp_path: Path) -> None:
+    results, seen = Results(tmp_path), []
+    for _ in range(2):
+        run_study(study(scene, timed=True), results, progress=lambda done, total, label: seen.append(label))
+    assert len(seen) == 4
+
+
+def test_an_unfinished_line_costs_only_its_row(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    rows = tmp_path / "rows.jsonl"
+    text = rows.read_text()
+    rows.write_text(text[: len(text) - 40])
+    assert len(results.rows()) == 1
+    seen: list[str] = []
+    run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
+    assert len(seen) == 1
+    assert len(results.rows()) == 2
+
+
+def test_a_lost_history_is_computed_again(scene: Scene, tmp_path: Path) -> None:
+    results, seen = Results(tmp_path), []
+    run_study(study(scene), results)
+    next((tmp_path / "histories").iterdir()).unlink()
+    run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
+    assert len(seen) == 1
+
+
+def test_verdict_files_are_identical_from_run_to_run(scene: Scene, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        run_study(study(scene), Results(tmp_path / name))
+    first, second = ((tmp_path / name / "verdicts.json").read_text() for name in ("a", "b"))
+    assert first == second
+    assert set(json.loads(first)[0]) >= {"id", "scene", "pair", "metric", "value", "band", "verdict", "reason"}
+
+
+def test_processes_threads_and_one_process_give_the_same_rows(scene: Scene, tmp_path: Path) -> None:
+    kept = []
+    with ThreadPoolExecutor(2) as pool:
+        for name, options in (("serial", {}), ("processes", {"jobs": 2}), ("threads", {"executor": pool})):
+            results = Results(tmp_path / name)
+            run_study(study(scene), results, **options)
+            kept.append({key: (row.metrics, row.work) for key, row in results.rows().items()})
+    assert kept[0] == kept[1] == kept[2]
+
+
+def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene: Scene) -> None:
+    other_mesh = scene.with_values({"fem.elements": 8})
+    other_step = scene.with_values({"time.step": 0.001})
+    assert Case(scene, "dda").key() == Case(other_mesh, "dda").key()
+    assert Case(scene, "fem").key() != Case(other_mesh, "fem").key()
+    assert Case(scene, "dda").key() != Case(other_step, "dda").key()
+    assert Case(scene, "dda").key() != Case(scene, "dda:full").key() == Case(scene, "dda", True).key()
+    assert Case(scene, "dda").key() != Case(scene, "dda-textbook").key()
+
+
+class Broken(Solver):
+    """A solver that is broken in one way."""
+
+    name = "broken"
+
+    def __init__(self, way: str) -> None:
+        self.way = way
+
+    def applicable(self, scene: Scene) -> str | None:
+        return "it is broken" if self.way == "inapplicable" else None
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        n = scene.time.steps
+        if self.way == "raise":
+            raise ZeroDivisionError("division by zero")
+        if self.way == "refuse":
+            raise InputError("small: time.step: no")
+        values = np.zeros(n - 1 if self.way == "short" else n)
+        values[3:] = {"nan": np.nan, "inf": np.inf}.get(self.way, 1.0)
+        columns: Mapping[str, np.ndarray] = dict.fromkeys(scene.run.columns, values)
+        history = History(scene.time.step * np.arange(1, n + 1), columns)
+        return Run(Outcome.COMPLETED, history, estimate=float("nan"))
+
+
+@pytest.mark.parametrize(
+    ("way", "outcome", "words"),
+    [
+        ("raise", Outcome.RAISED, "ZeroDivisionError: division by zero"),
+        ("refuse", Outcome.REFUSED, "small: time.step: no"),
+        ("short", Outcome.WRONG_SHAPE, "has shape (49,), not (50,)"),
+        ("nan", Outcome.NOT_A_NUMBER, "displacement at step 4"),
+        ("inf", Outcome.OVERFLOW, "displacement at step 4"),
+        ("inapplicable", Outcome.NOT_APPLICABLE, "it is broken"),
+    ],
+)
+def test_a_failure_is_a_named_outcome(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str, outcome: Outcome, words: str
+) -> None:
+    run = check(attempt(Broken(way), scene, False), scene)
+    assert run.outcome is outcome
+    assert words in run.notes[-1]
+    assert outcome.sentence.endswith(".")
+    monkeypatch.setattr(Case, "make_solver", lambda self: Broken(way))
+    broken = Study("test", "t", "p", [scene], ("dda",), gates=study(scene).gates)
+    verdict = run_study(broken, Results(tmp_path))[0]
+    assert verdict.status is (Status.NOT_RUN if way == "inapplicable" else Status.FAIL)
+    assert words in verdict.why
+
+
+class Beside(Broken):
+    """A sound history; the static solution and the choice of scenes are broken."""
+
+    def static(self, scene: Scene) -> Mapping[str, float]:
+        raise RuntimeError("exactly singular")
+
+    def applicable(self, scene: Scene) -> str | None:
+        raise IndexError(self.way)
+
+
+def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert attempt(Beside("x"), scene, False).notes == ("IndexError: x",)
+    monkeypatch.setattr(Case, "make_solver", lambda self: Beside("x"))
+    monkeypatch.setattr(Beside, "applicable", Broken.applicable)
+    row, history = execute(Case(scene, "dda"), "key", "test")
+    assert row.outcome is Outcome.COMPLETED and history is not None
+    assert row.estimate is None and row.line(), "a row is JSON, which knows no NaN"
+    assert row.metrics["displacement.static"] == "not reported"
+    assert row.notes[-1] == "static not reported: RuntimeError: exactly singular"
+
+
+class Deadly(Broken):
+    """A solver that takes its process down for one of the scenes, until it is mended."""
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        if scene.time.step == 0.2 and not Path(self.way).exists():
+            os._exit(9)
+        return super().solve(scene, full, fields)
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="workers inherit the patched solver by fork")
+def test_a_case_that_kills_its_worker_is_a_row_and_is_tried_again(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mended = tmp_path / "mended"
+    monkeypatch.setattr(Case, "make_solver", lambda self: Deadly(str(mended)))
+    swept = scene.model_copy(update={"sweep": {"time.step": [0.1, 0.2, 0.3]}})
+    cases = Study("test", "t", "p", [swept], ("dda",)).cases()
+    outcomes = []
+    for _ in range(2):
+        rows = finish(cases, study(scene), Results(tmp_path / "r"), jobs=2).rows
+        outcomes.append([row.outcome for row in rows.values()])
+        mended.touch()
+    died = [Outcome.COMPLETED, Outcome.RAISED, Outcome.COMPLETED]
+    assert outcomes == [died, [Outcome.COMPLETED] * 3]
+
+
+def test_a_solver_compared_with_itself_fails(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    done = finish(study(scene).cases(), study(scene), results)
+    gate = Gate(scene.name, ("dda", "dda"), "displacement.l2", 0, 1, "r")
+    assert evaluate(gate, done).status is Status.FAIL
+
+
+def test_a_gate_on_what_was_not_run_is_not_run(scene: Scene, tmp_path: Path) -> None:
+    verdict = evaluate(Gate(scene.name, ("fem",), "displacement.static", 0, 1, "r"), Finished({}, Results(tmp_path)))
+    assert (verdict.status, verdict.why) == (Status.NOT_RUN, "fem was not run")
+
+
+def test_judging_has_two_sides_and_nothing_measured_fails() -> None:
+    gate = Gate("s", ("dda",), "m", 1.0, 2.0, "r")
+    assert [judge(gate, x).status for x in (1.0, 2.0)] == [Status.PASS] * 2
+    bad = (0.999, 2.001, float("nan"), float("inf"), None, "undefined", "not reported")
+    assert [judge(gate, x).status for x in bad] == [Status.FAIL] * 7
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"low": 2.0, "high": 1.0}, "low <= high"),
+        ({"low": 1.0, "high": 2.0, "reference_uncertainty": 1.5}, "tighter than the reference's uncertainty"),
+        ({"low": 1.0, "high": 2.0, "reason": ""}, "reason must be given"),
+        ({"low": float("nan"), "high": 2.0}, "low <= high"),
+    ],
+)
+def test_unsound_gates_are_refused(arguments: dict[str, float], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Gate("s", ("dda",), "m", **{"reason": "r"} | arguments)
+
+
+def test_rounding_for_verdicts() -> None:
+    assert rounded(0.0363249) == 0.03632
+    assert rounded(-3.2e-14) == -1e-13
+    assert rounded(0.0) == 0.0
+
+
+def test_csv_keeps_every_bit(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    history = History(
+        np.arange(1, 5) * 0.1, {"displacement": rng.normal(size=4), "contact_pressure": rng.normal(size=4) * 1e300}
+    )
+    write_csv(history, tmp_path / "h.csv")
+    back = read_csv(tmp_path / "h.csv")
+    assert np.array_equal(back.time, history.time)
+    assert all(np.array_equal(back.columns[name], values) for name, values in history.columns.items())
+    assert [path.name for path in tmp_path.iterdir()] == ["h.csv"]
+
+
+def test_columns_that_are_asked_are_kept_and_no_others(scene: Scene) -> None:
+    asked = scene.with_values({"run.columns": ["displacement"]})
+    row, history = execute(Case(asked, "dda"), "k", "s")
+    assert history is not None and list(history.columns) == ["displacement"]
+    assert row.metrics["pressure.final"] == "not reported"
+
+
+def test_own_gates_of_a_scene_file(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    gate = (
+        '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
+        'band = [0.02, 0.06]\nreason = "model form"\n'
+    )
+    path.write_text(SCENE + gate)
+    assert [g.id for g in scene_study(str(path)).gates()] == ["own:dda-bar:displacement.l2"]
+    for old, new, words in (
+        ("displacement.l2", "displacement.l3", "gate.0.metric: must be among"),
+        ('pair = ["dda", "bar"]', 'pair = ["dda", "fem"]', "gate.0.pair: must be solvers"),
+        ('pair = ["dda", "bar"]', 'pair = ["dda"]', "must name a solver and a reference"),
+    ):
+        path.write_text(SCENE + gate.replace(old, new))
+        with pytest.raises(InputError, match=words):
+            scene_study(str(path))
+
+
+def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references() -> None:
+    names = {"dda", "fem", "bar", "continuum"}
+    assert list(_ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]
+    assert _ordered(solver_names())[:2] == ["dda", "dda-textbook"]
+
+
+def test_a_row_survives_its_line() -> None:
+    row = Row("k", "s", "x", "dda", Outcome.COMPLETED, {"a": 1.0, "b": "undefined"}, notes=("n",), estimate=1e-9)
+    assert Row.parse(row.line()) == row
+    assert Row.parse(row.line()[:-5]) is None
+    assert Row.parse("[]") is None

@@ -1,0 +1,133 @@
+"""Real processes: killed in the middle, writing where nothing can be written, two at once in one directory."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE, cli
+
+from validation.errors import InputError
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome
+
+SWEEP = '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
+
+
+@pytest.fixture
+def long_scene(tmp_path: Path) -> Path:
+    path = tmp_path / "long.toml"
+    path.write_text(SCENE.replace("steps = 50", "steps = 8000") + SWEEP)
+    return path
+
+
+def start(scene: Path, results: Path) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(results), "--jobs", "2"]
+    return subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+
+
+def rows_of(results: Path) -> dict[str, Row]:
+    return Results(results).rows()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_a_run_that_is_killed_goes_on_where_it_stopped(number, long_scene, tmp_path):
+    results = tmp_path / "r"
+    with start(long_scene, results) as process:
+        deadline = time.monotonic() + 60
+        while process.poll() is None and time.monotonic() < deadline and len(rows_of(results)) < 2:
+            time.sleep(0.02)
+        os.killpg(process.pid, number)
+        _, said = process.communicate(timeout=60)
+    kept = rows_of(results)
+    assert "Traceback" not in said
+    assert 2 <= len(kept) < 8
+    assert all(Results(results).has(row) for row in kept.values())
+    assert not list(results.glob("histories/.*")) or number == signal.SIGKILL
+    before = (results / "rows.jsonl").read_bytes()
+    done = cli("run", long_scene, "--results", results)
+    assert done.returncode == 0, done.stderr
+    after = (results / "rows.jsonl").read_bytes()
+    assert after.startswith(before), "finished rows are kept as they were"
+    assert len(rows_of(results)) == 8
+    fresh = [line for line in after[len(before) :].splitlines() if line.strip()]
+    assert len(fresh) == 8 - len(kept), "only what was missing runs"
+
+
+def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
+    other = tmp_path / "other.toml"
+    other.write_text(long_scene.read_text().replace("1.0, 0.99", "0.5, 0.49"))
+    results = tmp_path / "r"
+    with start(long_scene, results) as first, start(other, results) as second:
+        for process in (first, second):
+            _, said = process.communicate(timeout=120)
+            assert process.returncode == 0, said
+    kept = rows_of(results)
+    lines = [line for line in (results / "rows.jsonl").read_text().splitlines() if line]
+    assert all(Row.parse(line) is not None for line in lines)
+    assert len(kept) == 12 and all(Results(results).history(key) is not None for key in kept)
+    assert Results(results).studies() == ["long", "other"]
+
+
+def test_verdicts_of_two_studies_written_at_once_are_both_kept(tmp_path):
+    code = (
+        "import sys; from validation.runs.results import Results\n"
+        "for i in range(40): Results(sys.argv[1]).write_verdicts(sys.argv[2], [{'study': sys.argv[2], 'id': str(i)}])"
+    )
+    many = [subprocess.Popen([sys.executable, "-c", code, str(tmp_path), name]) for name in ("a", "b", "c")]
+    assert [process.wait(60) for process in many] == [0, 0, 0]
+    assert {verdict["study"] for verdict in json.loads((tmp_path / "verdicts.json").read_text())} == {"a", "b", "c"}
+
+
+def finished(name: str) -> tuple[Row, History]:
+    return Row(name, "s", "x", "dda", Outcome.COMPLETED, {}), History(np.ones(3), {"displacement": np.ones(3)})
+
+
+def test_a_write_that_fails_is_reported_and_costs_no_finished_row(tmp_path, monkeypatch):
+    results = Results(tmp_path)
+    results.append(*finished("first"))
+    monkeypatch.setattr(os, "write", lambda handle, data: 5)  # a disk that is full takes the beginning
+    with pytest.raises(InputError, match=r"rows.jsonl: cannot be written: .* finished rows are kept"):
+        results.append(*finished("second"))
+    monkeypatch.undo()
+    results.append(*finished("third"))
+    assert set(results.rows()) == {"first", "third"}
+
+
+def test_a_directory_that_cannot_be_written_is_one_line(scene_file, tmp_path):
+    (tmp_path / "file").write_text("not a directory")
+    done = cli("run", scene_file, "--results", tmp_path / "file" / "r")
+    assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1
+    (tmp_path / "r" / "rows.jsonl").mkdir(parents=True)
+    done = cli("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert "cannot be read" in done.stderr
+
+
+def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp_path):
+    """A limit on the size of files stands for a full disk: the second history does not fit."""
+    scene_file.write_text(SCENE + '[run]\nsolvers = ["dda"]\n[sweep]\n"time.steps" = [10, 4000]\n')
+    command = f"ulimit -f 16; exec {sys.executable} -m validation run {scene_file} --results {tmp_path / 'r'} --jobs 1"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert "cannot be written: File too large" in done.stderr
+    assert len(rows_of(tmp_path / "r")) == 1
+    assert len(list((tmp_path / "r" / "histories").iterdir())) == 1
+    assert cli("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    assert len(rows_of(tmp_path / "r")) == 2
+
+
+def test_a_damaged_history_is_one_line(scene_file, tmp_path):
+    assert cli("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    next((tmp_path / "r" / "histories").glob("*.npz")).write_bytes(b"PK\x03\x04 broken")
+    done = cli("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 2 and "delete it and run again" in done.stderr

@@ -1,0 +1,180 @@
+"""Outcomes by name, spectral radii, limits by bisection, and growth beyond them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+from validation import load_scene
+from validation.engine import stability
+from validation.engine.case import Case
+from validation.engine.measure import execute
+from validation.errors import InputError
+from validation.metrics.growth import Stability, drift, growth
+from validation.metrics.measurable import Measurable
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Solver
+from validation.solvers.registry import get_solver
+
+EXPLICIT, LINEAR = {"time.alpha": 0.0, "time.delta": 0.5}, {"time.alpha": 1 / 6, "time.delta": 0.5}
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Scene:
+    (tmp_path / "small.toml").write_text(SCENE)
+    return load_scene(tmp_path / "small.toml").with_values({"time.allow_unstable": True})
+
+
+def row(scene: Scene, solver: str = "dda", measures: tuple[str, ...] = ("stability",)):
+    return execute(Case(scene, solver, measures=measures), "k", "s")[0]
+
+
+NAMES = [
+    ({}, Outcome.COMPLETED, Stability.STABLE),
+    ({"time.alpha": 0.25, "time.delta": 0.5}, Outcome.COMPLETED, Stability.MARGINAL),
+    (EXPLICIT | {"time.step": 0.01}, Outcome.UNSTABLE, Stability.UNSTABLE),
+    (EXPLICIT | {"time.step": 1e3}, Outcome.OVERFLOW, Stability.OVERFLOW),
+]
+
+
+@pytest.mark.parametrize(("values", "outcome", "kind"), NAMES)
+@pytest.mark.parametrize("solver", ["dda", "fem", "dda-60"])
+def test_every_outcome_has_its_name(scene, solver, values, outcome, kind):
+    found = row(scene.with_values(values | {"fem.elements": 2}), solver)
+    assert (found.outcome, found.metrics["stability.kind"]) == (outcome, kind)
+    assert outcome.sentence.endswith(".") and kind.sentence.endswith(".")
+
+
+def test_growth_seen_is_the_spectral_radius_predicted(scene):
+    case = scene.with_values(LINEAR | {"time.step": 0.006, "time.gg": 0.9, "time.steps": 120})
+    found = row(case)
+    assert found.metrics["stability.growth"] == pytest.approx(found.metrics["stability.radius"], rel=1e-9)
+    assert found.metrics["stability.radius_seen"] == pytest.approx(found.metrics["stability.radius"], rel=1e-12)
+    assert found.metrics["stability.radius"] > 1.1
+    assert "predicted growth" in found.notes[-1]
+
+
+class Grower(Solver):
+    """A solver whose history grows by 1.5 a step and whose modes say otherwise."""
+
+    name = "grower"
+
+    def solve(self, scene, full=False, fields=None):
+        values = 1.5 ** np.arange(scene.time.steps) * (self.sound if scene.time.steps > 10 else 0.0)
+        return Run(Outcome.COMPLETED, History(values, {"displacement": values}))
+
+    def diagnostics(self, scene):
+        return {"predicted_radius": 1.2, "spectral_radius": 1.2, "largest_omega": 1.0}
+
+    def modes(self, scene):
+        return ()
+
+
+@pytest.mark.parametrize(("sound", "steps"), [(1.0, 50), (0.0, 50), (1.0, 400)])
+def test_growth_at_another_rate_is_named(scene, sound, steps):
+    solver = Grower()
+    solver.sound = sound
+    case = scene.with_values({"time.steps": steps, "run.columns": ["displacement"]})
+    run = stability.named(solver.solve(case), solver.prepare(case), case)
+    assert run.outcome is (Outcome.MISPREDICTED if sound else Outcome.COMPLETED)
+    assert run.outcome.sentence.endswith(".")
+
+
+def test_growth_too_slow_to_show_is_said(scene):
+    case = scene.with_values(EXPLICIT)
+    fastest = get_solver("dda").diagnostics(case)["largest_omega"] / case.time.step
+    found = row(case.with_values({"time.step": 2.001 / fastest, "time.steps": 20}))
+    assert found.outcome is Outcome.COMPLETED and found.metrics["stability.kind"] == Stability.UNSTABLE
+    assert "too few steps to measure growth" in found.notes[-1]
+
+
+def test_a_pair_of_real_and_of_complex_roots_is_found():
+    n = np.arange(60)
+    assert growth((-1.7) ** n + 0.3 * 1.1**n) == pytest.approx(1.7, rel=1e-9)
+    assert growth(1.9**n * np.cos(1.1 * n)) == pytest.approx(1.9, rel=1e-9)
+    assert growth(0.9**n) is None
+
+
+LIMITS = [
+    (EXPLICIT, 1.0, 2.0),
+    (LINEAR, 1.0, 2 * np.sqrt(3)),
+    ({"time.alpha": 0.1, "time.delta": 0.6}, 1.0, 1 / np.sqrt(0.2)),
+    # with gg: Omega^2 = 2 (1 + gg) / [1/2 + gg (2 delta - 1/2) - 2 alpha (1 + gg)]
+    ({"time.alpha": 0.1, "time.delta": 0.6}, 0.8, np.sqrt(3.6 / (0.5 + 0.8 * 0.7 - 0.36))),
+]
+
+
+@pytest.mark.parametrize(("values", "gg", "limit"), LIMITS)
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_limits_by_bisection_are_the_closed_forms(scene, solver, values, gg, limit):
+    case = scene.with_values(values | {"time.gg": gg, "fem.elements": 1})
+    assert stability.limit(get_solver(solver), case) == pytest.approx(limit, rel=1e-6)
+
+
+def test_without_a_limit_bisection_says_so(scene):
+    assert stability.limit(get_solver("dda"), scene) == "undefined"
+    assert stability.limit(get_solver("bar"), scene) == "not reported"
+    assert row(scene, measures=("limit",)).metrics == {"stability.limit": "undefined"}
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize(("values", "omega"), [(EXPLICIT, 2.0), (LINEAR, 2 * np.sqrt(3))])
+def test_histories_grow_beyond_the_limit_and_not_below(scene, solver, values, omega):
+    """A millionth beyond, a double root at -1 has split to -(1 + 3e-3): 2000 steps show it."""
+    case = scene.with_values(values | {"fem.elements": 2, "time.steps": 12000 if solver == "dda" else 8000})
+    fastest = get_solver(solver).diagnostics(case)["largest_omega"] / case.time.step
+    peaks = []
+    for share in (1 - 1e-6, 1 + 1e-6):
+        tried = case.with_values({"time.step": share * omega / fastest})
+        history = get_solver(solver).solve(tried).history
+        peaks.append(np.max(np.abs(history.displacement)))
+    assert peaks[0] < 1 and peaks[1] > 1e3
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene, solver):
+    case = scene.with_values(EXPLICIT | {"time.allow_unstable": False, "time.step": 0.01})
+    with pytest.raises(InputError, match=r"must not exceed .* s, the stability limit of alpha = 0"):
+        get_solver(solver).solve(case)
+
+
+def test_fem_says_where_it_promises_fewer_digits(scene):
+    def notes(**values):
+        return " ".join(get_solver("fem").solve(scene.with_values(values | {"time.steps": 1})).notes)
+
+    assert "nine digits" not in notes(**{"contact.stiffness": 1e6})
+    assert "here it is 1e-05" in notes(**{"contact.stiffness": 1e4})
+    assert "here it is 1e+13" in notes(**{"contact.stiffness": 1e22})
+    assert "nearly incompressible" in notes(**{"block.poisson": 0.499999, "block.hypothesis": "plane strain"})
+
+
+def test_fem_says_where_elements_are_too_coarse_for_the_wave(scene):
+    """C = 608.58 m/s, dt = 1e-4 s, four elements on 2 m: 0.122 elements a step."""
+    found = get_solver("fem").solve(scene.with_values({"time.step": 1e-4})).notes
+    assert any("0.122 elements per c dt" in note for note in found)
+    assert not any("per c dt" in note for note in get_solver("fem").solve(scene).notes)
+
+
+def drifted(scene):
+    prepared = get_solver("dda").prepare(scene)
+    return drift(Measurable(prepared.run().history, scene.time.step, prepared.static(), prepared.modes()))
+
+
+def test_energy_drift_is_seen(scene):
+    undamped = scene.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.steps": 9000})
+    assert drifted(undamped) < 9000 * 2.3e-16
+    damped = undamped.with_values({"time.alpha": 0.2501, "time.delta": 0.5 + 1e-6})
+    assert drifted(damped) > 1e-3
+    assert drifted(scene) == "undefined"
+
+
+def test_an_overflow_of_the_mesh_is_infinite_from_there_on(scene):
+    case = scene.with_values(EXPLICIT | {"time.step": 10.0, "load.pressure": -3.0})
+    values = get_solver("fem").solve(case).displacement
+    first = int(np.argmax(np.isinf(values)))
+    assert first > 3 and np.all(np.isfinite(values[:first])) and np.all(values[first:] == np.inf)
+    still = get_solver("fem").solve(case.with_values({"load.pressure": 0.0})).displacement
+    assert np.all(still == 0)

@@ -1,0 +1,91 @@
+"""Seeded faults: a named seam of solver code is replaced for the time of a run; production code has no switch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A seeded fault: which solvers it reaches, and the attribute that it replaces."""
+
+    name: str
+    solvers: tuple[str, ...]
+    module: object
+    attribute: str
+    replacement: Callable[[Callable[..., object]], Callable[..., object]]
+
+
+def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[..., Callable[..., object]]:
+    """Hand a function a changed scheme."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(*arguments: object) -> object:
+            scheme = arguments[position]
+            values = {name: change(getattr(scheme, name)) for name, change in changes.items()}
+            changed = replace(scheme, **values)
+            return sound(*arguments[:position], changed, *arguments[position + 1 :])
+
+        return faulty
+
+    return wrap
+
+
+def times(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply what a function returns."""
+    return lambda sound: lambda *a, **k: factor * sound(*a, **k)
+
+
+def first_times(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the first argument of a function."""
+    return lambda sound: lambda first, *a, **k: sound(first * factor, *a, **k)
+
+
+def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
+    """Report every step one step late, along the axis of steps."""
+
+    def faulty(*a: object, **k: object) -> np.ndarray:
+        found = sound(*a, **k)
+        axis = int(np.argmax(found.shape))
+        shifted = np.roll(found, 1, axis=axis)
+        np.moveaxis(shifted, axis, 0)[0] = 0.0
+        return shifted
+
+    return faulty
+
+
+def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
+    """Change the stiffness of the contact springs of the DDA model."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(material: object, contact: object, area: float, a: float) -> object:
+            changed = replace(contact, stiffness=contact.stiffness * factor)
+            return sound(material, changed, area, a)
+
+        return faulty
+
+    return wrap
+
+
+def no_discount(position: int) -> Callable[..., Callable[..., object]]:
+    return with_scheme(position, gg=lambda gg: 1.0)
+
+
+def thousandth(delta: float) -> float:
+    return 1.001 * delta
+
+
+def no_damping(delta: float) -> float:
+    return 0.501 if delta == 0.5 else 0.5
+
+
+def stiff_problem(factor: float) -> Callable[..., Callable[..., object]]:
+    """Change the springs of a finite-element problem."""
+    return lambda sound: lambda problem: sound(replace(problem, stiffness=problem.stiffness * factor))
+
+
+def swapped(start: str) -> str:
+    return "zero" if start == "consistent" else "consistent"

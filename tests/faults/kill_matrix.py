@@ -1,0 +1,101 @@
+"""Gates x seeded faults: every gate is bitten by a fault, every fault is seen by a gate.
+
+Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from faults.fault import Fault
+
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.engine.study import Study
+from validation.gates.gate import Gate, Status
+from validation.runs.history import History
+from validation.runs.results import Results
+
+
+class Overlay(Results):
+    """Histories of a faulty run over those of the sound one."""
+
+    def __init__(self, directory: Path, sound: Results) -> None:
+        super().__init__(directory)
+        self.sound = sound
+
+    def history(self, key: str) -> History | None:
+        return super().history(key) or self.sound.history(key)
+
+
+def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
+    return {gate.id for gate in gates if evaluate(gate, finished).status is Status.FAIL}
+
+
+def check_kill_matrix(
+    study: Study,
+    cases: Sequence[Case],
+    gates: Sequence[Gate],
+    faults: Sequence[Fault],
+    directory: Path,
+    finished_cases: Path,
+) -> None:
+    """Run the cases sound and with every fault; no fault may pass unseen, no gate may stay unbitten.
+
+    A gate that one fault has bitten is tried again only with faults that no other gate has seen.
+    """
+    sound = finish(cases, study, Results(finished_cases))
+    assert not failed(sound, gates)
+    kills: dict[str, set[str]] = {}
+    for number, fault in enumerate(faults):
+        bitten = set().union(*kills.values())
+        results = Overlay(directory / str(number), sound.results)
+        kills[fault.name] = next(
+            filter(None, killed(study, cases, groups(gates, bitten), fault, sound, results)), set()
+        )
+    print_matrix(kills, gates)
+    unseen = [name for name, killed in kills.items() if not killed]
+    unbitten = sorted({gate.id for gate in gates} - set().union(*kills.values()))
+    assert not unseen, f"faults that no gate sees: {unseen}"
+    assert not unbitten, f"gates that no fault bites: {unbitten}"
+
+
+def groups(gates: Sequence[Gate], bitten: set[str]) -> list[list[Gate]]:
+    """Group gates in the order of trial: all that are not bitten yet, then the others scene by scene."""
+    others: dict[str, list[Gate]] = {}
+    for gate in gates:
+        if gate.id in bitten:
+            others.setdefault(gate.scene, []).append(gate)
+    return [[gate for gate in gates if gate.id not in bitten], *others.values()]
+
+
+def killed(
+    study: Study,
+    cases: Sequence[Case],
+    tried: Sequence[Sequence[Gate]],
+    fault: Fault,
+    sound: Finished,
+    results: Overlay,
+) -> Iterator[set[str]]:
+    """Yield of each group the gates that fail with a fault; only the solvers that it reaches run again."""
+    for some in tried:
+        needed = {need for gate in some for need in study.needs(gate)}
+        reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
+        with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+            patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+            faulty = finish(reached, study, results)
+        yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
+
+
+def print_matrix(kills: dict[str, set[str]], gates: Sequence[Gate]) -> None:
+    """Print one row a gate, one column a fault."""
+    names = list(kills)
+    for number, name in enumerate(names):
+        print(f"{number + 1:>3}  {name}: {len(kills[name])} gates")
+    for gate in gates:
+        print("".join("x" if gate.id in kills[name] else "." for name in names), gate.id)

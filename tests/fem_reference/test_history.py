@@ -1,0 +1,190 @@
+"""Histories, savings, modes and fields of the finite-element model."""
+
+from dataclasses import replace
+
+import meshio
+import numpy as np
+import pytest
+from oracles.elements import INCLINED, make
+
+from fem_reference import Bar, Scheme, highest_frequency, modes, solve
+from fem_reference.mesh.model import build
+
+CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
+AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
+
+
+def errors(result, reference):
+    return max(
+        np.abs(result.columns[name] - column).max() / np.abs(column).max() for name, column in reference.columns.items()
+    )
+
+
+@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
+@pytest.mark.parametrize(
+    ("change", "unknowns", "saving"),
+    [
+        ({}, 13, "one column of elements"),
+        ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 169, "half the block"),
+        ({"foundation": "patch", "patch_width": 0.31}, 169, "half the block"),
+        ({"foundation": "corner", "poisson": 0.2}, 169, "half the block"),
+    ],
+)
+def test_savings_change_nothing(scheme, change, unknowns, saving):
+    problem = make(**change, elements=6)
+    saved, whole = solve(problem, scheme, 30), solve(problem, scheme, 30, full=True)
+    assert errors(saved, whole) <= 1e-11  # rounding of thirty solves
+    assert (saved.unknowns, whole.unknowns) == (unknowns, 2 * 13**2)
+    assert saving in saved.notes and not any("elements" in note or "half" in note for note in whole.notes[:1])
+    assert saved.notes[-1] == "stepped: few steps" and whole.notes[-1] == "stepped: all savings off"
+    assert saved.factorisations == (2 if scheme.start == "consistent" else 1)
+    assert saved.solves == 30 + (scheme.start == "consistent")
+
+
+def test_dropped_unknowns_are_counted():
+    assert "dropped 13 of 26 unknowns" in solve(make(elements=6), CONSTANT, 1).notes
+
+
+@pytest.mark.parametrize("change", [{"elements": 5}, {"vertices": INCLINED, "base": 1, "top": 3}])
+def test_no_saving_where_none_is_exact(change):
+    assert solve(make(**change, poisson=0.3), CONSTANT, 1).notes == ("stepped: few steps",)
+
+
+@pytest.mark.parametrize(("p", "dt"), [(1e9, 1e-3), (1e10, 2e-3), (1e11, 2e-3), (1e9, 1e-2)])
+@pytest.mark.parametrize(("gg", "start"), [(1.0, "zero"), (0.93, "consistent")])
+def test_fine_mesh_is_the_bar(p, dt, gg, start):
+    scheme = Scheme(0.5, 1.0, gg, dt, start)
+    problem = make(((0, 0), (1.7, 0), (1.7, 2), (0, 2)), p=p, elements=32)
+    assert errors(solve(problem, scheme, 200), Bar.of(problem).solve(scheme, 200)) <= 1e-6
+
+
+@pytest.mark.parametrize(("degree", "order"), [(1, 2.0), (2, 4.0)])
+@pytest.mark.parametrize("full", [False, True])
+def test_order_in_the_element_size(degree, order, full):
+    meshes = [4, 6, 8, 12, 16]
+    bar = Bar.of(make()).solve(CONSTANT, 100)
+    error = [errors(solve(make(elements=n, degree=degree), CONSTANT, 100, full=full), bar) for n in meshes]
+    slope = -np.polyfit(np.log(meshes), np.log(error), 1)[0]
+    # The coarsest mesh is not yet asymptotic.
+    assert slope == pytest.approx(order, abs=0.06)
+
+
+def test_order_in_the_element_size_under_average_acceleration():
+    scheme, meshes = Scheme(0.25, 0.5, 1.0, 1e-3), [64, 96, 128, 192]
+    bar = Bar.of(make()).solve(scheme, 100)
+    error = [errors(solve(make(elements=n, degree=2), scheme, 100), bar) for n in meshes]
+    # The front is resolved from h <= c dt / 40 on only.
+    assert -np.polyfit(np.log(meshes), np.log(error), 1)[0] == pytest.approx(4.0, abs=0.15)
+
+
+def test_first_axial_mode():
+    first = modes(make(elements=64, degree=1), CONSTANT)[0]
+    assert first.frequency == pytest.approx(327.686, abs=5e-4)
+    two = modes(make(elements=8), CONSTANT, full=True)
+    lowest = sorted(mode.frequency for mode in two)[:2]
+    assert lowest[0] == pytest.approx(137.4, abs=0.1)
+    assert two[0].frequency == lowest[1] == pytest.approx(327.682, abs=1e-3)
+    assert two[0].share == pytest.approx(0.8286, abs=1e-4)
+    assert 0.9 < sum(mode.share for mode in two) < 1
+
+
+def test_sparse_and_dense_modes_agree(monkeypatch):
+    problem = make(poisson=0.45, p=2e10, elements=8)
+    dense = modes(problem, CONSTANT)
+    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", 10)
+    sparse = modes(problem, CONSTANT)
+    assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
+    assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)
+    assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    "scheme", [Scheme(0.5, 1.0, 0.93, 2e-3), Scheme(0.3025, 0.6, 1.0, 5e-3), Scheme(0.0, 0.5, 1.0, 1e-4)]
+)
+def test_one_step_operator_has_the_roots_of_trace_and_determinant(scheme):
+    mode = modes(make(elements=4), scheme)[0]
+    h = (mode.frequency * scheme.step) ** 2
+    h /= 1 + scheme.alpha * h
+    trace = 1 - h / 2 + scheme.gg * (1 - scheme.delta * h)
+    det = scheme.gg * (1 + (0.5 - scheme.delta) * h)
+    assert mode.eigenvalues[:2].sum() == pytest.approx(trace, abs=1e-12)
+    assert mode.eigenvalues[:2].prod() == pytest.approx(det, abs=1e-12)
+    assert abs(mode.eigenvalues[2]) <= 1e-12
+
+
+def test_central_differences_are_stable_up_to_the_highest_frequency():
+    problem = make(elements=4)
+    limit = 2 / highest_frequency(problem)
+    inside = solve(problem, Scheme(0.0, 0.5, 1.0, 0.999 * limit), 2000)
+    outside = solve(problem, Scheme(0.0, 0.5, 1.0, 1.001 * limit), 2000)
+    assert np.abs(inside.columns["displacement"]).max() < 0.03
+    assert np.abs(outside.columns["displacement"]).max() > 1.0
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+@pytest.mark.parametrize(("factor", "dt"), [(1e-3, 0.1), (1e-3, 1e-3), (1e6, 1e-3), (1e12, 1e-3)])
+def test_stiff_and_soft_springs_keep_nine_digits(start, factor, dt):
+    mp = pytest.importorskip("mpmath").mp
+    problem, scheme = make(p=factor * 1e9, elements=4), Scheme(0.25, 0.5, 1.0, dt, start)
+    result, model = solve(problem, scheme, 100), build(problem)
+    with mp.workdps(40):
+        M, K, F = (mp.matrix(part.tolist()) for part in (model.M.toarray(), model.K.toarray(), model.F))
+        dt, quarter = mp.mpf(scheme.step), mp.mpf(0.25)
+        inverse = (M + quarter * dt**2 * K) ** -1
+        D, V = F * 0, F * 0
+        A = M**-1 * F if start == "consistent" else F * 0
+        exact = []
+        for _ in range(100):
+            ahead = D + dt * V + dt**2 * quarter * A
+            new = inverse * (F - K * ahead)
+            D, V, A = ahead + quarter * dt**2 * new, V + dt / 2 * (A + new), new
+            exact.append(
+                [float(sum(a * b for a, b in zip(model.observers[n], D, strict=True))) for n in result.columns]
+            )
+    for column, expected in zip(result.columns.values(), 5e6 * np.array(exact).T, strict=True):
+        assert np.abs(column - expected).max() <= 1e-9 * np.abs(expected).max()
+
+
+def test_load_scales_out():
+    small = solve(make(elements=2), CONSTANT, 5)
+    large = solve(replace(make(elements=2), pressure=1e300), CONSTANT, 5)
+    assert np.allclose(large.columns["displacement"] / 1e300, small.columns["displacement"] / 5e6, rtol=1e-14)
+
+
+@pytest.mark.parametrize("change", [{}, {"poisson": 0.3}, {"vertices": INCLINED, "base": 1, "top": 3}])
+def test_fields_show_the_whole_block(tmp_path, change):
+    problem, scheme = make(**change, elements=4), Scheme(0.5625, 1.0, 0.5, 1.0)
+    path = tmp_path / "block.vtu"
+    # Steps far above the period and much damping: the last step is static.
+    result = solve(problem, scheme, 60, columns=("displacement",), fields=path)
+    solve(problem, scheme, 60, columns=("displacement",), full=True, fields=tmp_path / "full.vtu")
+    field, full = meshio.read(path), meshio.read(tmp_path / "full.vtu")
+    assert field.point_data["displacement"].shape == (25, 3)
+    scale = np.abs(full.point_data["displacement"]).max()
+    assert np.abs(field.point_data["displacement"] - full.point_data["displacement"]).max() <= 1e-10 * scale
+    stress = field.cell_data["stress"][0]
+    assert stress.shape == (16, 3)
+    assert np.abs(stress - full.cell_data["stress"][0]).max() <= 1e-9 * np.abs(stress).max()
+    if not change:
+        assert np.allclose(stress, [0, -5e6, 0], atol=50)
+        assert np.isclose(result.columns["displacement"][-1], -0.01, rtol=1e-6)
+
+
+def test_field_series_is_decimated(tmp_path):
+    path = tmp_path / "block.xdmf"
+    solve(make(elements=2), CONSTANT, 403, fields=path)
+    with meshio.xdmf.TimeSeriesReader(str(path)) as reader:
+        points, cells = reader.read_points_cells()
+        times = [reader.read_data(k)[0] for k in range(reader.num_steps)]
+    assert len(points) == 9 and len(cells[0].data) == 4
+    assert 100 < len(times) <= 201 and times[-1] == pytest.approx(0.403)
+
+
+def test_bad_requests_are_refused(tmp_path):
+    problem = make(elements=2)
+    with pytest.raises(ValueError, match=r"^steps: "):
+        solve(problem, CONSTANT, 0)
+    with pytest.raises(ValueError, match=r"^columns: "):
+        solve(problem, CONSTANT, 1, columns=("strain_x",))
+    with pytest.raises(ValueError, match=r"^fields: "):
+        solve(problem, CONSTANT, 1, fields=tmp_path / "block.txt")

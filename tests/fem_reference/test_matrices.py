@@ -1,0 +1,276 @@
+"""The finite-element matrices against the affine block, on every kind of mesh."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from oracles.elements import INCLINED, SQUARE, make
+from skfem import MeshQuad, MeshTri
+
+from fem_reference.history.solver import static
+from fem_reference.mesh import elasticity
+from fem_reference.mesh.mesh import structured
+from fem_reference.mesh.model import assemble, build
+from fem_reference.scheme.eigen import highest_frequency
+
+
+def affine(x, y):
+    """T(x, y) about the centroid: u and v of the six affine fields (paper, equation (3))."""
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    return np.array([[one, zero, -y, x, zero, y / 2], [zero, one, x, zero, y, x / 2]])
+
+
+def block_matrices(problem):
+    """Mass, elastic stiffness and corner springs of the affine block, by exact quadrature."""
+    corners, c = problem.outline, problem.centroid
+    M = np.zeros((6, 6))
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        (ax, ay), (bx, by) = a - c, b - c
+        area = (ax * by - ay * bx) / 2
+        for x, y in (((ax + bx) / 2, (ay + by) / 2), (ax / 2, ay / 2), (bx / 2, by / 2)):
+            T = affine(np.array(x), np.array(y))
+            M += problem.density * area / 3 * T.T @ T
+    mu, E = problem.poisson, problem.young
+    if problem.hypothesis == "plane strain":
+        E, mu = E / (1 - mu**2), mu / (1 - mu)
+    K = np.zeros((6, 6))
+    K[3:, 3:] = E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]]) * problem.area
+    springs = np.zeros((6, 6))
+    for corner in corners[:2]:
+        T = affine(*(corner - c))
+        normal, tangential = problem.normal @ T, problem.tangent @ T
+        springs += problem.stiffness * np.outer(normal, normal)
+        springs += problem.shear_stiffness * np.outer(tangential, tangential)
+    return M, K, springs
+
+
+def write_mesh(path, problem, mesh):
+    """Write a mesh with the tags base and top in Gmsh's format."""
+    corners = np.asarray(problem.vertices)
+    lines, tags = [], []
+    for tag, edge in ((1, problem.base), (2, problem.top)):
+        start, end = corners[edge], corners[(edge + 1) % len(corners)]
+        side = (end - start) / np.hypot(*(end - start))
+        distance = np.abs(side[0] * (mesh.p[1] - start[1]) - side[1] * (mesh.p[0] - start[0]))
+        facets = [f.tolist() for f in mesh.facets.T[mesh.boundary_facets()] if distance[f].max() < 1e-12]
+        lines += facets
+        tags += [tag] * len(facets)
+    kind = "quad" if mesh.t.shape[0] == 4 else "triangle"
+    physical = [np.array(tags), np.full(mesh.nelements, 3)]
+    meshio.write(
+        path,
+        meshio.Mesh(
+            np.pad(mesh.p.T, ((0, 0), (0, 1))),
+            [("line", np.array(lines)), (kind, mesh.t.T)],
+            cell_data={"gmsh:physical": physical, "gmsh:geometrical": physical},
+            field_data={"base": np.array([1, 1]), "top": np.array([2, 1]), "block": np.array([3, 2])},
+        ),
+        file_format="gmsh22",
+        binary=False,
+    )
+    return str(path)
+
+
+def unstructured(problem, path):
+    """A triangulation of a quadrilateral block with an inner node off centre."""
+    corners = np.asarray(problem.vertices)
+    inner = corners.mean(axis=0) + 0.07 * (corners[1] - corners[0])
+    points = np.vstack([corners, inner]).T
+    mesh = MeshTri(points, np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]).T).refined(1)
+    return write_mesh(path, problem, mesh)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
+@pytest.mark.parametrize("mesh", ["square", "inclined", "triangles"])
+def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poisson, degree):
+    shape = {} if mesh == "square" else {"vertices": INCLINED, "base": 1, "top": 3}
+    material = {"poisson": poisson, "hypothesis": hypothesis, "p": 3e9, "shear": 7e8}
+    problem = make(**shape, **material, foundation="corner", elements=3, degree=degree)
+    if mesh == "triangles":
+        file = unstructured(problem, tmp_path / "block.msh")
+        problem = make(**shape, **material, foundation="corner", mesh=file, degree=degree)
+    assembled = assemble(problem)
+    x, y = assembled.basis.doflocs - problem.centroid[:, None]
+    fields = affine(x, y)
+    component = np.zeros(assembled.basis.N, int)
+    for dofs in (assembled.basis.nodal_dofs, assembled.basis.facet_dofs, assembled.basis.interior_dofs):
+        component[dofs[1::2]] = 1
+    T = np.where(component[:, None] == 0, fields[0].T, fields[1].T)
+    for matrix, expected in zip((assembled.M, assembled.K, assembled.springs), block_matrices(problem), strict=True):
+        # The sums run over some hundred entries that cancel: rounding times their number.
+        assert np.abs(T.T @ (matrix @ T) - expected).max() <= 1e-13 * np.abs(expected).max()
+    side = problem.outline[3] - problem.outline[2]
+    middle = (problem.outline[3] + problem.outline[2]) / 2 - problem.centroid
+    load = -problem.pressure * np.hypot(*side) * affine(*middle)[1]
+    assert np.abs(T.T @ assembled.F - load).max() <= 1e-13 * np.abs(load).max()
+
+
+@pytest.mark.parametrize("elements", [1, 3, 4])
+def test_patches_are_integrated_exactly_wherever_they_end(elements):
+    width, p, shear = 0.37, 3e9, 5e8
+    problem = make(foundation="patch", patch_width=width, elements=elements, degree=2, p=p, shear=shear)
+    assembled = assemble(problem)
+    x, _ = assembled.basis.doflocs
+    v = assembled.observers["displacement"] * 0
+    v[assembled.basis.get_dofs().all()] = 0
+    for dofs in (assembled.basis.nodal_dofs, assembled.basis.facet_dofs, assembled.basis.interior_dofs):
+        v[dofs[1]] = x[dofs[1]] ** 2
+    # v = x^2 on the base: p / w times the integral of x^4 over [0, w] and [2 - w, 2].
+    energy = p / width * (width**5 + 2**5 - (2 - width) ** 5) / 5
+    assert v @ (assembled.springs @ v) == pytest.approx(energy, rel=1e-13)
+    pressure = -p / width / 2 * (width**3 + 2**3 - (2 - width) ** 3) / 3
+    assert assembled.observers["contact_pressure"] @ v == pytest.approx(pressure, rel=1e-13)
+
+
+def test_widest_patch_is_the_distributed_foundation():
+    patch = assemble(make(foundation="patch", patch_width=1.0, elements=3)).springs
+    spread = assemble(make(elements=3)).springs
+    assert abs(patch - spread).max() <= 1e-15 * abs(spread).max()
+
+
+@pytest.mark.parametrize(("elements", "degree"), [(1, 1), (5, 1), (8, 2)])
+@pytest.mark.parametrize("full", [False, True])
+def test_static_value_without_contraction_is_exact_on_every_mesh(elements, degree, full):
+    values = static(make(elements=elements, degree=degree), full)
+    # Conditioning of the mesh times rounding.
+    assert values["displacement"] == pytest.approx(-0.01, rel=1e-11)
+    assert values["contact_pressure"] == pytest.approx(5e6, rel=1e-11)
+    tall = make(((0, 0), (3, 0), (3, 5), (0, 5)), p=4e8, elements=elements, degree=degree)
+    # q W / 2p + (h / 2) (q / E)
+    assert static(tall, full)["displacement"] == pytest.approx(-(5e6 * 3 / 8e8 + 2.5 * 5e-3), rel=1e-11)
+
+
+@pytest.mark.parametrize(("factor", "value"), [(1, -9.871e-3), (10, -5.306e-3), (100, -4.840e-3)])
+def test_static_value_with_contraction(factor, value):
+    # Printed to four digits from one mesh: the corners' singularity leaves 4e-6 m between meshes.
+    assert static(make(poisson=0.3, p=factor * 1e9, elements=16))["displacement"] == pytest.approx(value, abs=4e-6)
+
+
+def test_corner_springs_drift_with_the_logarithm_of_the_element_size():
+    drift = [static(make(elements=n, degree=1, foundation="corner"))["displacement"] for n in (4, 8, 16, 32, 64)]
+    # Printed to four decimals.
+    assert np.round(drift, 4).tolist() == [-0.0212, -0.0263, -0.0310, -0.0356, -0.0402]
+    assert any("foundation" in note for note in build(make(elements=2, foundation="corner")).notes)
+    assert not any("foundation" in note for note in build(make(elements=2)).notes)
+
+
+def test_pressure_of_an_inclined_base_balances_the_load_normal_to_it():
+    problem = make(INCLINED, 1, 3, 0.2, p=2e9, elements=4)
+    side = problem.outline[3] - problem.outline[2]
+    # Statics: the normal springs carry q times the loaded length times the normal's y component.
+    expected = 5e6 * np.hypot(*side) * problem.normal[1] / problem.base_length
+    assert static(problem)["contact_pressure"] == pytest.approx(expected, rel=1e-10)
+
+
+def test_mesh_file_of_the_square_gives_the_structured_result(tmp_path):
+    problem = make(poisson=0.3)
+    grid = np.linspace(0.0, 2.0, 5)
+    file = write_mesh(tmp_path / "grid.msh", problem, MeshQuad.init_tensor(grid, grid))
+    read = static(make(poisson=0.3, mesh=file))
+    assert read["displacement"] == pytest.approx(static(make(poisson=0.3, elements=4))["displacement"], rel=1e-12)
+
+
+def corner_block(tmp_path, vertices, top, holes):
+    """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
+    grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
+    middle = grid.p[:, grid.t].mean(axis=1)
+    gone = [int(np.argmin(np.hypot(*(middle - np.array([[x], [y]]))))) for x, y in holes]
+    mesh = grid.remove_elements(np.array(gone)).refined(1)
+    return make(vertices, 0, top, 0.2, mesh=write_mesh(tmp_path / "corner.msh", make(vertices, 0, top), mesh))
+
+
+def test_nonconvex_block_from_a_mesh_file(tmp_path):
+    shape = ((0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (0, 2))
+    problem = corner_block(tmp_path, shape, 4, [(1.5, 1.5), (2.5, 1.5)])
+    # Statics: the base of length 3 carries the load of a top of length 1.
+    assert static(problem)["contact_pressure"] == pytest.approx(5e6 / 3, rel=1e-11)
+    assert assemble(problem).observers["displacement"].sum() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_centroid_outside_the_block_is_refused(tmp_path):
+    shape = ((0, 0), (3, 0), (3, 2), (2.9, 2), (2.9, 0.1), (0.1, 0.1), (0.1, 2), (0, 2))
+    x, y = np.array([0, 0.1, 2.9, 3.0]), np.array([0, 0.1, 2.0])
+    grid = MeshQuad.init_tensor(x, y)
+    middle = grid.p[:, grid.t].mean(axis=1)
+    mesh = grid.remove_elements(np.flatnonzero((np.abs(middle[0] - 1.5) < 1) & (middle[1] > 0.1)))
+    problem = make(shape, 0, 1, mesh=write_mesh(tmp_path / "u.msh", make(shape, 0, 1), mesh))
+    with pytest.raises(ValueError, match="centroid must lie inside"):
+        build(problem)
+
+
+def test_mesh_file_that_is_not_the_block_is_refused(tmp_path):
+    problem = make()
+    grid = np.linspace(0.0, 2.0, 3)
+    file = write_mesh(tmp_path / "grid.msh", problem, MeshQuad.init_tensor(grid, grid))
+    tall = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.1), (0.0, 2.1))
+    with pytest.raises(ValueError, match="mesh: outline"):
+        build(make(tall, mesh=file))
+    with pytest.raises(ValueError, match="mesh: tag 'top'"):
+        build(make(top=1, mesh=file))
+    short = meshio.read(file)
+    short.cell_data["gmsh:physical"][0][0] = 3
+    meshio.write(tmp_path / "short.msh", short, file_format="gmsh22", binary=False)
+    with pytest.raises(ValueError, match="mesh: tag 'base'"):
+        build(make(mesh=str(tmp_path / "short.msh")))
+    with pytest.raises(ValueError, match="mesh: must be a readable"):
+        build(make(mesh=str(tmp_path / "absent.msh")))
+
+
+@pytest.mark.parametrize("text", ["garbage", "", None], ids=["garbage", "empty", "cut"])
+def test_mesh_file_that_is_not_whole_is_refused_in_one_sentence(text, tmp_path, capfd):
+    grid = np.linspace(0, 1, 4)
+    file = Path(write_mesh(tmp_path / "grid.msh", make(), MeshQuad.init_tensor(grid, grid)))
+    file.write_text(file.read_text()[:300] if text is None else text)
+    with pytest.raises(ValueError, match=r"mesh: must be a readable mesh of triangles or quadrilaterals, .*grid\.msh"):
+        build(make(mesh=str(file)))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_polygon_without_mesh_file_names_the_cure():
+    with pytest.raises(ValueError, match=r"\[fem\] mesh = "):
+        build(make(((0, 0), (2, 0), (3, 1), (2, 2), (0, 2)), top=3))
+
+
+def test_highest_frequency_of_linear_elements():
+    # Free line of linear elements with consistent mass: w^2 = 12 E / (rho h^2) to the ends' effect.
+    problem = make(elements=20, degree=1, p=1e-3)
+    assert highest_frequency(problem) == pytest.approx(np.sqrt(12e9 / 2700) / 0.1, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"poisson": 0.5, "hypothesis": "plane strain"}, "poisson"),
+        ({"poisson": -1.0}, "poisson"),
+        ({"p": 0.0}, "stiffness"),
+        ({"p": float("nan")}, "stiffness"),
+        ({"shear": -1.0}, "shear_stiffness"),
+        ({"hypothesis": "stress"}, "hypothesis"),
+        ({"foundation": "patch"}, "patch_width"),
+        ({"foundation": "patch", "patch_width": 1.1}, "patch_width"),
+        ({"patch_width": 0.5}, "patch_width"),
+        ({"degree": 3}, "degree"),
+        ({"elements": 0}, "elements"),
+        ({"top": 0}, "top"),
+        ({"base": 4}, "base"),
+        ({"vertices": SQUARE[::-1]}, "vertices"),
+    ],
+)
+def test_bad_values_name_their_field(change, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        make(**change)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_the_first_cell_of_translates_stands_for_all(degree, poisson):
+    problem = make(elements=6, degree=degree, poisson=poisson)
+    basis = elasticity.vector_basis(structured(problem, half=True).mesh, degree)
+    for one, all_cells in (
+        (elasticity.mass(basis, 2700.0, True), elasticity.mass(basis, 2700.0)),
+        (elasticity.stiffness(basis, problem, True), elasticity.stiffness(basis, problem)),
+    ):
+        assert abs(one - all_cells).max() <= 1e-14 * abs(all_cells).max()  # rounding of the cells' corners

@@ -1,0 +1,149 @@
+"""Histories in a Krylov space: equal to stepped ones, with an honest estimate, for one factorisation."""
+
+import numpy as np
+import pytest
+from oracles.elements import make
+
+from fem_reference import Scheme, solve
+from fem_reference.history import reduced
+from fem_reference.history.krylov import KrylovSpace
+from fem_reference.history.reduced import Reduced
+from fem_reference.history.solver import run
+from fem_reference.mesh.model import build
+from fem_reference.scheme.newmark import Stepper
+
+COLUMNS = ("displacement", "contact_pressure")
+CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
+PATCH = {"poisson": 0.3, "hypothesis": "plane strain", "foundation": "patch", "patch_width": 0.31}
+
+
+def stepped(problem, scheme, steps):
+    """Return the columns by plain steps on the same unknowns."""
+    model = build(problem)
+    return problem.load_size * run(Stepper(model.M, model.K, model.F, scheme), model, steps, COLUMNS, None)
+
+
+def error(found, columns):
+    return max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(found, columns, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("change", "scheme"),
+    [
+        ({"poisson": 0.25, "degree": 1, "elements": 24}, CONSTANT),
+        ({"poisson": 0.3, "hypothesis": "plane strain"}, Scheme(0.5, 1.0, 0.97, 8e-4, "consistent")),
+        (PATCH, Scheme(0.5625, 1.0, 0.97, 2e-3, "consistent")),
+        ({**PATCH, "elements": 5}, Scheme(0.3025, 0.6, 0.97, 2e-3)),
+        ({"poisson": 0.3, "eccentricity": 0.2, "gravity": 9.81}, Scheme(0.5, 1.0, 1.0, 2e-3)),
+        ({"poisson": 0.3, "p": 1e6}, Scheme(0.5, 1.0, 1.0, 5e-3)),
+        ({"poisson": 0.3, "p": 1e16}, Scheme(0.25, 0.5, 0.98, 5e-3)),
+        ({"elements": 24}, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")),
+        ({"elements": 24}, Scheme(0.5, 1.0, 1.0, 1e-5)),
+    ],
+)
+def test_the_history_is_that_of_the_steps(change, scheme):
+    problem = make(**{"elements": 8, "degree": 2, **change})
+    steps = 800
+    result = solve(problem, scheme, steps)
+    assert result.notes[-1].endswith("Krylov vectors") and result.notes[-1].startswith("blocked")
+    assert result.factorisations == 1
+    assert result.solves <= steps // reduced.PAID + 1
+    off = error(result.columns.values(), stepped(problem, scheme, steps))
+    assert off <= 1e-10
+    assert off <= result.estimate
+
+
+def test_no_scene_is_worse_than_it_says():
+    rng, worst, spaces = np.random.default_rng(5), 0.0, 0
+    for _ in range(40):
+        problem = make(
+            p=1e9 * 10 ** rng.uniform(-3, 6),
+            poisson=float(rng.uniform(0, 0.45)),
+            elements=int(rng.integers(3, 8)),
+            degree=int(rng.integers(1, 3)),
+            foundation=str(rng.choice(["distributed", "corner"])),
+        )
+        alpha, delta = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0)][rng.integers(3)]
+        start = str(rng.choice(["zero", "consistent"]))
+        scheme = Scheme(alpha, delta, float(rng.choice([1.0, 0.98])), float(10 ** rng.uniform(-4.5, -2)), start)
+        model = build(problem)
+        stepper = Stepper(model.M, model.K, model.F, scheme)
+        found = reduced.reduced(stepper, np.array([model.observers[name] for name in COLUMNS]), 200)
+        if isinstance(found, Reduced):
+            spaces += 1
+            steps = run(stepper, model, 200, COLUMNS, None)
+            worst = max(worst, error(found.history, steps) / found.estimate)
+    assert spaces > 10
+    assert worst <= 1  # 300 scenes of this kind gave 0.15 at worst
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1.0, 1e4, 1e8, 1e12])
+@pytest.mark.parametrize(("alpha", "delta", "start"), [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")])
+def test_nine_digits_whatever_the_springs(ratio, alpha, delta, start):
+    from validation import load_scene
+    from validation import solve as run_scene
+
+    values = {"contact.stiffness": ratio * 1e9, "fem.elements": 4, "fem.degree": 1, "time.step": 2e-3}
+    values |= {"time.alpha": alpha, "time.delta": delta, "time.start": start, "time.steps": 200}
+    scene = load_scene("poisson").with_values(values)
+    if scene.sweep:
+        scene = scene.expand()[0]
+    found, exact = run_scene(scene, "fem"), run_scene(scene, "fem-60")
+    assert any("Krylov" in note or "small space" in note for note in found.notes)
+    for name in COLUMNS:
+        a, b = found.history.columns[name], exact.history.columns[name]
+        assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max(), name
+
+
+def test_the_first_steps_are_exact():
+    """As many steps as vectors hold, polynomials of lower degree, whatever the scheme."""
+    problem, scheme = make(poisson=0.3, elements=8), Scheme(0.25, 0.5, 0.97, 1e-4, "consistent")
+    model = build(problem)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    space = KrylovSpace(model.M, stepper.S, model.F, stepper.solve, 20)
+    space.grow(20)
+    rows = np.array([model.observers["displacement"] + 0.3 * model.F])
+    small = reduced.history(reduced.modes_of(space, stepper, rows, 40), scheme, 40)[0]
+    state, exact = stepper.start(), []
+    for _ in range(40):
+        state = stepper.advance(state)
+        exact.append(rows[0] @ state.D)
+    off = np.abs(small - exact) / np.abs(exact)
+    assert off[:19].max() < 1e-11  # rounding
+    assert off[30:].max() > 1e-9
+
+
+def test_the_space_is_orthonormal_and_reduces_the_matrices():
+    problem, scheme = make(poisson=0.3, p=1e13, elements=6), CONSTANT
+    model = build(problem)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    space = KrylovSpace(model.M, stepper.S, model.F, stepper.solve, 30)
+    space.grow(30)
+    V = space.vectors[:30]
+    T = np.diag(space.diagonal) + np.diag(space.beside[:-1], 1) + np.diag(space.beside[:-1], -1)
+    np.testing.assert_allclose(V @ (stepper.S @ V.T), np.eye(30), atol=1e-12)
+    np.testing.assert_allclose(V @ (model.M @ V.T), T, atol=1e-12)
+    np.testing.assert_allclose(V @ model.F, space.load * np.eye(30)[0], atol=1e-12 * space.load)
+
+
+@pytest.mark.parametrize(
+    ("problem", "scheme", "steps", "reason"),
+    [
+        (make(), CONSTANT, 20, "few steps"),
+        (make(poisson=0.3, elements=10), Scheme(0.25, 0.5, 1.0, 1e-5), 100, "vectors do not hold the history"),
+        (make(), Scheme(0.0, 0.5, 1.0, 1e-7), 100, "an explicit step is unstable"),
+        (make(), Scheme(0.2, 0.5, 1.0, 1e-7), 100, "unstable for the high frequencies"),
+    ],
+)
+def test_where_no_space_pays_the_block_is_stepped_and_says_why(problem, scheme, steps, reason):
+    result = solve(problem, scheme, steps)
+    assert result.notes[-1].startswith("stepped: ") and reason in result.notes[-1]
+    assert result.estimate is None
+    assert steps <= result.solves <= steps + steps // reduced.PAID + 1 or scheme.alpha == 0
+    assert error(result.columns.values(), stepped(problem, scheme, steps)) == 0
+
+
+def test_all_savings_off_steps_the_whole_block():
+    result = solve(make(elements=4), CONSTANT, 100, full=True)
+    assert result.notes == ("stepped: all savings off",)
+    assert (result.factorisations, result.solves) == (1, 100)

@@ -1,0 +1,75 @@
+"""Every code block of the documentation is run, in the order in which a reader meets it."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import beside
+
+ROOT = Path(__file__).parents[2]
+PAGES = ("theory.md", "judge-your-code.md", "extending.md", "ci.md", "fenicsx.md")
+BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
+FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
+
+
+def run_line(line: str, directory: Path) -> None:
+    """Run a line of a shell as a user in a directory does."""
+    words = shlex.split(line, comments=True)
+    module = {"dda-validate": "validation", "pytest": "pytest"}[words[0]]
+    done = subprocess.run(
+        [sys.executable, "-m", module, *words[1:], *(FEW if module == "pytest" else [])],
+        capture_output=True,
+        text=True,
+        timeout=200,
+        cwd=directory,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
+    assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
+        beside(finished_cases, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    names: dict[str, object] = {}
+    blocks = BLOCK.findall((ROOT / "docs" / page).read_text(encoding="utf-8"))
+    assert blocks
+    for language, file, text in blocks:
+        if file:
+            (tmp_path / file).write_text(text)
+        if language == "sh":
+            for line in text.splitlines():
+                run_line(line, tmp_path)
+        elif language == "python" and not file:
+            exec(compile(text, page, "exec"), names)
+        elif language == "toml":
+            tomllib.loads(text)
+
+
+def test_the_workflow_calls_commands_and_options_that_exist() -> None:
+    text = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
+    for option in ("--baseline", "--summary"):
+        assert option in text and option in (ROOT / "validation/cli_options.py").read_text(encoding="utf-8")
+    assert "--dda-solver" in text and "--dda-solver" in (ROOT / "validation/plugin.py").read_text(encoding="utf-8")
+
+
+def test_the_reference_holds_every_public_name_with_its_docstring(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, str(ROOT / "docs/api.py"), str(tmp_path)], check=True, timeout=60)
+    import dda
+    import fem_reference
+    import validation
+
+    for package in (dda, fem_reference, validation):
+        text = (tmp_path / f"{package.__name__}.md").read_text(encoding="utf-8")
+        for name in package.__all__:
+            value = getattr(package, name)
+            if isinstance(value, type) or hasattr(value, "__code__"):
+                first = (value.__doc__ or "").strip().split("\n")[0]
+                assert first and name in text and first in text, name

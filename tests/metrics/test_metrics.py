@@ -1,0 +1,94 @@
+"""Metrics against signals whose answers are known."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.metrics import poles as pencil
+from validation.metrics.catalogue import pair, solo
+from validation.metrics.columns import first_peak, settling_step
+from validation.metrics.measurable import Measurable
+from validation.metrics.modes import operator_damping, operator_frequency
+from validation.metrics.pairs import relative_l2, relative_max
+from validation.metrics.values import NOT_REPORTED, ratio
+from validation.runs.history import History
+from validation.runs.modes import Mode
+
+
+def test_norms_neither_overflow_nor_vanish() -> None:
+    x, y = np.array([3.0, 4.0]), np.array([0.0, 0.0])
+    for scale in (1.0, 1e300, 1e-300):
+        assert relative_l2(1.5 * x * scale, x * scale) == pytest.approx(0.5, rel=1e-15)
+        assert relative_max(x * scale, 0.5 * x * scale) == pytest.approx(1.0, rel=1e-15)
+    assert relative_l2(x, y) == relative_max(y, y) == "undefined"
+
+
+def test_settling_step_counts_from_one() -> None:
+    x = np.array([0.5, 1.2, 1.005, 0.98, 1.009, 1.0])
+    assert settling_step(x, 1.0) == 5
+    assert settling_step(x[:4], 1.0) == "undefined"
+    assert settling_step(np.ones(3), 1.0) == 1
+    assert settling_step(x, 0.0) == "undefined"
+
+
+def test_first_peak_is_the_top_of_the_first_excursion_beyond_static() -> None:
+    x = -np.array([0.2, 0.9, 1.4, 1.6, 1.5, 1.7, 0.8, 1.9])
+    assert first_peak(x, -1.0) == 5
+    assert first_peak(x[:4], -1.0) is None
+    assert first_peak(0.5 * np.ones(4), 1.0) is None
+
+
+@pytest.mark.parametrize(("decay", "turn", "step"), [(0.02, 0.3, 1e-3), (0.1, 1.1, 0.5), (0.0, 0.7, 2.0)])
+def test_pencil_finds_the_poles_of_a_signal(decay: float, turn: float, step: float) -> None:
+    n = np.arange(1, 120)
+    strong = np.exp(-decay * n) * np.cos(turn * n)
+    weak = 0.2 * np.exp(-0.04 * n) * np.sin(2.2 * n + 0.3)
+    found = pencil.poles(strong + weak, step)
+    size = math.hypot(decay, turn)
+    assert found[0].damping == pytest.approx(decay / size, abs=1e-10)
+    assert found[0].frequency == pytest.approx(size / step, rel=1e-10)
+    assert found[1].amplitude == pytest.approx(0.2 * math.exp(-0.04), rel=1e-9)  # at the first sample, n = 1
+
+
+def test_pencil_of_nothing_is_nothing() -> None:
+    assert pencil.poles(np.zeros(50), 1.0) == []
+    assert pencil.poles(0.5 ** np.arange(50), 1.0) == []
+    assert pencil.poles(np.ones(3), 1.0) == []
+
+
+def test_damping_of_an_operator_by_kind_of_roots() -> None:
+    xi, w = 0.2, 0.5
+    root = np.exp((-xi + 1j * math.sqrt(1 - xi * xi)) * w)
+    assert operator_damping((root, root.conjugate())) == pytest.approx(xi, rel=1e-14)
+    assert operator_frequency((root, root.conjugate()), 0.1) == pytest.approx(5.0, rel=1e-14)
+    a, b = 0.3, 0.7  # decay rates of an overdamped mode: xi = (a + b) / (2 sqrt(a b))
+    assert operator_damping((math.exp(-a), math.exp(-b))) == pytest.approx(0.5 / math.sqrt(0.21), rel=1e-14)
+    assert operator_damping((-0.5, 0.2)) == "undefined"
+    assert operator_frequency((-0.5, 0.2), 1.0) == "undefined"
+
+
+def test_absent_and_undefined_are_different_things() -> None:
+    flat = Measurable(History(np.arange(1.0, 9.0), {"displacement": np.zeros(8)}), 1.0, {"displacement": 0.0}, ())
+    found = solo(flat)
+    assert found["displacement.settling_step"] == found["displacement.peak"] == "undefined"
+    assert found["pressure.final"] == found["mode1.frequency"] == "not reported"
+    assert pair("pressure.l2", flat.history, flat.history) == "not reported"
+    assert pair("displacement.l2", flat.history, flat.history) == "undefined"
+    assert ratio("undefined", 1.0) == "undefined"
+
+
+def test_no_metric_is_ever_nan() -> None:
+    broken = History(np.arange(1.0, 9.0), {"displacement": np.full(8, np.inf), "contact_pressure": np.full(8, -np.inf)})
+    for static in (1.0, 0.0, math.inf):
+        modes = (Mode(1.0, 1.0, (0.5 + 0.1j, 0.5 - 0.1j)),)
+        values = solo(Measurable(broken, 1.0, {"displacement": static, "contact_pressure": static}, modes))
+        assert not [key for key, value in values.items() if isinstance(value, float) and not math.isfinite(value)]
+
+
+def test_the_worst_of_two_needs_no_further_column() -> None:
+    time = np.array([1.0, 2.0])
+    exact = History(time, {"displacement": np.array([1.0, 2.0]), "contact_pressure": np.array([4.0, 8.0])})
+    found = History(time, {"displacement": np.array([1.0, 2.5]), "contact_pressure": np.array([4.0, 4.0])})
+    assert pair("worst.max", found, exact) == 0.5
+    assert pair("worst.max", History(time, {"displacement": time}), exact) == NOT_REPORTED

@@ -1,0 +1,164 @@
+"""Fifty histories of known origin, what `compare` makes of them, and the confusion matrix of the documentation.
+
+The histories come from the program in `shi_dda`, which shares nothing with what judges them: seven digits each, some
+with noise, some on a base that yields. ``python tests/confusion.py`` writes the matrix to docs/compare.md.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from oracles.shi_dda import History, Program, run
+
+from validation import load_scene
+from validation.compare.causes import CAUSES
+from validation.compare.diagnosis import Answer, compare
+from validation.compare.reading import Foreign
+
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+BEGIN, END = "<!-- confusion matrix: made by tests/confusion.py -->\n", "<!-- end -->\n"
+SAME = "same"
+RIGID = {"base_young": 1e16, "fixed": 1e15}  # a base that moves by 1e-6 of the displacement
+PLAIN = Program(dt=0.002, steps=30, opens=False, updated=False, **RIGID)
+AVERAGE = {"alpha": 0.25, "delta": 0.5}
+
+
+@dataclass(frozen=True)
+class Known:
+    """A history, the scene that it is judged against, and what was done to it."""
+
+    cause: str  # an id, or "same"
+    program: Program  # that ran
+    scene: Program  # what the scene says
+    change: Callable[[Foreign], Foreign] = lambda foreign: foreign
+    noise: float = 0.0  # standard deviation over the largest displacement
+
+    def judged(self, seed: int) -> tuple[Answer, History]:
+        """Return the answer and the history it was given."""
+        history = run(self.program)
+        rng = np.random.default_rng(seed)
+        size = float(np.max(np.abs(history.displacement)))
+        noisy = history.displacement + self.noise * size * rng.standard_normal(len(history.time))
+        given = self.change(Foreign(history.time, np.array([float(f"{u:.6e}") for u in noisy])))
+        return compare(scene_of(self.scene), given), history
+
+
+def scene_of(p: Program):
+    return load_scene("figures-3-4").with_values(
+        {
+            "time.step": p.dt,
+            "time.steps": p.steps,
+            "time.alpha": p.alpha,
+            "time.delta": p.delta,
+            "time.gg": p.gg,
+            "time.start": "consistent" if p.consistent else "zero",
+            "contact.stiffness": p.p,
+            "block.density": p.rho,
+            "load.pressure": p.q,
+        }
+    )
+
+
+def scaled(factor: float) -> Callable[[Foreign], Foreign]:
+    return lambda f: replace(f, displacement=f.displacement * factor)
+
+
+def in_milliseconds(f: Foreign) -> Foreign:
+    return replace(f, time=f.time * 1e3)
+
+
+def one_row_late(f: Foreign) -> Foreign:
+    return replace(f, displacement=np.concatenate([[0.0], f.displacement[:-1]]))
+
+
+def one_row_early(f: Foreign) -> Foreign:
+    return replace(f, time=f.time[:-1], displacement=f.displacement[1:])
+
+
+def known() -> Iterator[Known]:
+    """Yield the fifty."""
+    dt1, dt4, stiff = replace(PLAIN, dt=0.001), replace(PLAIN, dt=4e-4), replace(PLAIN, p=1e10)
+    damped = replace(PLAIN, gg=0.97, rho=2300.0)
+    average = replace(PLAIN, **AVERAGE)
+    for program in (PLAIN, dt4, damped):
+        yield Known(SAME, program, program)
+    for program, noise in ((PLAIN, 1e-3), (stiff, 1e-2), (average, 1e-3), (damped, 1e-2)):
+        yield Known(SAME, program, program, noise=noise)
+    for program, share in ((PLAIN, 0.01), (dt4, 0.01), (stiff, 0.015), (damped, 0.008)):
+        soft = share * (0.5 + 0.5 * program.p / program.E) * 2  # over the springs' own share of the static value
+        yield Known("base-compliance", replace(program, p=program.p / (1 + soft / (1 + 0.0 * soft))), program)
+    yield Known("base-compliance", replace(PLAIN, base_young=1e12, fixed=5e9), PLAIN, noise=1e-4)
+    for dt, p in ((1e-3, 1e9), (5e-4, 1e9), (5e-4, 1e10), (3e-4, 5e8), (2e-4, 2e9)):
+        program = replace(PLAIN, dt=dt, p=p)
+        yield Known("contact-opened", replace(program, opens=True), program)
+    program = replace(PLAIN, dt=5e-4, gg=0.98)
+    yield Known("contact-opened", replace(program, opens=True), program, noise=1e-3)
+    for program, noise in ((average, 0.0), (replace(average, dt=0.001), 0.0), (replace(average, gg=0.97), 1e-3)):
+        yield Known("start", replace(program, consistent=True), program, noise=noise)
+    program = replace(average, dt=0.001, consistent=True)
+    yield Known("start", replace(program, consistent=False), program)
+    for base, gg, formula in (
+        (PLAIN, 0.97, "velocity"),
+        (PLAIN, 0.97, "displacement"),
+        (average, 0.95, "velocity"),
+        (average, 0.95, "displacement"),
+        (dt1, 0.9, "velocity"),
+    ):
+        program = replace(base, gg=gg)
+        yield Known("gg-in-one-formula", replace(program, discounted=formula), program)
+    for program, factor in ((PLAIN, 0.5), (PLAIN, 2.0), (dt1, 10.0), (stiff, 0.1), (average, 0.25)):
+        yield Known("springs-factor", replace(program, p=program.p * factor), program)
+    for program in (PLAIN, dt4, stiff, replace(PLAIN, q=2e7)):
+        yield Known("geometry-updated", replace(program, updated=True), program)
+    for program, change, noise in (
+        (PLAIN, one_row_late, 0.0),
+        (average, one_row_late, 0.0),
+        (PLAIN, one_row_early, 0.0),
+        (damped, one_row_early, 1e-3),
+    ):
+        yield Known("time-shift", program, program, change, noise)
+    yield Known("sign", PLAIN, PLAIN, scaled(-1.0))
+    yield Known("sign", average, average, scaled(-1.0), 1e-3)
+    yield Known("unit", PLAIN, PLAIN, scaled(1e3))
+    yield Known("unit", stiff, stiff, scaled(100.0), 1e-3)
+    yield Known("unit", average, average, in_milliseconds)
+    yield Known("scheme", average, PLAIN)
+    yield Known("scheme", replace(PLAIN, alpha=9 / 16), PLAIN, noise=1e-3)
+    yield Known("scheme", replace(PLAIN, alpha=0.3025, delta=0.6), PLAIN)
+    yield Known("gg", replace(PLAIN, gg=0.98), PLAIN)
+    yield Known("gg", replace(average, gg=0.95), average, noise=1e-3)
+
+
+def told(answer: Answer) -> str:
+    """Return the one cause that the answer names: the faults if there are any, else what is benign."""
+    faults = [name for name in answer.causes if not CAUSES[name].benign]
+    return "+".join(faults or answer.causes) or SAME
+
+
+def judge_all() -> list[tuple[Known, Answer, History]]:
+    return [(one, *one.judged(seed)) for seed, one in enumerate(known())]
+
+
+def matrix(judged: list[tuple[Known, Answer, History]]) -> str:
+    """Return the confusion matrix as a table: rows what was done, columns what was named."""
+    pairs = [(one.cause, told(answer)) for one, answer, _ in judged]
+    names = list(dict.fromkeys([true for true, _ in pairs] + [said for _, said in pairs]))
+    lines = ["| done, named | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
+    for true in dict.fromkeys(true for true, _ in pairs):
+        counts = [pairs.count((true, said)) for said in names]
+        lines.append(f"| {true} | " + " | ".join(str(n) if n else "" for n in counts) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def page_with(table: str, page: str) -> str:
+    return re.sub(
+        re.escape(BEGIN) + ".*?" + re.escape(END), lambda _: f"{BEGIN}\n{table}\n{END}", page, flags=re.DOTALL
+    )
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page_with(matrix(judge_all()), PAGE.read_text()))

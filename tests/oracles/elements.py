@@ -1,0 +1,12 @@
+"""Finite-element problems that several tests solve."""
+
+from fem_reference.problem.problem import Problem
+
+SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+# A trapezoid on an inclined base, away from the origin, its base not the first edge.
+INCLINED = ((9.2, 11.9), (10.0, 10.0), (11.6, 11.2), (10.6, 12.6))
+
+
+def make(vertices=SQUARE, base=0, top=2, poisson=0.0, hypothesis="plane stress", p=1e9, shear=None, **mesh):
+    shear = p if shear is None else shear
+    return Problem(vertices, base, top, 2700.0, 1e9, poisson, hypothesis, p, shear, 5e6, **mesh)

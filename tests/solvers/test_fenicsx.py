@@ -1,0 +1,293 @@
+"""FEniCSx as a second finite-element code: absence by name, equality on every mesh and foundation, faults seen."""
+
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from conftest import SCENE, cli
+from faults.fault import Fault, late, no_discount, times, with_scheme
+from faults.kill_matrix import Overlay
+from oracles.elements import INCLINED
+
+import dda.one_block.gap_form
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+import fem_reference.scheme.newmark
+from validation import solve
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.measure import execute
+from validation.engine.run import finish
+from validation.errors import InputError
+from validation.gates.gate import Status
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import fenicsx as adapters_fenicsx
+from validation.solvers import worker
+from validation.solvers.fenicsx import VARIABLE, interpreter, launcher
+from validation.solvers.registry import get_solver
+from validation.studies.second_fem_code import SAME, TWO_CODES
+
+PYTHON = interpreter()
+needs_fenicsx = pytest.mark.skipif(PYTHON is None, reason=adapters_fenicsx.NEEDED)
+pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def error(scene: Scene, solver: str = "fenicsx") -> float:
+    """Largest difference of the two codes over the maximum, of any column."""
+    sound, other = solve(scene, "fem", full=True).history, solve(scene, solver).history
+    assert sound is not None and other is not None and np.array_equal(sound.time, other.time)
+    return max(np.abs(other.columns[n] - x).max() / np.abs(x).max() for n, x in sound.columns.items())
+
+
+def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(VARIABLE, "/no/such/python")
+    alone = cli("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
+    assert alone.returncode == 2
+    assert alone.stderr.startswith(
+        "error: NOT RUN: needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda"
+    )
+    assert "/no/such/python, which DDA_VALIDATE_FENICSX_PYTHON names, has none" in alone.stderr
+    gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
+    scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
+    run = cli("run", scene_file, cwd=tmp_path)
+    assert run.returncode == 0 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
+    assert cli("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
+
+
+def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "/no/such/python")
+    row, _ = execute(Case(scene, "fenicsx"), "key", "study")
+    assert row.outcome is Outcome.NOT_RUN
+    results = Results(tmp_path)
+    for _ in range(2):
+        finish([Case(scene, "fenicsx")], TWO_CODES, results)
+    assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
+
+
+@pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])
+def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
+    with pytest.raises(InputError, match=r"^solver: "):
+        get_solver(name)
+
+
+def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
+    done = cli("solve", scene_file, "--solver", "dda", "--ranks", 2)
+    assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
+
+
+def test_ranks_change_the_key_of_the_distributed_solver_only(scene: Scene) -> None:
+    assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
+    assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
+
+
+@needs_fenicsx
+def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
+    assert PYTHON is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
+    assert launcher(PYTHON) is not None
+
+
+@needs_fenicsx
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"fem.degree": 1, "contact.shear_stiffness": 3e8},
+        {"fem.cells": "triangles", "block.poisson": 0.3, "block.hypothesis": "plane strain"},
+        {"fem.foundation": "corner", "block.poisson": 0.3},
+        {"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.5}},
+        {"block.vertices": INCLINED, "block.base": 1, "block.top": 3, "block.poisson": 0.2},
+        {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 1e-5, "time.start": "consistent"},
+        {"contact.stiffness": 1e17, "block.hypothesis": "plane strain", "block.poisson": 0.45},
+    ],
+    ids=["linear", "triangles", "corner", "patch", "inclined", "explicit", "stiff"],
+)
+def test_the_two_codes_agree(scene: Scene, values: dict[str, object]) -> None:
+    assert 0 < error(scene.with_values(values)) <= SAME
+
+
+LOADS = {
+    "eccentric": {"load.eccentricity": -0.25},
+    "sideways": {"load": {"traction": 2e5}, "fem.foundation": "corner"},
+    "weight": {"load": {"gravity": 9.81}, "block.poisson": 0.2},
+    "record": {"load": {"base_motion": "quake.csv"}, "time.start": "consistent"},
+    "record on corners": {"load": {"base_motion": "quake.csv"}, "fem.foundation": "corner"},
+    "all": {
+        "load": {"pressure": 1e6, "eccentricity": 0.5, "traction": 1e5, "gravity": 9.81, "base_motion": "quake.csv"}
+    },
+}
+
+
+@needs_fenicsx
+@pytest.mark.parametrize("values", LOADS.values(), ids=LOADS)
+def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, object], tmp_path: Path) -> None:
+    record = tmp_path / "quake.csv"
+    record.write_text("time,x,y\n0,1e-4,0\n0.01,1e-3,2e-4\n0.03,-5e-4,1e-4\n")
+    load = values.get("load")
+    if isinstance(load, dict) and "base_motion" in load:
+        values = values | {"load": load | {"base_motion": str(record)}}
+    columns = {"run.columns": ["displacement", "contact_pressure", "horizontal_displacement"]}
+    case = scene.with_values(values | columns)
+    runs = [get_solver(name).solve(case, full=True) for name in ("fenicsx", "fem")]
+    own, other = (run.history for run in runs)
+    assert own is not None and other is not None
+    static = [get_solver(name).static(case) for name in ("fenicsx", "fem")]
+    moved = max(float(np.abs(other.columns[name]).max()) for name in ("displacement", "horizontal_displacement"))
+    for name, values_of in other.columns.items():
+        # what is zero by symmetry is rounding in both: displacements share a scale, the springs turn it into pressure
+        scale = moved * (case.contact.stiffness if name == "contact_pressure" else 1.0)
+        assert np.abs(own.columns[name] - values_of).max() <= SAME * scale, name
+        assert abs(static[0][name] - static[1][name]) <= SAME * scale, name
+
+
+@needs_fenicsx
+def test_what_the_worker_counts(scene: Scene) -> None:
+    run = get_solver("fenicsx:2").solve(scene.with_values({"time.start": "consistent"}))
+    assert dict(run.work) | {"nonzeros": 0} == {
+        "unknowns": 2 * 9**2,
+        "nonzeros": 0,
+        "factorisations": 2,
+        "solves": 51,
+        "steps": 50,
+        "ranks": 2,
+    }
+    assert run.notes[0].startswith("dolfinx ") and run.seconds.keys() == {"setup", "stepping"}
+
+
+@needs_fenicsx
+def test_what_it_does_not_do_is_said(scene: Scene) -> None:
+    inside = scene.with_values({"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.31}})
+    run = solve(inside, "fenicsx")
+    assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
+    within = solve(scene.with_values({"load.eccentricity": 0.31}), "fenicsx")
+    assert within.outcome is Outcome.NOT_APPLICABLE and "the pressed part ends inside" in within.notes[0]
+    with pytest.raises(InputError, match=r"time.step: must not exceed"):
+        solve(scene.with_values({"time.alpha": 0.0, "time.delta": 0.5}), "fenicsx")
+    with pytest.raises(InputError, match=r"run\.columns"):
+        solve(scene.with_values({"run.columns": ["rotation"]}), "fenicsx")
+
+
+def test_a_dead_worker_is_named_and_replaced() -> None:
+    command = [sys.executable, "-c", "import sys; sys.stderr.write('no licence\\n'); sys.exit(7)"]
+    for _ in range(2):
+        with pytest.raises(worker.WorkerDied, match="status 7: no licence"):
+            worker.ask(command, {}, {})
+    echo = [sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line, end='', flush=True)"]
+    assert [worker.ask(echo, {}, {"a": n}) for n in (1, 2)] == [{"a": 1}, {"a": 2}]
+
+
+WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is twice the band's edge
+    "fenicsx: load 2e-10 high": ("self._vector(load)", "(1 + 2e-10) * self._vector(load)"),
+    "fenicsx: gg missing in the predictor": ("self.gg * dt * self.V", "dt * self.V"),
+    "fenicsx: gg missing in the velocity": ("self.V = self.gg * self.V", "self.V = self.V"),
+    "fenicsx: delta 1e-6 high": ("self.delta * self.A", "1.000001 * self.delta * self.A"),
+    "fenicsx: start forgotten": ('request["start"] == "consistent"', "False"),
+    "fenicsx: plane strain as plane stress": ('hypothesis == "plane strain"', "False"),
+    "fenicsx: quadrature one point short": ('2 * self.request["degree"] + 1', '2 * self.request["degree"] - 1'),
+    "fenicsx: springs p/2": ("else 2 / self.carried", "else 1 / self.carried"),
+    "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
+}
+OTHER_FAULTS = [
+    Fault("fem: gg missing in the predictor", ("fem:full",), fem_reference.scheme.newmark, "predictor", no_discount(1)),
+    Fault("fem: gg missing in the velocity", ("fem:full",), fem_reference.scheme.newmark, "velocity", no_discount(2)),
+    Fault(
+        "fem: delta 1e-6 high",
+        ("fem:full",),
+        fem_reference.scheme.newmark,
+        "velocity",
+        with_scheme(2, delta=lambda d: d * (1 + 1e-6)),
+    ),
+    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.mesh.elasticity, "_carried", times(1 + 1e-6)),
+    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.mesh.elasticity, "mass", times(1 + 1e-6)),
+    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.mesh.elasticity, "load", times(1 + 2e-10)),
+    Fault("dda: load 2e-10 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-10)),
+    Fault("fem: one step late", ("fem:full",), fem_reference.history.solver, "run", late),
+]
+GATES = TWO_CODES.gates()
+CASES = TWO_CODES.cases()
+EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
+FEW = "block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent"
+
+
+def failed(finished: Finished) -> set[str]:
+    return {gate.id for gate in GATES if evaluate(gate, finished).status is Status.FAIL}
+
+
+def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
+    """Write the worker with one fault into a directory of its own."""
+    text = adapters_fenicsx.WORKER.read_text()
+    assert text.count(line) == 1, line
+    path = directory / f"worker{number}.py"
+    path.write_text(text.replace(line, slip))
+    return path
+
+
+@needs_fenicsx
+def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, finished_cases: Path) -> None:
+    sound = finish(CASES, TWO_CODES, Results(finished_cases))
+    assert not failed(sound)
+    kills: dict[str, set[str]] = {}
+    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
+        path = faulty_worker(tmp_path, number, line, slip)
+        solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
+        kills[name] = killed(
+            sound, Fault(name, solvers, adapters_fenicsx, "WORKER", lambda _, path=path: path), tmp_path
+        )
+    for fault in OTHER_FAULTS:
+        kills[fault.name] = killed(sound, fault, tmp_path)
+    for name, found in kills.items():
+        print(f"{len(found):>3} gates see {name}")
+    assert not [name for name, found in kills.items() if not found], "faults that no gate sees"
+    for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
+        bitten = set().union(*(found for name, found in kills.items() if name.startswith(code)))
+        judged = {gate.id for gate in GATES if any(name.startswith(solver) for name in gate.pair)}
+        assert bitten == judged, "gates that no fault of this code bites"
+
+
+def killed(sound: Finished, fault: Fault, directory: Path) -> set[str]:
+    """Return the gates that fail with a fault; only the solvers that it reaches run again."""
+    reached = [
+        case for case in CASES if case.solver in fault.solvers and (EDGE in fault.name or FEW in case.scene.name)
+    ]
+    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+        patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+        faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
+    worker.close_all()
+    return failed(Finished(sound.rows | faulty.rows, faulty.results))
+
+
+@pytest.mark.parametrize("name", ["quadrilateral", "pentagon"])
+def test_polygons_on_files_of_gmsh(name: str, tmp_path: Path) -> None:
+    scene = load_scene(name)
+    assert scene.fem.mesh is not None and Path(scene.fem.mesh).read_text().startswith("$MeshFormat\n4.1")
+    for file in ("block.vtu", "block.xdmf"):
+        run = get_solver("fem").solve(scene, fields=tmp_path / file)
+    mesh, source = meshio.read(tmp_path / "block.vtu"), meshio.read(scene.fem.mesh)
+    kind = "quad" if name == "quadrilateral" else "triangle"
+    assert len(mesh.points) == len(source.points) and len(mesh.cells_dict[kind]) == len(source.cells_dict[kind])
+    assert {tuple(p) for p in mesh.points.round(12)} == {tuple(p) for p in source.points.round(12)}
+    stress = mesh.cell_data["stress"][0]
+    with meshio.xdmf.TimeSeriesReader(str(tmp_path / "block.xdmf")) as reader:
+        points, cells = reader.read_points_cells()
+        frames = [reader.read_data(k) for k in range(reader.num_steps)]
+    assert np.array_equal(points, mesh.points) and np.array_equal(cells[0].data, mesh.cells_dict[kind])
+    assert [time for time, *_ in frames] == pytest.approx(list(run.time))
+    last_points, last_cells = frames[-1][1:]
+    assert np.allclose(last_points["displacement"], mesh.point_data["displacement"], rtol=1e-12)
+    assert np.allclose(last_cells["stress"][0], stress, rtol=1e-9, atol=1e-3)
+    # nearly at rest: the mean vertical stress over the cells is what the top carries
+    assert -1.2 * scene.load.pressure < stress[:, 1].mean() < -0.6 * scene.load.pressure
+
+
+def test_the_model_form_of_a_polygon_is_some_percent() -> None:
+    for name, low, high in (("quadrilateral", -0.04, -0.02), ("pentagon", -0.03, -0.005)):
+        block, fine = (get_solver(solver).static(load_scene(name))["displacement"] for solver in ("dda", "fem"))
+        assert low < block / fine - 1 < high, name

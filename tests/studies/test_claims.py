@@ -1,0 +1,125 @@
+"""The register of claims: computed, gated, and not deaf: thresholds and code turn verdicts over."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import cli
+from faults.fault import soft_springs, with_scheme
+
+import dda.model.block
+import dda.one_block.gap_form
+import dda.scheme.newmark
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.gates.gate import Status
+from validation.runs.results import Results
+from validation.studies.paper.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.paper.study import CLAIMS, NUMBERS, PAPER
+
+ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.xdist_group("claims")
+NEEDED = {need for claim in CLAIMS for need in claim.needs}
+
+
+@pytest.fixture(scope="module")
+def sound(finished_cases: Path) -> Finished:
+    return run(finished_cases)
+
+
+def run(directory: Path) -> Finished:
+    cases = [case for case in PAPER.cases() if (case.scene.name, case.solver) in NEEDED]
+    return finish(cases, PAPER, Results(directory))
+
+
+def findings(finished: Finished) -> dict[str, Finding]:
+    rows = {claim.id: finished.row(REGISTER, claim.id) for claim in CLAIMS}
+    return {name: Finding(int(row.metrics["verdict"])) for name, row in rows.items()}
+
+
+def test_every_claim_has_its_expected_verdict(sound: Finished) -> None:
+    assert findings(sound) == {claim.id: claim.expected for claim in CLAIMS}
+    assert {f"C{i}" for i in range(1, 14)} <= set(findings(sound))
+    assert all(evaluate(gate, sound).status is Status.PASS for gate in PAPER.gates())
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.id)
+def test_a_changed_threshold_turns_the_verdict_over(claim: Claim, sound: Finished) -> None:
+    numbers = claim.measure(Evidence(sound))
+    wide = tuple(Band(band.number, -np.inf, np.inf) for band in claim.printed)
+    shut = tuple(Band(band.number, band.high + 1, band.high + 2) for band in claim.printed)
+    changed = replace(claim, printed=shut if claim.expected is Finding.CONFIRMED else wide)
+    assert changed.finding(numbers) is not claim.expected
+    if claim.expected is Finding.CONDITIONAL:
+        shut = tuple(Band(band.number, band.high + 1, band.high + 2) for band in claim.conditional)
+        assert replace(claim, conditional=shut).finding(numbers) is Finding.REFUTED
+    verdict = evaluate(replace(claim.gate(), low=-1.0, high=-0.5), sound)
+    assert verdict.status is Status.FAIL
+
+
+def damped(delta: float) -> float:
+    return delta + 0.05
+
+
+FAULTS = {  # patched line of code -> claims that it turns over
+    "velocity with another delta": (
+        dda.scheme.newmark,
+        "velocity_corrector",
+        with_scheme(0, delta=damped),
+        {"C9", "C12", "S13"},
+    ),
+    "springs half as stiff": (dda.one_block.gap_form, "_stiffness", soft_springs(0.5), {"C1"}),
+    "load reversed": (dda.model.block.Block, "segment_load", lambda sound: lambda *a: -sound(*a), {"S29"}),
+    "average acceleration everywhere": (
+        dda.scheme.newmark,
+        "velocity_corrector",
+        with_scheme(0, delta=lambda delta: 0.5),
+        {"C1", "C6", "C7", "C10"},
+    ),
+    "gg 0.1 % low": (dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
+    "gg missing": (dda.scheme.newmark, "predictor", with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
+}
+
+
+@pytest.fixture(scope="module")
+def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
+    """Gates that fail under each fault; all of them pass in the sound run."""
+    found = {}
+    for fault, (module, attribute, replacement, _) in FAULTS.items():
+        with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+            patch.setattr(module, attribute, replacement(getattr(module, attribute)))
+            faulty = run(tmp_path_factory.mktemp("faulty"))
+            found[fault] = {gate.id for gate in PAPER.gates() if evaluate(gate, faulty).status is Status.FAIL}
+    return found
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_changed_code_turns_verdicts_over(fault: str, killed: dict[str, set[str]]) -> None:
+    turned = {f"{REGISTER}:{claim}:verdict" for claim in FAULTS[fault][3]}
+    assert turned <= killed[fault], sorted(turned - killed[fault])
+
+
+def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed: dict[str, set[str]]) -> None:
+    bitten = set().union(*killed.values())
+    unbitten = {gate.id for gate in PAPER.gates()} - bitten
+    # no fault of ours makes a refuted statement true: those gates are bitten by changed thresholds alone
+    refuted = {claim.gate().id for claim in CLAIMS if claim.expected is Finding.REFUTED}
+    assert unbitten <= refuted, sorted(unbitten - refuted)
+
+
+def test_numbers_go_with_claims() -> None:
+    assert {claim for claim, *_ in NUMBERS} <= {claim.id for claim in CLAIMS}
+
+
+def test_the_page_in_docs_is_what_a_fresh_run_writes(sound: Finished) -> None:
+    from validation.engine.run import _derived_record
+
+    rows = [_derived_record(sound, REGISTER, claim.id) for claim in CLAIMS]
+    assert (ROOT / "docs" / "claims.md").read_text(encoding="utf-8") == page(CLAIMS, rows)
+
+
+def test_the_command_needs_results(tmp_path: Path) -> None:
+    done = cli("claims", "--results", tmp_path)
+    assert done.returncode == 2 and "run paper" in done.stderr

@@ -1,0 +1,214 @@
+"""Numbers of the scheme and of the paper's cases, energy, and the damping of assembled steps and of histories.
+
+Each number was computed by an independent program outside this project; the tolerance is half a unit of its last digit.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from oracles.elements import make
+from scipy.linalg import eigh
+
+from dda.scheme import spectral
+from fem_reference import Scheme as FemScheme
+from fem_reference.mesh.model import Model, build
+from fem_reference.scheme.newmark import State, Stepper
+from validation import Scene, load_scene, solve
+from validation.advice.spectra import damping
+from validation.metrics.columns import settling_step
+from validation.metrics.poles import poles
+from validation.solvers.registry import get_solver
+
+CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
+SCHEMES = [CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
+LIGHT = load_scene("figure-9").with_values({"time.gg": 1.0})
+STIFF = load_scene("figures-5-6").expand()[2]
+
+
+def settles(scene: Scene, tolerance: float) -> tuple[object, object]:
+    run, static = solve(scene, "dda"), get_solver("dda").static(scene)
+    pairs = ((run.displacement, static["displacement"]), (run.contact_pressure, static["contact_pressure"]))
+    return tuple(settling_step(x, end, tolerance) for x, end in pairs)
+
+
+def test_a_stiff_contact_rings_long_after_the_block_rests() -> None:
+    assert settles(STIFF, 1e-4) == (41, 157)
+    assert settles(STIFF, 1e-2) == (21, 24)
+
+
+def test_constant_acceleration_never_uses_the_initial_acceleration() -> None:
+    case = load_scene("figures-3-4").with_values({"time.step": 0.001})
+    zero, consistent = (solve(case.with_values({"time.start": start}), "dda") for start in ("zero", "consistent"))
+    np.testing.assert_array_equal(zero.displacement, consistent.displacement)
+
+
+def exact(scene: Scene, time: np.ndarray, rate: float) -> np.ndarray:
+    """Displacement of M D'' + c M D' + K D = F from rest, by the modes of the block."""
+    modes, static = get_solver("dda").modes(scene), get_solver("dda").static(scene)["displacement"]
+    shares = _centroid_shares(scene)
+    found = np.zeros_like(time)
+    for mode, share in zip(modes, shares, strict=True):
+        damped = np.sqrt(mode.frequency**2 - rate**2 / 4)
+        decay = np.exp(-rate / 2 * time)
+        wave = np.cos(damped * time) + rate / (2 * damped) * np.sin(damped * time)
+        found += share * (1 - decay * wave)
+    return static * found
+
+
+def _centroid_shares(scene: Scene) -> list[float]:
+    """Shares of the modes of (v, ey) in the static displacement of the centroid, largest first."""
+    model = get_solver("dda").prepare(scene).model  # type: ignore[attr-defined]
+    squares, shapes = eigh(model.stiffness[np.ix_([1, 4], [1, 4])], model.mass[np.ix_([1, 4], [1, 4])])
+    parts = shapes[0] * (shapes.T @ model.load[[1, 4]]) / squares
+    return list(parts / parts.sum())
+
+
+def order(start: str, rate: float) -> float:
+    """Order in dt of average acceleration over 0.02 s, fitted with its sign on five levels."""
+    steps = [2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5]
+    errors = []
+    for dt in steps:
+        values = {"time.step": dt, "time.steps": round(0.02 / dt), "time.start": start}
+        case = LIGHT.with_values(values | ({"time.gg_rate": rate} if rate else {}))
+        run = solve(case, "dda")
+        errors.append(np.abs(run.displacement - exact(case, run.time, rate)).max())
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+@pytest.mark.parametrize(
+    ("start", "rate", "expected"),
+    [("zero", 0.0, 1.0), ("consistent", 0.0, 2.0), ("consistent", 60.0, 2.0)],
+)
+def test_an_initial_acceleration_of_zero_costs_an_order_and_a_rate_converges(
+    start: str, rate: float, expected: float
+) -> None:
+    assert order(start, rate) == pytest.approx(expected, abs=0.03)
+
+
+def test_at_a_fixed_discount_refining_dt_does_not_converge() -> None:
+    ends = []
+    for dt in (1e-3, 5e-4, 2.5e-4, 1.25e-4):
+        case = LIGHT.with_values({"time.gg": 0.98, "time.step": dt, "time.steps": round(0.01 / dt)})
+        ends.append(solve(case, "dda").displacement[-1])
+    assert abs(ends[3] - ends[2]) > 0.5 * abs(ends[2] - ends[1]) > 1e-4  # m; a convergent step would quarter it
+
+
+def test_a_rate_gives_the_ratio_c_over_two_w() -> None:
+    first = damping(LIGHT.with_values({"time.gg_rate": 60.0, "time.step": 1e-6})).modes[0]
+    assert first.damping == pytest.approx(60.0 / (2 * first.frequency), rel=1e-6)
+
+
+def test_the_first_step_from_rest_does_not_feel_the_discount() -> None:
+    free, held = (solve(LIGHT.with_values({"time.gg": gg, "time.steps": 2}), "dda") for gg in (1.0, 0.5))
+    assert free.displacement[0] == held.displacement[0]
+    assert free.displacement[1] != held.displacement[1]
+
+
+def test_kinetic_damping_over_the_step() -> None:
+    def first(dt: float) -> float | None:
+        return damping(LIGHT.with_values({"time.gg": 0.98, "time.step": dt})).modes[0].damping
+
+    assert [first(dt) for dt in (2e-3, 1e-3, 1e-4)] == pytest.approx([0.0152, 0.0296, 0.293], rel=2e-3)
+    assert first(2.93e-5 * 0.99) > 1 > first(2.93e-5 * 1.01)
+
+
+@pytest.mark.parametrize("stiffness", [1e9, 1e10, 1e11])
+def test_the_block_is_pulled_up_at_first_where_dt_is_below_its_own_transit(stiffness: float) -> None:
+    base = load_scene("figures-3-4").with_values({"contact.stiffness": stiffness, "time.steps": 4})
+    c = math.sqrt(1e9 / 2700)
+    edge = 2.0 / (c * math.sqrt(6 * 0.5))
+    assert edge == pytest.approx(1.90e-3, abs=5e-6)
+    above, below = (solve(base.with_values({"time.step": f * edge}), "dda") for f in (1.01, 0.99))
+    assert below.contact_pressure[0] < 0 < above.contact_pressure[0]
+
+
+def test_first_pressures_at_one_millisecond_and_towards_zero() -> None:
+    base = load_scene("figures-3-4")
+    coarse = solve(base.with_values({"time.step": 1e-3}), "dda").contact_pressure
+    assert coarse[:2] == pytest.approx([-0.338e6, -0.435e6], abs=500)
+    fine = solve(base.with_values({"time.step": 1e-6, "time.steps": 4000}), "dda").contact_pressure
+    assert fine.min() == pytest.approx(-1.39e6, abs=5e3)
+
+
+# ---- the assembled step of the elements ---------------------------------------------------------------------------
+
+
+def free_model(**changes: object) -> Model:
+    return build(make(poisson=0.3, elements=2, degree=1, **changes), full=True)
+
+
+def stepper(model: Model, scheme: FemScheme) -> Stepper:
+    return Stepper(model.M, model.K, np.zeros_like(model.F), scheme)
+
+
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+@pytest.mark.parametrize("gg", [1.0, 0.93])
+@pytest.mark.parametrize("ratio", [1.0, 100.0])
+def test_the_assembled_step_of_the_elements_is_the_closed_form_mode_by_mode(
+    alpha: float, delta: float, gg: float, ratio: float
+) -> None:
+    model = free_model(p=ratio * 1e9)
+    squares, shapes = eigh(model.K.toarray(), model.M.toarray())
+    w, dt = np.sqrt(squares), 3e-4
+    step = stepper(model, FemScheme(alpha, delta, gg, dt))
+    M, n = model.M.toarray(), len(w)
+    blocks = np.zeros((n, 3, 3))
+    for column, (d, v, a) in enumerate(np.eye(3)):
+        new = step.advance(State(shapes * d, shapes * (v / dt), shapes * (a / dt**2)))
+        for row, part in enumerate((new.D, dt * new.V, dt**2 * new.A)):
+            own = shapes.T @ (M @ part)
+            blocks[:, row, column] = np.diag(own)
+            size = max(1.0, np.abs(own).max())
+            assert np.abs(own - np.diag(np.diag(own))).max() < 1e-11 * size  # modes do not mix
+    traces = np.trace(blocks, axis1=1, axis2=2)
+    minors = (traces**2 - np.trace(blocks @ blocks, axis1=1, axis2=2)) / 2
+    # rounding is that of the largest entry of the block, (w dt)^2 where nothing divides it
+    size = np.maximum(1.0, np.abs(blocks).max(axis=(1, 2)))
+    assert np.abs(traces - spectral.trace(w * dt, alpha, delta, gg)).max() < 1e-12 * size.max()
+    assert (np.abs(minors - spectral.determinant(w * dt, alpha, delta, gg)) / size**2).max() < 1e-12
+
+
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+def test_energy_identity_of_the_elements(alpha: float, delta: float) -> None:
+    model = free_model()
+    highest = math.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1])
+    dt = min(2e-4, 0.9 * spectral.critical_omega(alpha, delta) / highest)
+    step = stepper(model, FemScheme(alpha, delta, 1.0, dt))
+    M, K, c = model.M, model.K, alpha - delta / 2
+    rng = np.random.default_rng(5)
+    D, V = rng.normal(size=(2, len(model.F)))
+    state = State(D, V * highest, -np.linalg.solve(M.toarray(), K @ D))
+
+    def energy(s: State) -> float:
+        return float(s.V @ (M @ s.V) + s.D @ (K @ s.D) + c * dt**2 * s.A @ (M @ s.A)) / 2
+
+    largest = energy(state)
+    for _ in range(60):
+        new = step.advance(state)
+        dD, dA = new.D - state.D, new.A - state.A
+        loss = -(delta - 0.5) * (dD @ (K @ dD) + c * dt**2 * dA @ (M @ dA))
+        assert abs(energy(new) - energy(state) - loss) < 1e-12 * largest
+        state = new
+
+
+@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.5, 1.0, 1.0), (0.25, 0.5, 0.97), (0.3025, 0.6, 1.0)])
+@pytest.mark.parametrize("foundation", [{}, {"foundation": "patch", "patch_width": 0.4}])
+def test_damping_of_the_elements_by_modal_projection(
+    alpha: float, delta: float, gg: float, foundation: dict[str, object]
+) -> None:
+    model = build(make(poisson=0.3, elements=4, **foundation))
+    squares, shapes = eigh(model.K.toarray(), model.M.toarray())
+    first = int(np.argmax((shapes.T @ model.F) ** 2 / squares))
+    w, dt = math.sqrt(squares[first]), 1e-3
+    step = Stepper(model.M, model.K, model.F, FemScheme(alpha, delta, gg, dt))
+    row = model.M @ shapes[:, first]
+    rest = float(shapes[:, first] @ model.F) / squares[first]
+    state, history = step.start(), []
+    for _ in range(60):
+        state = step.advance(state)
+        history.append(row @ state.D / rest - 1)
+    found = poles(np.array(history), dt)[0]
+    assert found.damping == pytest.approx(float(spectral.damping_ratio(w * dt, alpha, delta, gg)), abs=1e-9)

@@ -1,0 +1,137 @@
+"""The gates on digits, growth and stiff contacts are bitten by seeded faults, and their chapters are written."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.linalg
+from conftest import beside
+from faults.fault import Fault, late, thousandth, times, with_scheme
+from faults.kill_matrix import check_kill_matrix
+
+import dda
+import dda.one_block.gap_form
+import dda.one_block.solution
+import dda.scheme.newmark
+import fem_reference.exact.bar
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+import fem_reference.scheme.newmark
+from dda.one_block.natural_modes import ModalForm
+from validation.engine.run import run_study
+from validation.gates.gate import Status
+from validation.report.book import CHAPTERS, build, figures
+from validation.studies.catalogue import get_study
+
+
+def printed_recursion(sound):
+    """Swap the robust form for the textbook one."""
+    return lambda model, scheme, steps, columns, full=False: dda.solve_textbook(model, scheme, steps, columns)
+
+
+def robust_form(sound):
+    """Swap the textbook form for the robust one."""
+    return lambda model, scheme, steps, columns: dda.solve(model, scheme, steps, columns)
+
+
+def unscaled_modes(sound):
+    """Find the modes by a general solver, which scales nothing."""
+
+    def faulty(form):
+        squares, shapes = scipy.linalg.eigh(np.diag(form.K), form.M)
+        return ModalForm(np.sqrt(np.abs(squares)), shapes, shapes.T @ form.F)
+
+    return faulty
+
+
+def offset(sound):
+    def faulty(observed, pressure):
+        observed += 1e-6
+        return ()
+
+    return faulty
+
+
+class AccelerationFirst(fem_reference.scheme.newmark.Stepper):
+    """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
+
+    def advance(self, state):
+        s = self.scheme
+        ahead = fem_reference.scheme.newmark.predictor(state, s)
+        A = self._solve(self.F - self.K @ ahead)
+        D = ahead + s.alpha * s.step**2 * A
+        return fem_reference.scheme.newmark.State(D, fem_reference.scheme.newmark.velocity(state, A, s), A)
+
+
+def begun(sound):
+    """Let the bar be displaced and pressed by 2e-9 of the static values from the beginning."""
+
+    def faulty(*arguments):
+        history, estimate = sound(*arguments)
+        return history + 2e-9, estimate
+
+    return faulty
+
+
+FAULTS = [
+    Fault("dda: the printed recursion", ("dda",), dda, "solve", printed_recursion),
+    Fault("dda: modes by a general solver", ("dda",), dda.one_block.solution, "modal_form", unscaled_modes),
+    Fault("dda: load 2e-9 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-9)),
+    Fault(
+        "dda: delta 0.1 % high", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)
+    ),
+    Fault("dda: an offset", ("dda",), dda.one_block.solution, "bound_overflow", offset),
+    Fault("dda-textbook: the robust form", ("dda-textbook",), dda, "solve_textbook", robust_form),
+    Fault(
+        "fem: accelerations first", ("fem",), fem_reference.history.solver, "Stepper", lambda sound: AccelerationFirst
+    ),
+    Fault("fem: history 2e-9 high", ("fem",), fem_reference.history.solver, "bounded", times(1 + 2e-9)),
+    Fault("bar: shares 2e-9 high", ("bar",), fem_reference.exact.bar, "shares", times(1 + 2e-9)),
+    Fault("bar: begun before the wave", ("bar",), fem_reference.exact.bar.Bar, "_sum", begun),
+]
+
+
+CONTACT_FAULTS = [
+    Fault(
+        "dda: delta 0.1 % high", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=thousandth)
+    ),
+    Fault("dda: one step late", ("dda",), dda.one_block.solution, "modal_histories", late),
+    Fault("dda: an offset", ("dda",), dda.one_block.solution, "bound_overflow", offset),
+]
+
+
+def of_degree(degree):
+    """Build every mesh of one degree."""
+    return lambda sound: lambda mesh, asked: sound(mesh, degree)
+
+
+LIMIT_FAULTS = [
+    Fault(
+        "dda: delta 1e-6 high",
+        ("dda",),
+        dda.scheme.newmark,
+        "velocity_corrector",
+        with_scheme(0, delta=lambda d: d + 1e-6),
+    ),
+    Fault("fem: always linear", ("fem",), fem_reference.mesh.elasticity, "vector_basis", of_degree(1)),
+    Fault("fem: always quadratic", ("fem",), fem_reference.mesh.elasticity, "vector_basis", of_degree(2)),
+]
+
+
+KILLS = {"stability-small": FAULTS, "stiff-contact": CONTACT_FAULTS, "limits": LIMIT_FAULTS}
+
+
+@pytest.mark.parametrize("name", KILLS)
+def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path, finished_cases: Path) -> None:
+    study = get_study(name)
+    check_kill_matrix(study, study.cases(), study.gates(), KILLS[name], tmp_path, finished_cases)
+
+
+@pytest.mark.parametrize("name", KILLS)
+def test_every_gate_passes_and_the_chapter_is_written(name: str, tmp_path: Path, finished_cases: Path) -> None:
+    results = beside(finished_cases, tmp_path / "results")
+    assert {verdict.status for verdict in run_study(get_study(name), results)} == {Status.PASS}
+    if name not in CHAPTERS:
+        return
+    assert build(results, tmp_path / "report.pdf").stat().st_size > 20_000
+    assert all(path.exists() for path in figures(name, results, tmp_path / "figures"))

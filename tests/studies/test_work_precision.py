@@ -1,0 +1,127 @@
+"""Error against run time: points, fronts, the record, the commands, and the kill matrix of the study's gates."""
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import beside
+from faults.fault import Fault, swapped, with_scheme
+from faults.kill_matrix import check_kill_matrix
+from typer.testing import CliRunner
+
+import dda.scheme.newmark
+import fem_reference.history.solver
+import fem_reference.mesh.elasticity
+from validation.cli.app import app
+from validation.engine.run import finish, run_study
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.studies.work import record as work_record
+from validation.studies.work.points import cheapest, floor, front, points
+from validation.studies.work.study import WORK_PRECISION, order, study_cases
+
+COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory, finished_cases):
+    kept = beside(finished_cases, tmp_path_factory.mktemp("work"))
+    verdicts = run_study(COARSE, kept)
+    assert [str(v.status) for v in verdicts] == ["PASS"] * len(verdicts)
+    return kept
+
+
+def heavier_on_coarse_meshes(sound):
+    """An error of first order in h."""
+    return lambda basis, *a, **k: (1 + basis.N**-0.5) * sound(basis, *a, **k)
+
+
+def kept_velocity(gg):
+    """A discount that does not vanish with the step."""
+    return 0.999 * gg
+
+
+FAULTS = [
+    Fault("dda: a discount", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=kept_velocity)),
+    Fault("dda: other start", ("dda",), dda.scheme.newmark, "initial_acceleration", with_scheme(0, start=swapped)),
+    Fault("dda: delta 1/2", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=lambda d: 0.5)),
+    Fault(
+        "fem: column 0.1 % soft", ("fem",), fem_reference.mesh.model, "column", lambda sound: lambda p: sound(softer(p))
+    ),
+    Fault("fem: mass of first order", ("fem",), fem_reference.mesh.elasticity, "mass", heavier_on_coarse_meshes),
+    Fault(
+        "fem: stepped", ("fem",), fem_reference.history.solver, "_in_small_space", lambda sound: lambda *a: "a fault"
+    ),
+]
+
+
+def softer(problem):
+    return replace(problem, young=0.999 * problem.young)
+
+
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
+
+
+def test_orders_carry_their_sign():
+    sizes = [1.0, 0.5, 0.25, 0.125]
+    assert order(sizes, [s**2 for s in sizes]) == pytest.approx(2)
+    assert order(sizes, [1 / s for s in sizes]) == pytest.approx(-1)
+
+
+def test_front_and_cheapest(results):
+    assert front([(1, 5), (2, 6), (3, 1), (2, 2), (4, 1)]) == [(1, 5), (2, 2), (3, 1)]
+    found = points(results, results.manifest("work-precision"), "work-average")
+    assert {p.method for p in found} == {"dda", "fem, linear", "fem, quadratic", "bar"}
+    level = floor(found, "displacement", "continuum")
+    dda_best = min(p.errors["displacement", "continuum"] for p in found if p.method == "dda")
+    assert level is not None and level > 0.1 and dda_best > 0.1  # the model form: no step brings DDA below it
+    assert cheapest(found, 1e-9) is None
+    best = cheapest(found, 0.1)
+    assert best is not None and best.errors["contact pressure", "continuum"] <= 0.1
+    assert all(p.seconds >= best.seconds for p in found if max(p.errors.values()) <= 0.1)
+
+
+def test_rows_and_any_pair_of_columns(results, tmp_path):
+    where = ["--results", str(results.directory)]
+    assert CliRunner().invoke(app, ["rows", "work-precision", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
+    with (tmp_path / "a.csv").open() as stream:
+        lines = list(csv.DictReader(stream))
+    assert len(lines) == len(COARSE.cases())
+    assert {"seconds.setup", "work.solves", "continuum:displacement.l2", "estimate"} <= set(lines[0])
+    pair = ["--x", "work.solves", "--y", "bar:pressure.max", "--out", str(tmp_path / "a.svg")]
+    assert CliRunner().invoke(app, ["plot", "work-precision", *pair, *where]).exit_code == 0
+    assert (tmp_path / "a.svg").stat().st_size > 1000
+    wrong = CliRunner().invoke(app, ["plot", "work-precision", "--x", "nothing", *where])
+    assert isinstance(wrong.exception, InputError) and "must be columns" in str(wrong.exception)
+    assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
+
+
+def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_path, monkeypatch):
+    finished = finish(COARSE.cases(), COARSE, results)
+    now = work_record.measured(finished, study_cases())
+    then = work_record.load()["cases"]
+    found = work_record.ratios(now, then)
+    assert all(1 - slack <= found[part] <= 1 + slack for part, slack in work_record.SLACK.items())
+    worse = json.loads(json.dumps(then))
+    name = next(name for name in worse if name.endswith("fem"))
+    worse[name]["errors"]["displacement"] /= 1.1
+    worse[name]["work"]["solves"] -= worse[name]["work"]["solves"] // 5
+    found = work_record.ratios(now, worse)
+    assert found["errors"] == pytest.approx(1.1, rel=0.03) and found["work"] > 1.15
+    monkeypatch.setattr(work_record, "PATH", tmp_path / "record.json")
+    with pytest.raises(InputError, match=r"^--reason: "):
+        work_record.update(finished, study_cases(), " ")
+    work_record.update(finished, study_cases(), "a test")
+    assert work_record.load()["reasons"] == ["a test"]
+    assert work_record.ratios(now, work_record.load()["cases"])["work"] == 1
+
+
+def test_a_study_of_timings_repeats_and_keeps_the_spread(tmp_path):
+    first = next(scene for scene in WORK_PRECISION.scenes if scene.name == "work-h-degree-1")
+    small = replace(WORK_PRECISION, scenes=[first], gates=tuple, derived=tuple)
+    kept = Results(tmp_path)
+    run_study(small, kept, jobs=2)
+    assert all("least seconds of 3 repeats, spread" in row.notes[-1] for row in kept.rows().values())

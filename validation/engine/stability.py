@@ -1,0 +1,79 @@
+"""How an unstable step ends by name, and the limit of stability found by bisection; both ask the prepared model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from validation.metrics.growth import AGREED, DEVELOPED, ROUNDING, first_column, growth
+from validation.metrics.values import NOT_REPORTED, UNDEFINED
+from validation.runs.row import Value
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import NotReported, Prepared, Solver
+
+BISECTIONS = 40
+
+
+def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
+    try:
+        with np.errstate(all="ignore"):
+            return prepared.diagnostics()
+    except NotReported:
+        return {}
+
+
+def named(run: Run, prepared: Prepared, scene: Scene) -> Run:
+    """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted."""
+    if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW) or run.history is None:
+        return run
+    radius = _diagnostics(prepared).get("predicted_radius", 0.0)
+    if not radius > 1 + ROUNDING:
+        return run
+    seen = growth(first_column(run.history))
+    if seen is None:
+        return _unseen(run, scene, radius)
+    # A slower mode may hold so much more of the motion that it leads until the last step.
+    radius = min((radius, *(mode.spectral_radius for mode in prepared.modes())), key=lambda r: abs(r - seen))
+    said = f"predicted growth {radius:.9g} a step, seen {seen:.9g}"
+    if abs(seen / radius - 1) > AGREED:
+        return replace(run, outcome=Outcome.MISPREDICTED, notes=(*run.notes, said))
+    ended = Outcome.OVERFLOW if run.outcome is Outcome.OVERFLOW else Outcome.UNSTABLE
+    return replace(run, outcome=ended, notes=(*run.notes, said))
+
+
+def _unseen(run: Run, scene: Scene, radius: float) -> Run:
+    """Name a run that should grow and has not grown enough to measure how fast."""
+    slow = scene.time.steps * math.log10(radius) < 3 * math.log10(DEVELOPED)
+    still = run.history is None or not np.any(first_column(run.history))
+    outcome = run.outcome if slow or still or run.outcome is Outcome.OVERFLOW else Outcome.MISPREDICTED
+    said = f"predicted growth {radius:.9g} a step; too few steps to measure growth"
+    return replace(run, outcome=outcome, notes=(*run.notes, said))
+
+
+def limit(solver: Solver, scene: Scene) -> Value:
+    """Return the largest w dt that the code steps without growth, by bisection on the step's own eigenvalues.
+
+    The step is applied to unit states of the modes; no formula of the limit enters. Undefined without a limit.
+    """
+    try:
+        omega = solver.prepare(scene).diagnostics()["largest_omega"] / scene.time.step
+    except NotReported:
+        return NOT_REPORTED
+
+    def grows(value: float) -> bool:
+        tried = solver.prepare(scene.with_values({"time.step": value / omega}))
+        return bool(tried.diagnostics()["spectral_radius"] > 1 + ROUNDING)
+
+    low, high = 1e-2, 1e3
+    if grows(low) or not grows(high):
+        return UNDEFINED
+    for _ in range(BISECTIONS):
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if grows(middle) else (middle, high)
+        if high / low < 1 + 1e-8:
+            break
+    return math.sqrt(low * high)

@@ -1,0 +1,41 @@
+"""Features of scenes: what a scene has beyond one block under a centred pressure on locked springs.
+
+A solver says which of them it handles; a scene that has another one is refused by name. A new feature is one line here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from validation.scenes.scene import Scene
+
+
+@dataclass(frozen=True)
+class Feature:
+    """A word, the test that a scene has it, and whether the motion stays linear with it."""
+
+    name: str
+    present: Callable[[Scene], bool]
+    linear: bool = True
+
+
+SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
+FEATURES = (
+    Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
+    Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
+    Feature(WEIGHT, lambda scene: scene.load.gravity != 0),
+    Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
+)
+LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
+FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
+
+
+def of(scene: Scene) -> tuple[str, ...]:
+    """Return the names of the features that a scene has."""
+    return tuple(feature.name for feature in FEATURES if feature.present(scene))
+
+
+def linear(scene: Scene) -> bool:
+    """Whether the motion is linear: modes, spectra, a static solution and closed forms exist."""
+    return all(feature.linear for feature in FEATURES if feature.present(scene))

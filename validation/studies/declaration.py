@@ -1,0 +1,31 @@
+"""Studies as the suite declares them: the engine's, with alarms and damping budgets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from validation.advice.alarms import alarms
+from validation.advice.budget import budgets
+from validation.engine import study
+from validation.engine.finished import Finished
+from validation.runs.records import Annotations
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import role
+
+
+def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
+    """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
+    judged = {scene for scene, solver in finished.rows if role(solver) is Role.JUDGED}
+    return {
+        "alarms": [alarm.record() for alarm in alarms(scenes, finished)],
+        "budgets": list(budgets(scene for scene in scenes if scene.name in judged)),
+    }
+
+
+@dataclass(frozen=True)
+class Study(study.Study):
+    """A study whose cases are annotated with alarms and damping budgets."""
+
+    annotate: Callable[[Sequence[Scene], Finished], Annotations] = annotated
