@@ -21,10 +21,11 @@ gates: $(READY)  ## the accuracy gates alone
 
 lint: $(READY)  ## style and types
 	$(BIN)/ruff check .
+	$(BIN)/lint-imports
 	$(BIN)/mypy
 
 api: $(READY)  ## the API reference from the docstrings, in docs/api
-	$(BIN)/python docs/api.py docs/api
+	$(BIN)/pdoc --docformat numpy --output-directory docs/api $$(find dda fem_reference validation -name __init__.py | sed 's,/__init__.py,,; s,/,.,g' | sort)
 
 bench: $(READY)  ## speed, as ratios in one run against named rivals
 	$(BIN)/python reports/bench.py

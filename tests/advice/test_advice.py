@@ -136,7 +136,7 @@ def test_settling_is_that_of_the_history(target: float, steps: int | None) -> No
 
 
 def test_a_long_settling_is_the_envelope_of_the_history() -> None:
-    from validation.advice.advice import advice
+    from validation.advice import advice
 
     case = BASE.with_values({"time.step": 1e-4, "time.gg_rate": 10.0})
     exact, source = advice._settling(case)

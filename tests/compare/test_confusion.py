@@ -8,9 +8,8 @@ import pytest
 from oracles import confusion
 
 from dda.one_block.variants import Variant
-from validation.compare import causes
+from validation.compare import causes, diagnosis
 from validation.compare.causes import CAUSES
-from validation.compare.diagnosis import compare
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
 
@@ -74,7 +73,7 @@ FAULTS = {
     "gg is in both formulas": (causes, "_further", without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
     "every cause is earned": (causes, "better", lambda sound: lambda *a, **k: True, "same"),
     "no cause is earned": (causes, "better", lambda sound: lambda *a, **k: False, "start"),
-    "no sign is turned": (compare, "_factors", lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
+    "no sign is turned": (diagnosis, "_factors", lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
 }
 
 

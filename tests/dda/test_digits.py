@@ -5,7 +5,7 @@ import pytest
 from oracles import mp_reference
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve
-from dda.one_block import modes
+from dda.one_block.modes import modes
 from dda.scheme import spectral
 
 STEPS = 300

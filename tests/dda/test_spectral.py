@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, one_step_operator
-from dda.one_block import modes
+from dda.one_block.modes import modes
 from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)

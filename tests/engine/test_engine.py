@@ -14,7 +14,7 @@ from conftest import SCENE
 from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import _ordered, evaluate
-from validation.engine.measure import attempt, check, execute
+from validation.engine.measure import completed, execute
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
@@ -154,7 +154,7 @@ class Broken(Solver):
 def test_a_failure_is_a_named_outcome(
     scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str, outcome: Outcome, words: str
 ) -> None:
-    run = check(attempt(Broken(way), scene, False), scene)
+    run = completed(Broken(way), scene)
     assert run.outcome is outcome
     assert words in run.notes[-1]
     assert outcome.sentence.endswith(".")
@@ -176,7 +176,7 @@ class Beside(Broken):
 
 
 def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert attempt(Beside("x"), scene, False).notes == ("IndexError: x",)
+    assert completed(Beside("x"), scene).notes == ("IndexError: x",)
     monkeypatch.setattr(Case, "make_solver", lambda self: Beside("x"))
     monkeypatch.setattr(Beside, "applicable", Broken.applicable)
     row, history = execute(Case(scene, "dda"), "key", "test")

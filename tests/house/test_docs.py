@@ -56,20 +56,17 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
 def test_the_workflow_calls_commands_and_options_that_exist() -> None:
     text = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
     for option in ("--baseline", "--summary"):
-        assert option in text and option in (ROOT / "validation/cli_options.py").read_text(encoding="utf-8")
+        assert option in text and option in (ROOT / "validation/cli/options.py").read_text(encoding="utf-8")
     assert "--dda-solver" in text and "--dda-solver" in (ROOT / "validation/plugin.py").read_text(encoding="utf-8")
 
 
-def test_the_reference_holds_every_public_name_with_its_docstring(tmp_path: Path) -> None:
-    subprocess.run([sys.executable, str(ROOT / "docs/api.py"), str(tmp_path)], check=True, timeout=60)
+def test_every_public_name_has_a_docstring() -> None:
     import dda
     import fem_reference
     import validation
 
     for package in (dda, fem_reference, validation):
-        text = (tmp_path / f"{package.__name__}.md").read_text(encoding="utf-8")
         for name in package.__all__:
             value = getattr(package, name)
             if isinstance(value, type) or hasattr(value, "__code__"):
-                first = (value.__doc__ or "").strip().split("\n")[0]
-                assert first and name in text and first in text, name
+                assert (value.__doc__ or "").strip(), f"{package.__name__}.{name}"

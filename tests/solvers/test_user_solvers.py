@@ -9,7 +9,7 @@ import pytest
 from conftest import SCENE, cli
 
 from validation.engine.case import Case
-from validation.engine.measure import attempt, check, execute
+from validation.engine.measure import completed, execute
 from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -53,14 +53,14 @@ def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     ],
 )
 def test_what_a_solver_does_is_named(scene: Scene, attribute: str, outcome: Outcome, words: str) -> None:
-    run = check(attempt(get_solver(f"my_solver:{attribute}"), scene, False), scene)
+    run = completed(get_solver(f"my_solver:{attribute}"), scene)
     assert run.outcome is outcome, run.notes
     assert words in "; ".join(run.notes)
 
 
 def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, "1.5")
-    run = attempt(get_solver("my_solver:hangs"), scene, False)
+    run = completed(get_solver("my_solver:hangs"), scene)
     assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("hangs: no history within 1.5 s",))
     shown = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
     assert "time.sleep(60)" not in shown and "my_solver:hangs" not in shown

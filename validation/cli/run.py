@@ -125,11 +125,11 @@ def solve(
     from validation.errors import InputError
     from validation.runs.files import atomic_path, write_csv
     from validation.runs.run import Outcome
-    from validation.solvers.registry import FULL, get_solver
+    from validation.solvers.registry import FULL, distributed, get_solver
 
     chosen = get_solver(solver)
     if ranks > 1 and not chosen.distributed:
-        raise InputError(f"--ranks: goes with solvers that take a number of ranks, such as fenicsx, got {solver!r}")
+        raise InputError(f"--ranks: goes with {', '.join(distributed())}, got {solver!r}")
     chosen = chosen if ranks == 1 else chosen.option(str(ranks))
     case, solver = one_case(scene, assignments), solver if ranks == 1 else f"{solver}:{ranks}"
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):

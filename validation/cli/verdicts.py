@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.cli.app import GATE_FAILED, PASSED, app
-from validation.cli.tables import print_changes
 
 if TYPE_CHECKING:
     pass
@@ -23,6 +22,7 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
+    from validation.cli.tables import print_changes
     from validation.gates.changes import changes, read_verdicts
 
     found = changes(read_verdicts(before), read_verdicts(after))

@@ -2,32 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, Chapter, FigureBlock, PageBreak
+from validation.report.blocks import Block, FigureBlock, PageBreak
+from validation.report.chapters.registry import chapter_of
 from validation.report.typesetting import _png, write_document
 from validation.runs.results import Results
-
-# study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
-CHAPTERS: dict[str, str] = {
-    "work-precision": "validation.report.chapters.work:chapter",
-    "paper": "validation.report.chapters.paper:paper_chapter",
-    "subblocks": "validation.report.chapters.subblocks:chapter",
-    "stability": "validation.report.chapters.stability:stability_chapter",
-    "stability-small": "validation.report.chapters.stability:stability_chapter",
-    "stiff-contact": "validation.report.chapters.stiff_contact:contact_chapter",
-}
-DEFAULT_CHAPTER = "validation.report.chapters.scene:scene_chapter"
-
-
-def chapter_of(study: str) -> Chapter:
-    """Return the function that writes a study's chapter, importing its module now."""
-    module, _, name = CHAPTERS.get(study, DEFAULT_CHAPTER).partition(":")
-    function: Chapter = getattr(importlib.import_module(module), name)
-    return function
 
 
 def ordered_studies(results: Results) -> list[str]:

@@ -44,7 +44,7 @@ def solver_names() -> list[str]:
 
 def is_solver(name: str) -> bool:
     """Whether a name is a solver's, with or without an option, or names one as ``module:attribute``."""
-    plain, _, attribute = name.partition(":")
+    plain, _, attribute = name.removesuffix(FULL).partition(":")
     return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
 
 
@@ -79,17 +79,26 @@ def _imported(target: str) -> Any:
 
 def rank(name: str) -> float:
     """Place among the references of a solver, or of its run without savings, which follows it at once."""
+    if not is_solver(name):  # a row that another installation has left
+        return Solver.rank
     return get_solver(name).rank + (0.25 if name.endswith(FULL) else 0.0)
 
 
 def role(name: str) -> Role:
     """Return the role of a solver; a run without savings repeats the one with them."""
+    if not is_solver(name):
+        return Role.OTHER
     return Role.REPEAT if name.endswith(FULL) else get_solver(name).role
+
+
+def distributed() -> list[str]:
+    """Return the built-in solvers whose option is a number of ranks."""
+    return [name for name in BUILT_IN if get_solver(name).distributed]
 
 
 def by_role(wanted: Role) -> list[str]:
     """Return the built-in solvers of a role, the highest rank first."""
-    found = [name for name in BUILT_IN if get_solver(name).role is wanted]
+    found = [name for name in BUILT_IN if get_solver(name).role == wanted]
     return sorted(found, key=rank, reverse=True)
 
 

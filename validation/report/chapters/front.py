@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
-from validation.report.book import CHAPTERS
 from validation.report.chapters.data import Group, groups
+from validation.report.chapters.gates import ORDER, band, value_cell
 from validation.report.chapters.ledger import ledger_lines, ledger_table, part_values, with_entries
-from validation.report.chapters.scene import ORDER, band, gate_count, value_cell
+from validation.report.chapters.registry import CHAPTERS
+from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import percent, plain, span
 from validation.report.figures import histories as figures
 from validation.runs.case_name import scene_of

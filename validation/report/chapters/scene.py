@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,15 +12,14 @@ import numpy as np
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups, varied_fields
+from validation.report.chapters.gates import ORDER, gate_table
 from validation.report.chapters.ledger import METRICS
 from validation.report.chapters.text import (
     AS_STATED,
-    bounded,
     cell,
     parameters,
     percent,
     plain,
-    short,
     span,
     word_notes,
 )
@@ -33,9 +32,7 @@ from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 
-ORDER = {"FAIL": 0, "NOT RUN": 1, "PASS": 2}
 MOST_PANELS = 10
-NARROW = 7  # digits; a narrower band is written as middle and half width
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
@@ -298,55 +295,3 @@ def _measured(measure: Measure, value: Value, scene: Scene) -> str:
         noise = NOISE * abs(scene.load.pressure) if measure.metric == "pressure.minimum" else 0.0
         return cell(value if abs(value) > noise else 0.0, measure.factor)
     return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")
-
-
-def gate_table(verdicts: Sequence[VerdictRecord], labels: Mapping[str, str]) -> Table:
-    """Return gates with value and band under the reason that they share, failures first."""
-    reasons: dict[str, list[VerdictRecord]] = {}
-    for v in sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), [*labels, v["scene"]].index(v["scene"]))):
-        reasons.setdefault(reason(v), []).append(v)
-    columns = (
-        Column("Verdict", "verdict"),
-        Column("Case"),
-        Column("Pair"),
-        Column("Metric", "code"),
-        Column("Value", "decimal"),
-        Column("Band"),
-    )
-    rows = [row for said, some in reasons.items() for row in [(said,), *(_gate_row(v, labels) for v in some)]]
-    return Table(columns, tuple(rows), ruled=False)
-
-
-def _gate_row(v: VerdictRecord, labels: Mapping[str, str]) -> tuple[str, ...]:
-    window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
-    return (
-        v["verdict"],
-        labels.get(v["scene"], v["scene"]),
-        " – ".join(v["pair"]),
-        v["metric"] + window,
-        value_cell(v["value"]),
-        band(v),
-    )
-
-
-def value_cell(value: Value) -> str:
-    """Return the value of a verdict without needless zeros."""
-    return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
-
-
-def band(v: VerdictRecord) -> str:
-    """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
-    low, high = v["band"]
-    middle, half, size = (low + high) / 2, (high - low) / 2, max(abs(low), abs(high))
-    digits = next((d for d in range(4, 16) if high - low > 3 * 10.0**-d * size), 16)
-    if low != high and digits > NARROW:
-        return f"{short(middle, digits)} ± {short(half, 2)}"
-    return f"{short(low, digits)} … {short(high, digits)}"
-
-
-def reason(v: VerdictRecord) -> str:
-    """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
-    uncertainty = v.get("reference_uncertainty") or 0.0
-    kind = f" [{v['reference_kind']}" + (f" ± {short(uncertainty, 2)}" if uncertainty else "") + "]"
-    why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
-    return f"{v['reason']}{kind}{why}"

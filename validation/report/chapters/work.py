@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
-from validation.report.chapters.scene import band, gate_count
+from validation.report.chapters.gates import band
+from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories as figures
 from validation.report.figures.cost import work_figure

@@ -1,0 +1,103 @@
+"""The key of a kept row covers everything that enters the row: sources of every room, measures, records, versions."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import SCENE
+
+from validation.engine import case as case_module
+from validation.engine.case import Case
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.fenicsx import FEniCSx
+
+ROOT = Path(__file__).parents[2]
+KEYS = """
+import sys
+from pathlib import Path
+from validation.engine.case import Case, source_digest
+from validation.scenes.scene import load_scene
+root = Path(sys.argv[1])
+scene = load_scene(sys.argv[2])
+def keys():
+    source_digest.cache_clear()
+    return [Case(scene, solver).key() for solver in ("dda", "fem", "bar", "dda-60")]
+before = keys()
+for room in sys.argv[3:]:
+    file = sorted(path for path in (root / room).rglob("*.py") if path.name != "__init__.py")[-1]
+    text = file.read_text()
+    file.write_text(text + "\\nONE_MORE_LINE = 1\\n")
+    changed = [a != b for a, b in zip(before, keys())]
+    file.write_text(text)
+    print(room, *map(int, changed))
+"""
+ROOMS = ("runs", "scenes", "metrics", "solvers", "engine")
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_path: Path) -> None:
+    for package in ("dda", "fem_reference", "validation"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "small.toml").write_text(SCENE)
+    named = [f"validation/{room}" for room in ROOMS] + ["dda/one_block", "fem_reference/mesh"]
+    command = [sys.executable, "-c", KEYS, str(tmp_path), str(tmp_path / "small.toml"), *named]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=True)
+    changed = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
+    for room in ROOMS:
+        assert changed[f"validation/{room}"] == ["1", "1", "1", "1"], room
+    assert changed["dda/one_block"] == ["1", "0", "0", "0"]
+    assert changed["fem_reference/mesh"] == ["0", "1", "1", "0"]
+
+
+def test_two_files_that_swap_names_give_another_digest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "two_files"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    monkeypatch.syspath_prepend(str(tmp_path))
+    digests = set()
+    for first, second in (("1", "2"), ("2", "1"), ("12", "")):
+        (package / "a.py").write_text(first)
+        (package / "b.py").write_text(second)
+        digests.add(case_module.source_digest.__wrapped__("two_files"))
+    assert len(digests) == 3
+
+
+def test_what_is_measured_enters_the_key(scene: Scene) -> None:
+    measures = [
+        (),
+        ("history",),
+        ("history", "modes"),
+        ("history", "modes", "stability"),
+        ("history", "modes", "limit"),
+    ]
+    assert len({Case(scene, "dda", measures=some).key() for some in measures}) == len(measures)
+
+
+def test_the_content_of_a_record_enters_the_key(scene: Scene, tmp_path: Path) -> None:
+    record = tmp_path / "record.csv"
+    moved = scene.with_values({"load.base_motion": str(record)})
+    keys = set()
+    for last in ("0.001", "0.002"):
+        record.write_text(f"time,x\n0,0\n1,{last}\n")
+        keys.add(Case(moved, "dda").key())
+    assert len(keys) == 2
+
+
+def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = {solver: Case(scene, solver).key() for solver in ("dda", "fem", "fenicsx")}
+    monkeypatch.setattr(FEniCSx, "versions", lambda self: {"dolfinx": "another"})
+    assert Case(scene, "fenicsx").key() != before["fenicsx"] and Case(scene, "fem").key() == before["fem"]
+    for library in ("numpy", "scipy", "scikit-fem", "meshio", "mpmath"):
+        sound = case_module.library_versions()
+        assert sound[library] != "not installed"
+        monkeypatch.setattr(case_module, "library_versions", lambda: sound | {library: "another"})  # noqa: B023
+        assert Case(scene, "dda").key() != before["dda"], library
+        monkeypatch.setattr(case_module, "library_versions", lambda: sound)  # noqa: B023

@@ -1,0 +1,96 @@
+"""The contract: a solver refuses what it does not handle, and what has no meaning is not measured or judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation.engine.measure import completed
+from validation.engine.run import run_study
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import CATALOGUE
+from validation.results import Results
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes import features
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import registry
+from validation.solvers.contract import Solver
+from validation.solvers.registry import by_role, get_solver, role, solver_names
+from validation.studies import Study
+
+JOINTS = "rusty joints"
+
+
+class Jointed(Solver):
+    """A solver of a feature that no other solver knows."""
+
+    name = "jointed"
+    handles = features.FIRST | {JOINTS}
+    sources = ("validation.solvers",)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+        return Run(Outcome.COMPLETED, History(time, {name: np.sin(time) for name in scene.run.columns}))
+
+
+@pytest.fixture
+def jointed(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+    """Return a scene with a feature that is one line of the table, and register its solver by another line."""
+    feature = features.Feature(JOINTS, lambda scene: scene.block.density == 7.0, linear=False)
+    monkeypatch.setattr(features, "FEATURES", (*features.FEATURES, feature))
+    monkeypatch.setitem(registry.BUILT_IN, "jointed", f"{__name__}:Jointed")
+    monkeypatch.setattr(
+        registry,
+        "_imported",
+        lambda target, sound=registry._imported: Jointed if target.endswith(":Jointed") else sound(target),
+    )
+    return load_scene(scene_file).with_values({"block.density": 7.0})
+
+
+def test_every_other_solver_refuses_the_scene_by_name(jointed: Scene) -> None:
+    for name in solver_names():
+        run = completed(get_solver(name), jointed)
+        if name == "jointed":
+            assert run.outcome is Outcome.COMPLETED
+        else:
+            assert run.outcome is Outcome.NOT_APPLICABLE, name
+            assert JOINTS in run.notes[-1], name
+
+
+def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed: Scene, tmp_path, monkeypatch) -> None:
+    (tmp_path / "plain.py").write_text("def solve(scene):\n    raise RuntimeError('was run')\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    run = completed(get_solver("plain:solve"), jointed)
+    assert run.outcome is Outcome.NOT_APPLICABLE and JOINTS in run.notes[-1]
+
+
+def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear(jointed: Scene, tmp_path) -> None:
+    metrics = [name for name, metric in CATALOGUE.items() if "reference" not in metric.needs]
+    gates = tuple(Gate(jointed.name, ("jointed",), metric, -1e9, 1e9, "a test") for metric in metrics)
+    study = Study("jointed", "t", "p", [jointed], ("jointed", "dda"), gates=lambda: gates)
+    verdicts = run_study(study, Results(tmp_path))
+    judged = {verdict.gate.metric for verdict in verdicts}
+    assert {"displacement.final", "pressure.minimum"} <= judged
+    assert not {name for name in judged if CATALOGUE[name].linear}
+    row = next(row for row in Results(tmp_path).rows().values() if row.solver == "jointed")
+    assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == "not reported"
+
+
+def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
+    assert by_role("judged") == ["dda"] and by_role("reference") == ["bar", "fem"] and by_role("truth") == ["continuum"]
+    assert role("fem:full") == "repeat" and role("jointed") == "other"
+    assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
+    assert registry.rank("jointed") < registry.rank("dda")
+
+
+def test_a_model_is_assembled_once_for_history_statics_and_modes(scene_file: Path, monkeypatch) -> None:
+    import fem_reference.mesh.model as model
+
+    built, sound = [], model.build
+    monkeypatch.setattr(model, "build", lambda *a, **k: built.append(1) or sound(*a, **k))
+    prepared = get_solver("fem").prepare(load_scene(scene_file))
+    prepared.run(), prepared.static(), prepared.modes(), prepared.diagnostics()
+    assert len(built) == 1
