@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
-from itertools import zip_longest
+from itertools import pairwise, zip_longest
 
 from fem_reference.exact.decimals import ZERO, root
 
@@ -99,25 +99,43 @@ class Exponential:
     def first_fall(self, end: Decimal) -> Decimal | None:
         """The first s in (0, end] at which the function falls through zero, None if it does not.
 
-        The function is positive just after zero.
+        The function is positive just after zero. An interval is passed over if the theorem allows no
+        zero in it, or if its slope is too small for one.
         """
-        pending = [(ZERO, end, self.changes(ZERO), self.changes(end))]
+        pending = [(self._node(ZERO), self._node(end))]
         while pending:
-            low, high, first, last = pending.pop()
-            bound, negative = first - last, self(high) < 0
-            if negative and (bound <= 1 or high - low < FINEST * end):
-                slope = self.derivative()
-                return root(lambda s, slope=slope: (self(s), slope(s)), low, high)  # type: ignore[misc]
-            if bound > 0 and high - low >= FINEST * end:
-                middle = (low + high) / 2
-                between = self.changes(middle)
-                pending += [(middle, high, between, last), (low, middle, first, between)]
+            low, high = pending.pop()
+            bound, length = low.changes - high.changes, high.at - low.at
+            fine = length < FINEST * end
+            if high.here.start < 0 and (bound <= 1 or fine):
+                return self._crossing(low.at, high.at)
+            if bound > 0 and not fine and low.here.start <= length * low.here.steepest(length):
+                middle = self._node((low.at + high.at) / 2)
+                pending += [(middle, high), (low, middle)]
         return None
 
-    def changes(self, s: Decimal) -> int:
-        """Changes of sign along f, D f, D D f, ... at s."""
-        signs = [x for x in self.shifted(s)._sequence() if x]
-        return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+    def _node(self, s: Decimal) -> Node:
+        here = self.shifted(s)
+        return Node(s, here, here.changes())
+
+    def _crossing(self, low: Decimal, high: Decimal) -> Decimal:
+        slope = self.derivative()
+        return root(lambda s: (self(s), slope(s)), low, high)
+
+    @property
+    def start(self) -> Decimal:
+        """Value at zero."""
+        return (self.P[0] if self.P else ZERO) + (self.Q[0] if self.Q else ZERO)
+
+    def steepest(self, length: Decimal) -> Decimal:
+        """Bound of |f'| from zero to a length."""
+        slope = self.derivative()
+        return _value(tuple(map(abs, slope.P)), length) + _value(tuple(map(abs, slope.Q)), length)
+
+    def changes(self) -> int:
+        """Changes of sign along f, D f, D D f, ... at zero."""
+        signs = [x for x in self._sequence() if x]
+        return sum(a != b for a, b in pairwise(signs))
 
     def _sequence(self) -> Iterable[int]:
         """Signs of f, D f, D D f, ... and of the derivatives of the last polynomial, at zero."""
@@ -128,6 +146,18 @@ class Exponential:
             P = _sum(_derivative(P), tuple(self.kappa * x for x in P))
         for x in P:
             yield _sign(x, ZERO)
+
+
+@dataclass(frozen=True)
+class Node:
+    """A point of the search for a crossing."""
+
+    at: Decimal
+    """Argument s of the function."""
+    here: Exponential
+    """The function of the argument since s."""
+    changes: int
+    """Its changes of sign."""
 
 
 def _sign(a: Decimal, b: Decimal) -> int:
