@@ -164,7 +164,7 @@ class BarMotion:
         return self.pieces[low], now - self._starts[low]
 
     def _up(self, now: Decimal) -> Decimal:
-        """f at an argument, which is negative for what was on its way at t = 0."""
+        """Wave f at an argument, which is negative for what was on its way at t = 0."""
         if now < 0:
             return self._units.V * now / 2
         piece, s = self._piece(now)
@@ -177,7 +177,7 @@ class BarMotion:
         return piece.rate(s)
 
     def _down(self, now: Decimal) -> Decimal:
-        """g at an argument, reflected at the top."""
+        """Wave g at an argument, reflected at the top."""
         units = self._units
         if now < 1:
             return units.V * now / 2

@@ -231,7 +231,7 @@ def _settled(model: BlockModel, state: State) -> State:
         tried = _switched(model, state, (first, second))
         if all(_agrees(model, tried, c) for c in (0, 1) if touching[c]):
             return tried
-    raise NoContactStateError(f"no open or closed state of the corners agrees with the motion at {float(state.time)!r} s")
+    raise NoContactStateError(f"no state of the corners agrees with the motion at {float(state.time)!r} s")
 
 
 def _gap(model: BlockModel, x: Vector, corner: int) -> Decimal:

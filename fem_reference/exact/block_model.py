@@ -80,7 +80,8 @@ class BlockProblem:
                 raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
         self._check_material()
         if 2 * abs(self.eccentricity) >= self.width:
-            raise ValueError(f"eccentricity: must be below half the width {self.width / 2:g}, got {self.eccentricity!r}")
+            rule = f"must be below half the width {self.width / 2:g}"
+            raise ValueError(f"eccentricity: {rule}, got {self.eccentricity!r}")
 
     def _check_material(self) -> None:
         if self.hypothesis not in HYPOTHESES:

@@ -144,7 +144,7 @@ def _unit(i: int) -> Vector:
 
 def _coefficients(row: Oscillation, frequencies: list[Decimal]) -> list[float]:
     """Coefficients of 1, s, s^2, the cosines and the sines."""
-    even = {w: ZERO for w in frequencies}
+    even = dict.fromkeys(frequencies, ZERO)
     odd = dict(even)
     for w, A, B in row.waves:
         even[w] += A

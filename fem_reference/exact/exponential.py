@@ -52,7 +52,7 @@ class Exponential:
         return _value(self.P, s) + decaying
 
     def derivative(self) -> Exponential:
-        """f' = P' + exp(-kappa s) (Q' - kappa Q)."""
+        """Derivative P' + exp(-kappa s) (Q' - kappa Q)."""
         return Exponential(
             self.kappa, _derivative(self.P), _sum(_derivative(self.Q), tuple(-self.kappa * x for x in self.Q))
         )
