@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -175,7 +176,7 @@ class Delayed:
         self.switches: list[float] = []
 
     def down(self, t: float, begin: float) -> float:
-        """g' just after `begin` or later in the piece that begins there."""
+        """Wave g' just after `begin` or later in the piece that begins there."""
         if begin < 1:
             return self.V / 2
         if begin < 2:
@@ -275,7 +276,7 @@ def test_energy_and_mean_velocity_from_the_fields(seed: int) -> None:
 def gauss(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights between breaks, where the fields are smooth but may decay by exp(-100)."""
     node, weight = np.polynomial.legendre.leggauss(24)
-    cut = np.concatenate([low + (high - low) * np.linspace(0, 1, 7)[:-1] for low, high in zip(breaks, breaks[1:])])
+    cut = np.concatenate([low + (high - low) * np.linspace(0, 1, 7)[:-1] for low, high in pairwise(breaks)])
     edges = np.append(cut, breaks[-1])
     half = np.diff(edges) / 2
     return ((edges[:-1] + half)[:, None] + np.outer(half, node)).ravel(), np.outer(half, weight).ravel()

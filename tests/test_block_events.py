@@ -1,6 +1,7 @@
 """The exact motion of the block with no-tension corners: known histories, an independent integration, identities."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -279,7 +280,7 @@ def test_impulse_and_momentum(seed: int) -> None:
     node, weight = np.polynomial.legendre.leggauss(120)
     edges = [piece.start[0] for piece in motion.pieces] + [end]
     impulse = np.zeros(2)
-    for low, high in zip(edges, edges[1:], strict=False):
+    for low, high in pairwise(edges):
         history = motion.at(low + (high - low) * (node + 1) / 2)
         forces = np.array([history.shear_force.sum(axis=0), history.normal_force.sum(axis=0)])
         impulse += forces @ weight * (high - low) / 2
