@@ -329,6 +329,15 @@ def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
     assert a.shear_force == pytest.approx(-b.shear_force[::-1], abs=1e-12 * np.abs(a.normal_force).max())
 
 
+@pytest.mark.parametrize("seed", [60, 61, 62])
+def test_a_centred_load_moves_nothing_sideways(seed: int) -> None:
+    problem = replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=1e9)
+    motion = solve(problem, 10 * travel(problem))
+    history = motion.at(np.linspace(0, motion.end, 40))
+    assert not history.displacement[[0, 2, 5]].any()
+    assert switch_times(motion) == switch_times(motion, "N")
+
+
 def test_resting_states() -> None:
     still = solve(replace(PAPER, pressure=0.0), 0.01)
     assert still.closed_at_start == (True, True)

@@ -121,12 +121,13 @@ class BlockModel:
         a, b, rho = Decimal(problem.width), Decimal(problem.height), Decimal(problem.density)
         m = rho * a * b
         second = (m * a * a / 12, m * b * b / 12)
+        half, down = a / 2, -(b / 2)  # rounded before signs are given: what is symmetric cancels to an exact zero
         return cls(
             mass=[m, m, *second, *second],
             elastic=_elastic(problem, a * b),
             load=_load(problem, a, b, m),
-            normal=[[ZERO, ONE, ZERO, ZERO, x, -b / 2] for x in (-a / 2, a / 2)],
-            shear=[[ONE, ZERO, x, -b / 2, ZERO, ZERO] for x in (-a / 2, a / 2)],
+            normal=[[ZERO, ONE, ZERO, ZERO, x, down] for x in (-half, half)],
+            shear=[[ONE, ZERO, x, down, ZERO, ZERO] for x in (-half, half)],
             gap=Decimal(problem.gap),
             p=Decimal(problem.stiffness),
             ps=Decimal(problem.shear_stiffness),
