@@ -219,7 +219,12 @@ def _next(piece: Piece, end: Decimal) -> State:
     x, rate = piece.after(s)
     time = piece.state.time + s if switched or s < left else end
     state = replace(piece.state, time=time, displacement=x, velocity=rate)
-    return _settled(piece.model, state) if switched else state
+    if not switched:
+        return state
+    settled = _settled(piece.model, state)
+    if settled.closed == piece.state.closed and s <= left * Decimal(10) ** (-getcontext().prec // 2):
+        raise NoContactStateError(f"the state of the corners contradicts the motion at {float(time)!r} s")
+    return settled
 
 
 def _settled(model: BlockModel, state: State) -> State:
