@@ -83,6 +83,7 @@ def test_an_overdamped_contact_sticks() -> None:
     scheme = ContactScheme(0.5, 1.0, 0.9)
     assert damped_rebound(scheme, 0.01) == 0.0
     assert statistics(scheme, 0.01).mean == 0.0
+    assert restitution(scheme, 0.01, [0.3, 0.8]) == pytest.approx([0.0, 0.0])
 
 
 @pytest.mark.parametrize("omega", [0.4, 1.7, 5.0, math.inf])
