@@ -1,0 +1,239 @@
+"""The bar on a no-tension base spring, exact in space and time through any number of openings.
+
+With rho the density, c = sqrt(E / rho), Z = rho c, y from the base, b the acceleration of gravity and N the
+contact pressure, waves f (up) and g (down) make up the displacement::
+
+    u(y, t) = -b t^2 / 2 + f(t - y / c) + g(t + y / c)
+    top     g'(t) = f'(t - 2 H / c) - q / Z      (before t = H / c: half the initial velocity)
+    base    f' = g' + N / Z,  w = g0 + u(0, t),  N = max(0, -k w / W),  w' = -b t + 2 g' + N / Z
+
+On each piece of the time all of them are polynomials plus exp(-kappa s) times polynomials, kappa = k / (W Z):
+a new piece begins with the load, where the base closes or opens, and at every echo of these after 2 H / c.
+The computation is in decimal arithmetic, with velocities in m/s and times in travel times H / c.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fem_reference.events.bar_march import Piece, pieces
+from fem_reference.events.bar_model import BarProblem, Units
+from fem_reference.events.decimals import HALF, TWO, ZERO, working
+from fem_reference.events.switches import Switch, TooManySwitchesError
+from fem_reference.problem import Array
+
+DIGITS = 60
+"""Decimal digits of the computation beyond those that it is known to lose."""
+
+
+@dataclass(frozen=True)
+class BarHistory:
+    """The motion at given instants."""
+
+    time: Array
+    """Instants [s], shape (times,)."""
+    displacement: Array
+    """Displacement of the mid-height [m], shape (times,)."""
+    gap: Array
+    """Gap w under the base [m], negative when pressed, shape (times,)."""
+    contact_pressure: Array
+    """N = max(0, -k w / W) [Pa], shape (times,)."""
+    mean_velocity: Array
+    """Velocity averaged over the height [m/s], shape (times,)."""
+    impulse: Array
+    """Integral of the contact pressure over the time so far [Pa s], shape (times,)."""
+    momentum_residual: Array
+    """rho H (mean velocity - V0 + b t) + q t - impulse [Pa s], zero but for rounding, shape (times,)."""
+
+
+@dataclass(frozen=True)
+class BarFields:
+    """The bar at one instant."""
+
+    displacement: Array
+    """u [m], shape (points,)."""
+    velocity: Array
+    """Rate of u [m/s], shape (points,)."""
+    stress: Array
+    """Axial stress, tension positive [Pa], shape (points,)."""
+
+
+@dataclass(frozen=True)
+class BarMotion:
+    """Exact motion of a bar from t = 0 to `end`."""
+
+    problem: BarProblem
+    end: float
+    """Last instant [s]."""
+    digits: int
+    """Decimal digits of the computation."""
+    closed_at_start: bool
+    """Whether the base is closed just after t = 0, where a base that stays at zero gap counts as closed."""
+    switches: tuple[Switch, ...]
+    """Openings and closings of the base, ``corner`` being ``"base"``, in the order of time."""
+    pieces: tuple[Piece, ...]
+    """The pieces of the motion in the order of time."""
+
+    def at(self, times: ArrayLike) -> BarHistory:
+        """The motion at instants in any order.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t = self._checked(times)
+        with working(self.digits):
+            rows = np.array([self._row(Decimal(float(instant))) for instant in t]).reshape(len(t), 6).T
+        return BarHistory(t, rows[0], rows[1], np.maximum(0.0, rows[2]), rows[3], rows[4], rows[5])
+
+    def fields(self, time: float, points: ArrayLike) -> BarFields:
+        """Displacement, velocity and stress at heights y above the base [m] at one instant.
+
+        Raises
+        ------
+        ValueError
+            If the instant is not from 0 to `end` or a point is not from 0 to the height.
+        """
+        self._checked([time])
+        y: Array = np.atleast_1d(np.asarray(points, dtype=float))
+        if y.ndim != 1 or not np.all((y >= 0) & (y <= self.problem.height)):
+            raise ValueError(f"points: must be heights from 0 to {self.problem.height!r}, got {points!r}")
+        with working(self.digits):
+            rows = np.array([self._point(Decimal(time), Decimal(float(height))) for height in y]).reshape(len(y), 3).T
+        return BarFields(rows[0], rows[1], rows[2])
+
+    def breaks(self, time: float) -> Array:
+        """Heights at which velocity or stress is not smooth at an instant, and both ends [m]."""
+        with working(self.digits):
+            now, height = Decimal(time) / self._units.travel, Decimal(self.problem.height)
+            born = [piece.start for piece in self.pieces]
+            heights = [now - t for t in born] + [t + sign - now + 1 for t in born for sign in (-1, 1)]
+            inside = sorted({float(height * x) for x in heights if 0 < x < 1})
+        return np.array([0.0, *inside, self.problem.height])
+
+    @cached_property
+    def _units(self) -> Units:
+        with working(self.digits):
+            return Units.of(self.problem)
+
+    @cached_property
+    def _starts(self) -> list[Decimal]:
+        return [piece.start for piece in self.pieces]
+
+    def _checked(self, times: ArrayLike) -> Array:
+        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
+        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
+            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
+        return t
+
+    def _row(self, time: Decimal) -> tuple[float, ...]:
+        """Displacement, gap, pressure, mean velocity, impulse and momentum residual."""
+        units = self._units
+        now = time / units.travel
+        piece, s = self._piece(now)
+        middle = self._up(now - HALF) + self._down(now + HALF) - units.b * now * now / 2
+        mean = self._up(now) - self._down(now) + units.V - (units.q + units.b) * now
+        gap, impulse = piece.gap(s), piece.impulse(s)
+        residual = mean - units.V + (units.b + units.q) * now - impulse
+        pressure = -units.kappa * gap if piece.closed else ZERO
+        Z, T = units.impedance, units.travel
+        return tuple(map(float, (middle * T, gap * T, pressure * Z, mean, impulse * Z, residual * Z)))
+
+    def _point(self, time: Decimal, y: Decimal) -> tuple[float, ...]:
+        """Displacement, velocity and stress."""
+        units = self._units
+        now, height = time / units.travel, y / Decimal(self.problem.height)
+        before, after = now - height, now + height
+        u = self._up(before) + self._down(after) - units.b * now * now / 2
+        up, down = self._up_rate(before), self._down_rate(after)
+        return tuple(map(float, (u * units.travel, up + down - units.b * now, (down - up) * units.impedance)))
+
+    def _piece(self, now: Decimal) -> tuple[Piece, Decimal]:
+        """The piece of an instant, and the time since it began."""
+        low = bisect_right(self._starts, now) - 1
+        return self.pieces[low], now - self._starts[low]
+
+    def _up(self, now: Decimal) -> Decimal:
+        """Wave f at an argument, which is negative for what was on its way at t = 0."""
+        if now < 0:
+            return self._units.V * now / 2
+        piece, s = self._piece(now)
+        return piece.wave(s)
+
+    def _up_rate(self, now: Decimal) -> Decimal:
+        if now < 0:
+            return self._units.V / 2
+        piece, s = self._piece(now)
+        return piece.rate(s)
+
+    def _down(self, now: Decimal) -> Decimal:
+        """Wave g at an argument, reflected at the top."""
+        units = self._units
+        if now < 1:
+            return units.V * now / 2
+        return units.V + self._up(now - TWO) - units.q * (now - 1)
+
+    def _down_rate(self, now: Decimal) -> Decimal:
+        units = self._units
+        return units.V / 2 if now < 1 else self._up_rate(now - TWO) - units.q
+
+
+def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10_000) -> BarMotion:
+    """The exact motion of a bar from t = 0 to `end` [s].
+
+    Parameters
+    ----------
+    problem
+        The bar, its base spring and its loads.
+    end
+        Last instant [s].
+    digits
+        Decimal digits of the result before rounding, at least 50; the computation adds those that it loses.
+    limit
+        Greatest number of switches.
+
+    Raises
+    ------
+    ValueError
+        If `end` is not positive and finite or `digits` is below 50.
+    TooManySwitchesError
+        If there are more switches than `limit`.
+    """
+    if not (math.isfinite(end) and end > 0):
+        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    if digits < 50:
+        raise ValueError(f"digits: must be at least 50, got {digits!r}")
+    found: list[Piece] = []
+    switches = 0
+    precision = digits + _lost(problem, end)
+    with working(precision):
+        units = Units.of(problem)
+        for piece in pieces(units, Decimal(end) / units.travel):
+            switches += bool(found) and piece.closed != found[-1].closed
+            found.append(piece)
+            if switches > limit:
+                raise TooManySwitchesError(f"more than {limit} switches by {float(piece.start * units.travel):g} s")
+        changes = tuple(_switches(found, units.travel))
+    return BarMotion(problem, float(end), precision, found[0].closed, changes, tuple(found))
+
+
+def _lost(problem: BarProblem, end: float) -> int:
+    """Digits that cancel: one a round trip by the polynomials, and those of 1 / kappa by each of their degrees."""
+    trips = end / problem.travel / 2 + 2
+    return math.ceil(trips * (1 + max(0.0, -math.log10(problem.kappa))))
+
+
+def _switches(pieces: list[Piece], travel: Decimal) -> Iterator[Switch]:
+    for before, after in pairwise(pieces):
+        if before.closed != after.closed:
+            yield Switch(float(after.start * travel), "base", "closes" if after.closed else "opens")

@@ -1,0 +1,101 @@
+"""The bar on a no-tension base spring: its data, and the units in which its motion is computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from decimal import Decimal
+
+POSITIVE = ("height", "width", "density", "young", "base_stiffness")
+
+
+@dataclass(frozen=True)
+class BarProblem:
+    """An elastic bar that is dropped on or pressed against a no-tension base spring.
+
+    At t = 0 the bar is unstrained, its base a gap above the spring, and all loads are switched on.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    height: float
+    """Length H of the bar [m]."""
+    width: float
+    """Width W [m], unit thickness."""
+    density: float
+    """Mass density rho [kg/m3]."""
+    young: float
+    """Axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]."""
+    base_stiffness: float
+    """Stiffness k = 2 p of the base spring [N/m]."""
+    pressure: float = 0.0
+    """Pressure q on the top [Pa], downwards, from t = 0 on."""
+    gravity: float = 0.0
+    """Acceleration of gravity, downwards [m/s2]."""
+    gap: float = 0.0
+    """Gap g0 under the base at t = 0 [m]."""
+    velocity: float = 0.0
+    """Velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one."""
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise ValueError(f"{field.name}: must be a finite number, got {value!r}")
+            if field.name in POSITIVE and value <= 0:
+                raise ValueError(f"{field.name}: must be positive, got {value!r}")
+        if self.gap < 0:
+            raise ValueError(f"gap: must not be negative, got {self.gap!r}")
+
+    @property
+    def travel(self) -> float:
+        """Time H / c of a wave from top to base [s]."""
+        return self.height * math.sqrt(self.density / self.young)
+
+    @property
+    def kappa(self) -> float:
+        """Stiffness of the spring over that of the bar, k H / (E W) [-]: decay rate per travel time."""
+        return self.base_stiffness / self.young * (self.height / self.width)
+
+
+@dataclass(frozen=True)
+class Units:
+    """The data in m/s and travel times."""
+
+    travel: Decimal
+    """H / c [s]."""
+    impedance: Decimal
+    """Z = rho c [Pa s/m]."""
+    kappa: Decimal
+    """k H / (E W) [-]."""
+    q: Decimal
+    """q / Z [m/s]."""
+    b: Decimal
+    """b H / c [m/s]."""
+    gap: Decimal
+    """g0 c / H [m/s]."""
+    V: Decimal
+    """Initial velocity [m/s]."""
+
+    @classmethod
+    def of(cls, bar: BarProblem) -> Units:
+        """Units of a bar in the precision of the current decimal context."""
+        H, rho, E = Decimal(bar.height), Decimal(bar.density), Decimal(bar.young)
+        c = (E / rho).sqrt()
+        return cls(
+            travel=H / c,
+            impedance=rho * c,
+            kappa=Decimal(bar.base_stiffness) * H / (E * Decimal(bar.width)),
+            q=Decimal(bar.pressure) / (rho * c),
+            b=Decimal(bar.gravity) * H / c,
+            gap=Decimal(bar.gap) * c / H,
+            V=Decimal(bar.velocity),
+        )
+
+    @property
+    def scale(self) -> Decimal:
+        """Size of the velocities [m/s]."""
+        return max(abs(self.q), abs(self.b), self.gap, abs(self.V))

@@ -1,0 +1,238 @@
+"""Restitution of a rigid mass on a no-tension penalty contact under Newmark's scheme with kinetic damping.
+
+A mass comes down at speed V, unloaded, on a spring k. In units of V, the time step and V times the time step,
+with Omega = sqrt(k / m) dt, a step is::
+
+    w* = w + gg v + (1/2 - alpha) A                    predictor; in contact where w* < 0
+    A' = -Omega^2 w*/(1 + alpha Omega^2)               in contact, else A' = 0
+    w' = w* + alpha A',   v' = gg v + (1 - delta) A + delta A'
+
+The first step in contact starts with v = -1, A = 0 and w* = -theta: the overshoot theta of the predictor is
+uniform from 0 to 1 where steps and impacts have nothing to do with each other. The restitution e is the speed
+after the first step without contact. It is a continuous function of theta made of straight lines.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fem_reference.problem import Array
+
+LIMIT = 100_000
+"""Steps in contact after which the mass counts as stuck; also where it has come to rest."""
+REST = 1e-18
+"""Speed and acceleration below which the mass has come to rest, over those of the impact."""
+
+Line = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class ContactScheme:
+    """Parameters of the scheme.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    alpha: float
+    """Weight of the new acceleration in the displacement [-], positive."""
+    delta: float
+    """Weight of the new acceleration in the velocity [-]; at most alpha + 1/2, else contact could end downwards."""
+    gg: float = 1.0
+    """Factor on the velocity at the start of each step [-]."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.alpha) and self.alpha > 0):
+            raise ValueError(f"alpha: must be positive and finite, got {self.alpha!r}")
+        if not 0.5 <= self.delta <= min(1.0, self.alpha + 0.5):
+            raise ValueError(f"delta: must be from 0.5 to min(1, alpha + 0.5), got {self.delta!r}")
+        if not 0 < self.gg <= 1:
+            raise ValueError(f"gg: must be above 0 and at most 1, got {self.gg!r}")
+
+    def response(self, omega: float) -> float:
+        """Acceleration in contact per depth of the predictor, Omega^2 / (1 + alpha Omega^2); 1 / alpha if stiff."""
+        if not omega > 0:
+            raise ValueError(f"omega: must be positive, got {omega!r}")
+        return 1 / (1 / omega / omega + self.alpha)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One straight line of the restitution, e = constant + slope theta."""
+
+    low: float
+    """Least theta [-]."""
+    high: float
+    """Greatest theta [-]."""
+    constant: float
+    """The line's value at theta = 0 [-]."""
+    slope: float
+    """Its slope [-]."""
+
+    def __call__(self, theta: float) -> float:
+        """Restitution."""
+        return self.constant + self.slope * theta
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Restitution over theta uniform from 0 to 1."""
+
+    mean: float
+    """Mean of e [-]."""
+    low: float
+    """Least e [-]."""
+    high: float
+    """Greatest e [-]."""
+    mean_square: float
+    """Mean of e^2, the share of the energy that is left [-]."""
+
+
+def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
+    """Restitution by running the scheme.
+
+    Parameters
+    ----------
+    scheme
+        The scheme.
+    omega
+        Omega = sqrt(k / m) dt, `math.inf` for a rigid contact.
+    theta
+        Overshoots of the predictor from 0 to 1, shape (n,).
+
+    Returns
+    -------
+    Array
+        Restitution e, shape (n,); 0 where the mass sticks.
+
+    Raises
+    ------
+    ValueError
+        If `omega` is not positive or a theta is not from 0 to 1.
+    """
+    overshoot = np.atleast_1d(np.asarray(theta, dtype=float))
+    if not np.all((overshoot >= 0) & (overshoot <= 1)):
+        raise ValueError(f"theta: must be from 0 to 1, got {theta!r}")
+    stiffness = scheme.response(omega)
+    return np.array([_run(scheme, stiffness, float(x)) for x in overshoot])
+
+
+def _run(scheme: ContactScheme, stiffness: float, theta: float) -> float:
+    """One impact."""
+    gg, delta = scheme.gg, scheme.delta
+    predicted, v, A = -theta, -1.0, 0.0
+    for _ in range(LIMIT):
+        new = -stiffness * predicted
+        v = gg * v + (1 - delta) * A + delta * new
+        predicted, A = predicted + new / 2 + gg * v, new
+        if predicted >= 0:
+            return gg * v + (1 - delta) * A
+        if max(abs(v), abs(A)) < REST:
+            break
+    return 0.0
+
+
+def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
+    """All straight lines of the restitution, from theta = 0 to 1.
+
+    The state is a straight line in theta as long as contact lasts; where the predictor changes its sign within
+    an interval of theta, the interval is cut.
+
+    Raises
+    ------
+    ValueError
+        If `omega` is not positive.
+    """
+    stiffness = scheme.response(omega)
+    found: list[Branch] = []
+    pending: list[tuple[float, float, Line, Line, Line, int]] = [(0.0, 1.0, (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0), 0)]
+    while pending:
+        low, high, predicted, v, A, steps = pending.pop()
+        predicted, v, A, out = _step(scheme, stiffness, predicted, v, A)
+        size = max(map(abs, (*v, *A)))
+        for part in _parts(predicted, low, high):
+            if _at(predicted, sum(part) / 2) >= 0:
+                found.append(Branch(*part, *out))
+            elif size < REST or steps >= LIMIT:
+                found.append(Branch(*part, 0.0, 0.0))
+            else:
+                pending.append((*part, predicted, v, A, steps + 1))
+    return tuple(sorted(found, key=lambda branch: branch.low))
+
+
+def _step(scheme: ContactScheme, stiffness: float, predicted: Line, v: Line, A: Line) -> tuple[Line, Line, Line, Line]:
+    """A step in contact: the next predictor, velocity and acceleration, and the velocity if contact ends."""
+    gg, delta = scheme.gg, scheme.delta
+    new = _mix((-stiffness, predicted))
+    v = _mix((gg, v), (1 - delta, A), (delta, new))
+    following = _mix((1.0, predicted), (0.5, new), (gg, v))
+    return following, v, new, _mix((gg, v), (1 - delta, new))
+
+
+def _mix(*terms: tuple[float, Line]) -> Line:
+    """Sum of factors times lines."""
+    return sum(x * line[0] for x, line in terms), sum(x * line[1] for x, line in terms)
+
+
+def _at(line: Line, theta: float) -> float:
+    return line[0] + line[1] * theta
+
+
+def _parts(line: Line, low: float, high: float) -> tuple[tuple[float, float], ...]:
+    """An interval, cut where a line crosses zero inside."""
+    zero = -line[0] / line[1] if line[1] else low
+    return ((low, zero), (zero, high)) if low < zero < high else ((low, high),)
+
+
+def statistics(scheme: ContactScheme, omega: float) -> Statistics:
+    """Mean, range and mean square of the restitution, each line integrated exactly.
+
+    Raises
+    ------
+    ValueError
+        If `omega` is not positive.
+    """
+    lines = branches(scheme, omega)
+    ends = [(line.high - line.low, line(line.low), line(line.high)) for line in lines]
+    values = [e for _, first, last in ends for e in (first, last)]
+    return Statistics(
+        mean=math.fsum(width * (first + last) / 2 for width, first, last in ends),
+        low=min(values),
+        high=max(values),
+        mean_square=math.fsum(width * (first * first + first * last + last * last) / 3 for width, first, last in ends),
+    )
+
+
+def damped_rebound(scheme: ContactScheme, omega: float) -> float:
+    """Restitution of many steps in contact, e = exp(-pi xi / sqrt(1 - xi^2)), Omega << 1.
+
+    xi = (1 - gg) / (2 Omega) + (delta - 1/2) Omega / 2 is the damping ratio of the scheme in contact; 0 beyond xi = 1.
+    """
+    xi = (1 - scheme.gg) / (2 * omega) + (scheme.delta - 0.5) * omega / 2
+    return math.exp(-math.pi * xi / math.sqrt(1 - xi * xi)) if xi < 1 else 0.0
+
+
+def two_step_contact(scheme: ContactScheme) -> tuple[float, float]:
+    """The Omega at which the trace of a step in contact is zero, and the restitution there for gg = 1.
+
+    Contact then lasts two steps whatever theta is, and two steps multiply the state by minus the determinant:
+    Omega^2 = 2 / (1/2 + delta - 2 alpha), e = 1 + (1/2 - delta) Omega^2 / (1 + alpha Omega^2).
+
+    Raises
+    ------
+    ValueError
+        If gg is not 1, or 2 alpha is not below 1/2 + delta: the trace is then positive at every Omega.
+    """
+    room = 0.5 + scheme.delta - 2 * scheme.alpha
+    if scheme.gg != 1:
+        raise ValueError(f"gg: must be 1 for a contact of two steps, got {scheme.gg!r}")
+    if room <= 0:
+        raise ValueError(f"alpha: must be below 1/4 + delta/2 for a contact of two steps, got {scheme.alpha!r}")
+    square = 2 / room
+    return math.sqrt(square), 1 + (0.5 - scheme.delta) * square / (1 + scheme.alpha * square)

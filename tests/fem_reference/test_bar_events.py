@@ -1,0 +1,343 @@
+"""The exact motion of the bar on a no-tension spring: known histories, an independent integration, identities."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from fem_reference import Bar, Scheme
+from fem_reference.events.bar_events import BarMotion, solve
+from fem_reference.events.bar_model import BarProblem
+from fem_reference.events.landing import stiff_opening
+from fem_reference.events.switches import TooManySwitchesError
+
+PAPER = BarProblem(height=2.0, width=2.0, density=2700.0, young=1e9, base_stiffness=2e9, pressure=5e6)
+OTHER = BarProblem(height=1.5, width=1.5, density=2400.0, young=3e9, base_stiffness=14e9, pressure=2e6)
+
+
+def switch_times(motion: BarMotion) -> list[float]:
+    return [switch.time for switch in motion.switches]
+
+
+# Switch times [s], opening first, then the mid-height displacement [m] and the contact pressure [Pa] at 3, 6 and
+# 9 a/c, from 80 digits of mpmath and from DOP853 on the delay equation. The printed values have 11 to 14 digits.
+HISTORIES = [
+    (
+        PAPER,
+        [0.017964507628979, 0.021939461028721, 0.036795023684005],
+        [-0.020823334904607, 0.00098044250944556, -0.02038367296426],
+        [9816843.61111, 0.0, 12103775.169],
+    ),
+    (
+        replace(PAPER, base_stiffness=2e10),
+        [0.016553410872793, 0.017011534630142, 0.029644218348531, 0.029907348316653],
+        [-0.0069999546000701, -0.010989504433439, -0.0010677245716886],
+        [1e7, 9999983.32155, 3.5e-6],
+    ),
+    (
+        replace(PAPER, base_stiffness=2e11),
+        [0.016443850139919, 0.016489662515654],
+        [-0.0052, -0.0101, -0.0046],
+        [1e7, 1e7, 0.0],
+    ),
+    (
+        replace(PAPER, base_stiffness=2e8),
+        [],
+        [-0.040434436128232, -0.10289879033026, -0.095775969499755],
+        [3296799.53964, 9552769.44911, 8469680.76381],
+    ),
+    (
+        OTHER,
+        [0.0069218140380999, 0.0077222679298686, 0.012238800061209, 0.012590286189158],
+        [-0.0013151926357872, -0.0005435745686584, -0.00024876401613106],
+        [3999646.29205, 2017632.42198, 362338.26179],
+    ),
+]
+
+
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), HISTORIES)
+def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(
+    problem: BarProblem, switches: list[float], displacement: list[float], pressure: list[float]
+) -> None:
+    motion = solve(problem, 12 * problem.travel)
+    assert motion.closed_at_start
+    assert [s.kind for s in motion.switches[:2]] == ["opens", "closes"][: len(motion.switches)]
+    assert switch_times(motion)[: len(switches)] == pytest.approx(switches, rel=2e-13)
+    assert bool(switches) == bool(motion.switches)
+    # a hair earlier: at 9 a/c a front arrives, and a rounded instant may lie behind it
+    history = motion.at(np.array([3, 6, 9]) * problem.travel * (1 - 1e-15))
+    assert history.displacement == pytest.approx(displacement, rel=1e-12)
+    assert history.contact_pressure == pytest.approx(pressure, rel=1e-11, abs=5e-8)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "value"), [(1, -0.0206990116959625), (10, -0.0104895365158584), (100, -0.00365484513745385)]
+)
+def test_later_values(ratio: int, value: float) -> None:
+    motion = solve(replace(PAPER, base_stiffness=2e9 * ratio), 0.05)
+    assert motion.at([0.05]).displacement == pytest.approx([value], rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "release", "e"),
+    [
+        (0.1, 7.24747963974, 0.999434986336),
+        (1.0, 2.83643330853, 0.975858485361),
+        (10.0, 2.0839173495, 0.997414419614),
+        (100.0, 2.00839173495, 0.999741441961),
+    ],
+)
+def test_an_elastic_impact(ratio: float, release: float, e: float) -> None:
+    problem = replace(PAPER, pressure=0.0, velocity=-0.7, base_stiffness=2e9 * ratio)
+    motion = solve(problem, 12 * problem.travel)
+    assert np.array(switch_times(motion)) / problem.travel == pytest.approx([release], rel=1e-11)
+    assert motion.at([motion.end]).mean_velocity == pytest.approx([0.7 * e], rel=1e-11)
+
+
+@pytest.mark.parametrize(("ratio", "contact"), [(1, 0.0094942023919859), (100, 0.0066019935521345)])
+def test_a_drop_by_its_own_weight(ratio: int, contact: float) -> None:
+    problem = replace(PAPER, pressure=0.0, gravity=9.81, gap=0.05, base_stiffness=2e9 * ratio)
+    motion = solve(problem, 0.12)
+    first, second = switch_times(motion)[:2]
+    assert not motion.closed_at_start
+    assert first == pytest.approx(np.sqrt(2 * 0.05 / 9.81), rel=1e-15)
+    assert motion.at([first]).mean_velocity == pytest.approx([-0.990454441153151], rel=1e-13)
+    assert second - first == pytest.approx(contact, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "times"),
+    [
+        (10, [1.7719679119689, 3.7434589506622, 4.4891745212166]),
+        (100, [1.6774227044841, 3.674310110746, 4.3488789444489]),
+        (1000, [1.667744780213, 3.6674307545665, 4.3348876303179]),
+        (10000, [1.6667745034073, 3.6667430730035, 4.3334887605193]),
+    ],
+)
+def test_the_bouncing_bar_of_doyen_ern_and_piperno(ratio: int, times: list[float]) -> None:
+    bar = BarProblem(10.0, 1.0, 1.0, 900.0, ratio * 90.0, gravity=10.0, gap=5.0)
+    found = switch_times(solve(bar, 5.0))
+    assert found[0] == pytest.approx(1.0, rel=1e-15)
+    assert found[1:] == pytest.approx(times, rel=1e-13)
+    # on rigid ground: release at 5/3, impact at 11/3, release at 13/3; the delay is of order 1 / kappa
+    assert found[1:] == pytest.approx([5 / 3, 11 / 3, 13 / 3], abs=3.0 / ratio)
+
+
+def test_the_first_opening_of_a_stiff_spring() -> None:
+    x = stiff_opening()
+    assert x == pytest.approx(0.740850429779883, rel=1e-14)
+    for problem in (replace(PAPER, base_stiffness=2e11), replace(OTHER, base_stiffness=6e11)):
+        motion = solve(problem, 6 * problem.travel)
+        # what is left of the first wave is exp(-2 kappa), far below a float here
+        assert switch_times(motion)[0] / problem.travel == pytest.approx(5 + x / problem.kappa, rel=1e-15)
+
+
+def test_without_an_opening_it_is_the_locked_bar() -> None:
+    steps, problem = 60, replace(PAPER, base_stiffness=2e8)
+    locked = Bar(2.0, 2.0, 2700.0, 1e9, 2e8, 5e6).continuum(Scheme(0.5, 1.0, 1.0, 7.5e-4), steps)
+    motion = solve(problem, 0.0461)
+    assert not motion.switches
+    history = motion.at(7.5e-4 * np.arange(1, steps + 1))
+    for name in ("displacement", "contact_pressure"):
+        other = locked.columns[name]
+        assert np.abs(getattr(history, name) - other).max() <= 1e-11 * np.abs(other).max()
+
+
+def random_problem(seed: int) -> BarProblem:
+    rng = np.random.default_rng(seed)
+    young = 1e9 * 10 ** rng.uniform(-1, 1)
+    height, width = rng.uniform(0.5, 3.0, 2)
+    speed = float(np.sqrt(young / 2500.0)) * 1e-3
+    return BarProblem(
+        height=height,
+        width=width,
+        density=rng.uniform(2000, 3000),
+        young=young,
+        base_stiffness=young * width / height * 10 ** rng.uniform(-1, 2),
+        pressure=young * rng.uniform(-0.001, 0.01),
+        gravity=rng.uniform(0, 20),
+        gap=height * rng.uniform(0, 5e-3) * int(rng.integers(2)),
+        velocity=speed * rng.uniform(-5, 2),
+    )
+
+
+class Delayed:
+    """The same bar from its delay equation by DOP853, round trip by round trip, in m/s and travel times."""
+
+    def __init__(self, bar: BarProblem) -> None:
+        speed = float(np.sqrt(bar.young / bar.density))
+        self.V, self.q = bar.velocity, bar.pressure / (bar.density * speed)
+        self.b, self.gap = bar.gravity * bar.height / speed, bar.gap * speed / bar.height
+        self.kappa = bar.base_stiffness * bar.height / (bar.young * bar.width)
+        self.pieces: list[tuple[float, float, Callable[[float], float]]] = []
+        self.switches: list[float] = []
+
+    def down(self, t: float, begin: float) -> float:
+        """Wave g' just after `begin` or later in the piece that begins there."""
+        if begin < 1:
+            return self.V / 2
+        if begin < 2:
+            return self.V / 2 - self.q
+        for low, high, up in self.pieces:
+            if low <= begin - 2 + 1e-12 < high:
+                return up(t - 2) - self.q
+        raise AssertionError((t, begin))
+
+    def run(self, end: float) -> float:
+        """Gap at the end."""
+        breaks, t, w = [1.0, 2.0], 0.0, self.gap
+        closed = not w and 2 * self.V / 2 <= 0
+        while t < end - 1e-12:
+            high = min([x for x in breaks if x > t + 1e-10] + [end])
+            t, w, closed = self.piece(t, high, w, closed)
+            breaks.append(self.pieces[-1][1] + 2)
+        return w
+
+    def piece(self, low: float, high: float, w: float, closed: bool) -> tuple[float, float, bool]:
+        k = self.kappa if closed else 0.0
+
+        def rate(t, y):
+            return [2 * self.down(t, low) - self.b * t - k * y[0]]
+
+        def event(t, y):
+            return y[0]
+
+        event.terminal, event.direction = True, 1 if closed else -1
+        done = solve_ivp(
+            rate, (low, high), [w], method="DOP853", rtol=1e-12, atol=1e-15, events=event, dense_output=True
+        )
+        stop = float(done.t[-1])
+        self.pieces.append((low, stop, lambda t: self.down(t, low) - k * float(done.sol(t)[0])))
+        if len(done.t_events[0]):
+            self.switches.append(stop)
+            return stop, 0.0, not closed
+        return stop, float(done.y[0, -1]), closed
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_independent_integration_of_the_delay_equation_agrees(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 8.3
+    motion = solve(problem, end * problem.travel)
+    other = Delayed(problem)
+    gap = other.run(end)
+    assert len(other.switches) > 0
+    # dense output of DOP853 is of order 7: about 1e-9 at these steps, and each round trip starts from the one before
+    assert np.array(switch_times(motion)) / problem.travel == pytest.approx(other.switches, abs=1e-7)
+    speed = problem.height / problem.travel
+    assert motion.at([motion.end]).gap[0] * speed / problem.height == pytest.approx(gap, abs=1e-7 * abs(other.q))
+
+
+@pytest.mark.parametrize("seed", range(10, 22))
+def test_momentum_and_the_digits_of_random_motions(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 15 * problem.travel
+    motion, finer = solve(problem, end), solve(problem, end, digits=110)
+    assert motion.switches == finer.switches
+    t = np.linspace(0, end, 80)
+    history, other = motion.at(t), finer.at(t)
+    for name in ("displacement", "gap", "contact_pressure", "mean_velocity", "impulse"):
+        a, b = getattr(history, name), getattr(other, name)
+        assert np.abs(a - b).max() <= 1e-15 * np.abs(b).max(), name
+    scale = abs(problem.pressure) * end + np.abs(history.impulse).max()
+    assert np.abs(history.momentum_residual).max() <= 1e-40 * scale
+    assert np.all(history.contact_pressure >= 0)
+    assert history.contact_pressure == pytest.approx(
+        np.maximum(0, -problem.base_stiffness * history.gap / problem.width), rel=1e-14
+    )
+
+
+@pytest.mark.parametrize("seed", [30, 31, 32, 33])
+def test_energy_and_mean_velocity_from_the_fields(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 9 * problem.travel
+    motion = solve(problem, end)
+    base = problem.base_stiffness / problem.width
+    totals = []
+    for time in np.linspace(0.013, 0.987, 12) * end:
+        y, weight = gauss(motion.breaks(time))
+        field, now = motion.fields(time, y), motion.at([time])
+        top = motion.fields(time, [problem.height]).displacement[0]
+        kinetic = weight @ field.velocity**2 * problem.density / 2
+        strain = weight @ field.stress**2 / (2 * problem.young)
+        fallen = problem.density * problem.gravity * (weight @ field.displacement)
+        totals.append([kinetic, strain, base * min(0.0, now.gap[0]) ** 2 / 2, fallen, problem.pressure * top])
+        assert weight @ field.velocity / problem.height == pytest.approx(
+            now.mean_velocity[0], abs=1e-12 * np.abs(field.velocity).max()
+        )
+    energy = np.array(totals)
+    start = problem.density * problem.height * problem.velocity**2 / 2
+    assert np.abs(energy.sum(axis=1) - start).max() <= 1e-11 * np.abs(energy).max()
+
+
+def gauss(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights between breaks, where the fields are smooth but may decay by exp(-100)."""
+    node, weight = np.polynomial.legendre.leggauss(24)
+    cut = np.concatenate([low + (high - low) * np.linspace(0, 1, 7)[:-1] for low, high in pairwise(breaks)])
+    edges = np.append(cut, breaks[-1])
+    half = np.diff(edges) / 2
+    return ((edges[:-1] + half)[:, None] + np.outer(half, node)).ravel(), np.outer(half, weight).ravel()
+
+
+def test_the_fields_meet_the_base_and_the_top() -> None:
+    problem = random_problem(34)
+    motion = solve(problem, 7 * problem.travel)
+    for time in np.array([0.4, 1.7, 3.3, 6.1]) * problem.travel:
+        field, now = motion.fields(time, [0.0, problem.height / 2, problem.height]), motion.at([time])
+        assert field.displacement[0] + problem.gap == pytest.approx(now.gap[0], rel=1e-12)
+        assert field.displacement[1] == pytest.approx(now.displacement[0], rel=1e-14)
+        assert -field.stress[0] == pytest.approx(now.contact_pressure[0], abs=1e-14 * abs(problem.pressure))
+        assert field.stress[2] == pytest.approx(-problem.pressure, rel=1e-14)
+
+
+@pytest.mark.parametrize("seed", [40, 41])
+def test_twice_the_load_moves_twice_as_far_at_the_same_times(seed: int) -> None:
+    problem = random_problem(seed)
+    names = ("pressure", "gravity", "gap", "velocity")
+    twice = replace(problem, **{name: 2 * getattr(problem, name) for name in names})
+    end = 10 * problem.travel
+    once, double = solve(problem, end), solve(twice, end)
+    assert once.switches == double.switches
+    t = np.linspace(0, end, 30)
+    assert 2 * once.at(t).displacement == pytest.approx(double.at(t).displacement, rel=1e-14)
+
+
+def test_tiny_contact_forces_are_resolved() -> None:
+    """At p = 100 E what is left of a wave is exp(-400), yet its openings are those of the equations."""
+    motion = solve(replace(PAPER, base_stiffness=2e11), 0.04)
+    finer = solve(replace(PAPER, base_stiffness=2e11), 0.04, digits=300)
+    assert len(motion.switches) > 4
+    assert motion.switches == finer.switches
+    assert 0 < motion.at([8.999 * PAPER.travel]).contact_pressure[0] < 1e-100
+
+
+def test_resting_states() -> None:
+    still = solve(replace(PAPER, pressure=0.0), 0.02)
+    assert still.closed_at_start
+    assert not still.switches
+    assert not still.at([0.01]).displacement.any()
+    pulled = solve(replace(PAPER, pressure=-5e6), 0.02)
+    assert switch_times(pulled) == pytest.approx([PAPER.travel], rel=1e-15)  # the front lifts the base at once
+    hovering = solve(replace(PAPER, pressure=0.0, gap=0.1), 0.02)
+    assert not hovering.closed_at_start
+    assert not hovering.switches
+
+
+def test_bad_input_is_refused_by_name() -> None:
+    for field, value in [("height", 0.0), ("base_stiffness", -1.0), ("gap", -1e-3), ("pressure", np.inf)]:
+        with pytest.raises(ValueError, match=field):
+            replace(PAPER, **{field: value})
+    with pytest.raises(ValueError, match="end"):
+        solve(PAPER, np.inf)
+    with pytest.raises(ValueError, match="digits"):
+        solve(PAPER, 1.0, digits=10)
+    motion = solve(PAPER, 0.01)
+    with pytest.raises(ValueError, match="times"):
+        motion.at([-0.02])
+    with pytest.raises(ValueError, match="points"):
+        motion.fields(0.01, [2.1])
+    with pytest.raises(TooManySwitchesError):
+        solve(PAPER, 0.2, limit=3)

@@ -1,0 +1,373 @@
+"""The exact motion of the block with no-tension corners: known histories, an independent integration, identities."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from fem_reference.events.block_events import BlockMotion, solve
+from fem_reference.events.block_model import BlockProblem
+from fem_reference.events.landing import first_landing, micro_impacts
+from fem_reference.events.switches import TooManySwitchesError
+
+PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
+OTHER = BlockProblem(1.5, 1.5, 2400.0, 3e9, 7e9, 2e6)
+GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
+
+
+def travel(problem: BlockProblem) -> float:
+    return problem.height * float(np.sqrt(problem.density / problem.young))
+
+
+def switch_times(motion: BlockMotion, corner: str = "M") -> list[float]:
+    return [switch.time for switch in motion.switches if switch.corner == corner]
+
+
+# Switch times [s], then v [m] and contact pressure [Pa] at 3, 6 and 9 a/c, from modes in 40 and 55 digits of mpmath
+# and from DOP853 with events. The printed values have 14 digits.
+HISTORIES = [
+    (
+        PAPER,
+        [0.0032525750597312, 0.016134552097502, 0.021468455011596, 0.03563489393917],
+        [-0.019624767959151, 0.00031590245481852, -0.019792101285884],
+        [13384420.7848, 0.0, 12124063.0636],
+    ),
+    (
+        replace(PAPER, stiffness=1e10),
+        [0.0032525750597312, 0.0047189535282337, 0.005374160611419, 0.0071061595529526, 0.0075986533640999],
+        [-0.0048476533988349, -0.0088697687782978, -0.0010994013033985],
+        [0.0, 18266488.6556, 0.0],
+    ),
+    (
+        replace(PAPER, stiffness=1e11),
+        [0.0032525750597312, 0.0036444191050135, 0.0048646595917341, 0.0052726003696245],
+        [-0.003068644722673, -0.0093443226036173, -0.0028873908199839],
+        [23168703.7452, 0.0, 37093254.2842],
+    ),
+    (
+        replace(PAPER, stiffness=1e8),
+        [0.0032525750597312],
+        [-0.04033057058886, -0.10229735564167, -0.094205442534319],
+        [3514046.36162, 9315343.22438, 8945681.08903],
+    ),
+    (
+        OTHER,
+        [0.0013278582077407, 0.0054491055360487, 0.0072447406133871, 0.012414067088762],
+        [-0.001084027898671, -0.00053332069995014, -0.0002011086784352],
+        [2295755.40506, 783059.484839, 708455.684826],
+    ),
+]
+
+
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), HISTORIES)
+def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
+    problem: BlockProblem, switches: list[float], displacement: list[float], pressure: list[float]
+) -> None:
+    motion = solve(problem, 12 * travel(problem))
+    assert motion.closed_at_start == (False, False)
+    assert switch_times(motion)[: len(switches)] == pytest.approx(switches, rel=2e-13)
+    assert switch_times(motion, "N") == switch_times(motion)
+    history = motion.at(np.array([3, 6, 9]) * travel(problem))
+    assert history.displacement[1] == pytest.approx(displacement, rel=2e-13, abs=1e-17)
+    assert history.contact_pressure == pytest.approx(pressure, rel=5e-12)  # printed with twelve digits
+
+
+@pytest.mark.parametrize(
+    ("ratio", "value"), [(1, -0.0178779755758168), (10, -0.0100903579546884), (100, -0.00358324114645698)]
+)
+def test_later_values_and_the_number_of_switches(ratio: int, value: float) -> None:
+    motion = solve(replace(PAPER, stiffness=ratio * 1e9), 0.2)
+    assert motion.at([0.05]).displacement[1, 0] == pytest.approx(value, rel=1e-13)
+    assert len(switch_times(motion)) == {1: 21, 10: 108, 100: 156}[ratio]
+
+
+def test_the_first_landing_depends_on_the_block_alone() -> None:
+    for problem in (PAPER, OTHER, replace(OTHER, height=0.7, pressure=3e5, stiffness=1e8)):
+        landing = first_landing(problem.height, problem.density, problem.young)
+        motion = solve(problem, 1.01 * landing)
+        assert switch_times(motion) == pytest.approx([landing], rel=1e-15)
+    assert first_landing(2.0, 2700.0, 1e9) * 1054.0925533895 == pytest.approx(3.42851514980297, rel=1e-13)
+    touch = solve(PAPER, 0.01).at([first_landing(2.0, 2700.0, 1e9)])
+    assert touch.gap_velocity[:, 0] == pytest.approx([-3.75741900029] * 2, rel=1e-11)
+
+
+# p/E, first release, contacts, end of the last contact over a/c, rebound over impact momentum
+IMPACTS = [
+    (0.1, 7.20752512306, 1, 7.20752512306, 0.998520157614),
+    (1.0, 2.64272535338, 1, 2.64272535338, 0.930732420604),
+    (10.0, 0.376151058977, 3, 1.873679835, 0.999964928635),
+    (100.0, 0.111708797046, 3, 1.407484781, 0.932300965885),
+]
+
+
+@pytest.mark.parametrize(("ratio", "first", "contacts", "end", "e"), IMPACTS)
+def test_an_elastic_impact(ratio: float, first: float, contacts: int, end: float, e: float) -> None:
+    problem = replace(PAPER, pressure=0.0, velocity=-0.3, stiffness=ratio * 1e9)
+    motion = solve(problem, 10 * travel(problem))
+    opening = [s.time / travel(problem) for s in motion.switches if s.kind == "opens" and s.corner == "M"]
+    assert motion.closed_at_start == (True, True)
+    assert opening[0] == pytest.approx(first, rel=2e-12)
+    assert len(opening) == contacts
+    assert opening[-1] == pytest.approx(end, rel=5e-10)
+    assert motion.at([motion.end]).velocity[1, 0] / 0.3 == pytest.approx(e, rel=1e-12)
+
+
+def test_micro_impacts_on_rigid_ground() -> None:
+    rigid = micro_impacts()
+    assert rigid.times == pytest.approx([0.0, 0.65785098512048, 1.2324367791597], abs=1e-13)
+    assert rigid.restitution == pytest.approx(0.89132203751993, rel=1e-13)
+    # the limit of stiff springs: contact lasts O(1/sqrt(p)), which shifts everything by as much
+    stiff = solve(replace(OTHER, pressure=0.0, velocity=-1.0, stiffness=3e9 * 1e10), 3 * travel(OTHER))
+    closing = [s.time / travel(OTHER) for s in stiff.switches if s.kind == "closes" and s.corner == "M"]
+    assert closing == pytest.approx(rigid.times[1:], abs=1e-4)
+    assert stiff.at([stiff.end]).velocity[1, 0] == pytest.approx(rigid.restitution, abs=1e-4)
+
+
+def test_a_drop_by_its_own_weight() -> None:
+    problem = replace(PAPER, pressure=0.0, gravity=9.81, gap=0.05)
+    impact = 0.10096375546923
+    soft, stiff = solve(problem, 0.12), solve(replace(problem, stiffness=1e11), 0.107)
+    for motion in (soft, stiff):
+        assert switch_times(motion)[0] == pytest.approx(impact, rel=1e-13)
+        assert motion.at([motion.switches[0].time]).gap_velocity[:, 0] == pytest.approx(-0.990454441153151, rel=1e-13)
+    assert switch_times(soft)[1] - impact == pytest.approx(0.0089485487848081, rel=1e-11)
+    after = [0.00036738771005667, 0.0022040919388594, 0.0025951314402221, 0.004186882204409, 0.0045685896994848]
+    assert np.array(switch_times(stiff)[1:]) - switch_times(stiff)[0] == pytest.approx(after, abs=3e-16)
+
+
+def test_an_off_centre_load_with_glued_shear() -> None:
+    motion = solve(GLUED, 0.03)
+    found = [(s.corner, s.kind) for s in motion.switches[:5]]
+    assert found == [("N", "closes"), ("M", "closes"), ("N", "opens"), ("M", "opens"), ("N", "closes")]
+    times = [0.00239892830043, 0.00407094907289, 0.0162914098796, 0.0163443864827, 0.0189476329529]
+    assert [s.time for s in motion.switches[:5]] == pytest.approx(times, rel=5e-12)
+    end = motion.at([0.03]).displacement[:3, 0]
+    assert end == pytest.approx([5.3825976780e-4, -1.262046085987e-2, -2.464006670949e-3], rel=5e-11)
+
+
+def random_problem(seed: int) -> BlockProblem:
+    rng = np.random.default_rng(seed)
+    young = 1e9 * 10 ** rng.uniform(-1, 1)
+    width = rng.uniform(0.5, 3.0)
+    p = young * 10 ** rng.uniform(-1, 1.5)
+    strain = bool(rng.integers(2))
+    return BlockProblem(
+        width=width,
+        height=width * rng.uniform(0.6, 1.8),
+        density=rng.uniform(2000, 3000),
+        young=young,
+        stiffness=p,
+        pressure=young * rng.uniform(0.001, 0.01),
+        shear_stiffness=p * rng.uniform(0.2, 1.0) * int(rng.integers(2)),
+        poisson=rng.uniform(-0.2, 0.4),
+        hypothesis="plane strain" if strain else "plane stress",
+        eccentricity=width * rng.uniform(-0.2, 0.2),
+        traction=young * rng.uniform(-5e-4, 5e-4),
+        gravity=rng.uniform(0, 20),
+        gap=width * rng.uniform(0, 1e-3) * int(rng.integers(2)),
+        velocity=rng.uniform(-2, 2),
+    )
+
+
+class Integrated:
+    """The same block in (u, v, r, ex, ey, gxy), by Gauss quadrature and DOP853 with events."""
+
+    def __init__(self, problem: BlockProblem) -> None:
+        self.problem = q = problem
+        x, weight = np.polynomial.legendre.leggauss(3)
+        X, Y = (z.ravel() * side / 2 for z, side in zip(np.meshgrid(x, x), (q.width, q.height), strict=True))
+        area = np.outer(weight, weight).ravel() * q.width * q.height / 4
+        self.M = sum(q.density * w * T.T @ T for w, T in zip(area, map(self.T, X, Y), strict=True))
+        E, mu = q.young, q.poisson
+        lame = E * mu / ((1 + mu) * (1 - 2 * mu)) if q.hypothesis == "plane strain" else E * mu / (1 - mu**2)
+        G = E / (2 * (1 + mu))
+        self.K0 = np.zeros((6, 6))
+        elastic = np.array([[lame + 2 * G, lame, 0], [lame, lame + 2 * G, 0], [0, 0, G]])
+        self.K0[3:, 3:] = q.width * q.height * elastic
+        self.corners = [self.T(s * q.width / 2, -q.height / 2) for s in (-1, 1)]
+        middle = self.T(q.eccentricity, q.height / 2)[1] * (q.width - 2 * abs(q.eccentricity))
+        self.F = -q.pressure * middle + q.traction * q.width * self.T(0, q.height / 2)[0]
+        self.F -= q.density * q.width * q.height * q.gravity * self.T(0, 0)[1]
+
+    @staticmethod
+    def T(x: float, y: float) -> NDArray[np.float64]:
+        return np.array([[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]])
+
+    def gap(self, D: NDArray[np.float64], corner: int) -> float:
+        return float(self.problem.gap + self.corners[corner][1] @ D)
+
+    def run(self, closed: list[bool], end: float) -> tuple[list[float], NDArray[np.float64]]:
+        y, t = np.zeros(12), 0.0
+        y[7] = self.problem.velocity
+        times: list[float] = []
+        references = [0.0, 0.0]
+        while t < end:
+            events = [self.event(c, closed[c]) for c in (0, 1)]
+            done = solve_ivp(
+                self.rate(closed, references), (t, end), y, method="DOP853", rtol=1e-13, atol=1e-16, events=events
+            )
+            t, y = done.t[-1], done.y[:, -1]
+            for c in (0, 1):
+                if len(done.t_events[c]):
+                    closed[c] = not closed[c]
+                    references[c] = float(self.corners[c][0] @ y[:6])
+                    times.append(t)
+        return times, y
+
+    def event(self, corner: int, closed: bool):
+        def event(t, y):
+            return self.gap(y[:6], corner)
+
+        event.terminal, event.direction = True, 1 if closed else -1
+        return event
+
+    def rate(self, closed: list[bool], references: list[float]):
+        q = self.problem
+
+        def rate(t, y):
+            force = self.F - self.K0 @ y[:6]
+            for T, shut, r in zip(self.corners, closed, references, strict=True):
+                if shut:
+                    force -= q.stiffness * (q.gap + T[1] @ y[:6]) * T[1]
+                    force -= q.shear_stiffness * (T[0] @ y[:6] - r) * T[0]
+            return np.concatenate([y[6:], np.linalg.solve(self.M, force)])
+
+        return rate
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_independent_integration_with_events_agrees(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 10 * travel(problem)
+    motion = solve(problem, end)
+    # DOP853 at rtol 1e-13 is good to about 1e-11 here; every switch amplifies that, by up to ten in these problems
+    times, y = Integrated(problem).run(list(motion.closed_at_start), end)
+    assert len(times) > 1
+    assert [s.time for s in motion.switches] == pytest.approx(times, rel=1e-8)
+    history = motion.at([end])
+    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-7 * np.abs(y[:6]).max())
+    assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
+
+
+@pytest.mark.parametrize("seed", range(10, 25))
+def test_energy_complementarity_and_the_digits_of_random_motions(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 12 * travel(problem)
+    motion, finer = solve(problem, end), solve(problem, end, digits=80)
+    assert [s.time for s in motion.switches] == [s.time for s in finer.switches]
+    t = np.sort(np.concatenate([np.linspace(0, end, 301), switch_times(motion), switch_times(motion, "N")]))
+    history, other = motion.at(t), finer.at(t)
+    # floats round sines of angles up to SPAN = 60 rad, whose rounding is 1e-14
+    for name in ("displacement", "velocity", "gap", "normal_force", "shear_force"):
+        a, b = getattr(history, name), getattr(other, name)
+        assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max(), name
+    scale = history.kinetic.max() + history.strain.max() + np.abs(history.load).max()
+    assert np.abs(history.energy - history.energy[0]).max() <= 1e-13 * scale
+    assert np.all(history.closed * history.gap <= 1e-13 * np.abs(history.gap).max())
+    assert np.all((1 - history.closed) * history.gap >= -1e-13 * np.abs(history.gap).max())
+    assert np.all(np.diff(history.released) >= 0)
+    assert (history.released[-1] > 0) == (problem.shear_stiffness > 0 and "opens" in {s.kind for s in motion.switches})
+
+
+@pytest.mark.parametrize("seed", [30, 31, 32])
+def test_impulse_and_momentum(seed: int) -> None:
+    problem = random_problem(seed)
+    end = 8 * travel(problem)
+    motion = solve(problem, end)
+    node, weight = np.polynomial.legendre.leggauss(120)
+    edges = [piece.start[0] for piece in motion.pieces] + [end]
+    impulse = np.zeros(2)
+    for low, high in pairwise(edges):
+        history = motion.at(low + (high - low) * (node + 1) / 2)
+        forces = np.array([history.shear_force.sum(axis=0), history.normal_force.sum(axis=0)])
+        impulse += forces @ weight * (high - low) / 2
+    mass = problem.density * problem.width * problem.height
+    pressed = problem.pressure * (problem.width - 2 * abs(problem.eccentricity))
+    impulse += end * np.array([problem.traction * problem.width, -pressed - mass * problem.gravity])
+    gained = mass * (motion.at([end]).velocity[:2, 0] - [0.0, problem.velocity])
+    assert gained == pytest.approx(impulse, abs=1e-12 * (pressed * end + mass * abs(problem.velocity)))
+
+
+def test_the_velocities_are_the_rates_of_the_unknowns() -> None:
+    motion = solve(random_problem(33), 5 * travel(random_problem(33)))
+    t, h = np.linspace(0.2, 0.9, 41) * motion.end, 1e-6 * motion.end
+    ends = motion.at(np.concatenate([t - h, t + h]))
+    middle = motion.at(t)
+    for value, rate in ((ends.displacement, middle.velocity), (ends.gap, middle.gap_velocity)):
+        differences = (value[:, 41:] - value[:, :41]) / (2 * h)
+        # central differences: rounding 1e-16/1e-6, and a jump of the acceleration's slope within h of a switch
+        assert np.abs(differences - rate).max() <= 1e-7 * np.abs(rate).max()
+
+
+@pytest.mark.parametrize("seed", [40, 41])
+def test_twice_the_load_moves_twice_as_far_at_the_same_times(seed: int) -> None:
+    problem = random_problem(seed)
+    names = ("pressure", "traction", "gravity", "gap", "velocity")
+    twice = replace(problem, **{name: 2 * getattr(problem, name) for name in names})
+    end = 10 * travel(problem)
+    once, double = solve(problem, end), solve(twice, end)
+    assert once.switches == double.switches
+    t = np.linspace(0, end, 50)
+    assert np.array_equal(2 * once.at(t).displacement, double.at(t).displacement)
+
+
+@pytest.mark.parametrize("seed", [50, 51])
+def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
+    problem = random_problem(seed)
+    mirrored = replace(problem, eccentricity=-problem.eccentricity, traction=-problem.traction)
+    end = 10 * travel(problem)
+    one, other = solve(problem, end), solve(mirrored, end)
+    swapped = [(s.time, {"M": "N", "N": "M"}[s.corner], s.kind) for s in other.switches]
+    assert [(s.time, s.corner, s.kind) for s in one.switches] == swapped
+    t = np.linspace(0, end, 50)
+    signs = np.array([-1, 1, -1, 1, 1, -1])[:, None]
+    a, b = one.at(t), other.at(t)
+    assert a.displacement == pytest.approx(signs * b.displacement, abs=1e-14 * np.abs(a.displacement).max())
+    assert a.shear_force == pytest.approx(-b.shear_force[::-1], abs=1e-12 * np.abs(a.normal_force).max())
+
+
+@pytest.mark.parametrize("seed", [60, 61, 62])
+def test_a_centred_load_moves_nothing_sideways(seed: int) -> None:
+    problem = replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=1e9)
+    motion = solve(problem, 10 * travel(problem))
+    history = motion.at(np.linspace(0, motion.end, 40))
+    assert not history.displacement[[0, 2, 5]].any()
+    assert switch_times(motion) == switch_times(motion, "N")
+
+
+def test_resting_states() -> None:
+    still = solve(replace(PAPER, pressure=0.0), 0.01)
+    assert still.closed_at_start == (True, True)
+    assert not still.switches
+    assert not still.at([0.004]).displacement.any()
+    held = solve(replace(PAPER, pressure=-5e6), 0.01)  # pulled: the base is pushed down first, then lifts off
+    assert held.closed_at_start == (True, True)
+    assert [s.kind for s in held.switches] == ["opens", "opens"]
+    hovering = solve(replace(PAPER, pressure=0.0, gap=0.1), 0.01)
+    assert hovering.closed_at_start == (False, False)
+    assert not hovering.switches
+
+
+def test_bad_input_is_refused_by_name() -> None:
+    for field, value in [
+        ("width", 0.0),
+        ("young", -1.0),
+        ("gap", -1e-3),
+        ("poisson", 1.0),
+        ("hypothesis", "plain"),
+        ("eccentricity", 1.0),
+        ("pressure", np.nan),
+    ]:
+        with pytest.raises(ValueError, match=field):
+            replace(PAPER, **{field: value})
+    with pytest.raises(ValueError, match="end"):
+        solve(PAPER, 0.0)
+    with pytest.raises(ValueError, match="digits"):
+        solve(PAPER, 1.0, digits=10)
+    with pytest.raises(ValueError, match="times"):
+        solve(PAPER, 0.01).at([0.02])
+    with pytest.raises(TooManySwitchesError):
+        solve(PAPER, 0.2, limit=3)
