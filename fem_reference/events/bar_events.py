@@ -29,7 +29,7 @@ from fem_reference.events.bar_march import Piece, pieces
 from fem_reference.events.bar_model import BarProblem, Units
 from fem_reference.events.decimals import HALF, TWO, ZERO, working
 from fem_reference.events.switches import Switch, TooManySwitchesError
-from fem_reference.problem import Array
+from fem_reference.problem.problem import Array
 
 DIGITS = 60
 """Decimal digits of the computation beyond those that it is known to lose."""

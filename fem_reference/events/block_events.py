@@ -26,7 +26,7 @@ from fem_reference.events.block_model import CORNERS, BlockModel, BlockProblem
 from fem_reference.events.block_pieces import Closed, FloatPiece, Modes, Piece, State
 from fem_reference.events.decimals import ZERO, Vector, dot, working
 from fem_reference.events.switches import NoContactStateError, Switch, TooManySwitchesError
-from fem_reference.problem import Array
+from fem_reference.problem.problem import Array
 
 DIGITS = 50
 """Decimal digits of the computation."""

@@ -11,7 +11,7 @@ import numpy as np
 from fem_reference.events.block_model import BlockModel
 from fem_reference.events.decimals import ZERO, Matrix, Vector, dot, eigen, small, split
 from fem_reference.events.oscillation import Oscillation
-from fem_reference.problem import Array
+from fem_reference.problem.problem import Array
 
 GUARD = 15
 """Digits that a sum may lose before what is left of it counts as zero."""

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_reference.problem import Array
+from fem_reference.problem.problem import Array
 
 LIMIT = 100_000
 """Steps in contact after which the mass counts as stuck; also where it has come to rest."""
