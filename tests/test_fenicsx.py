@@ -1,7 +1,9 @@
 """FEniCSx as a second finite-element code: absence by name, equality on every mesh and foundation, faults seen."""
 
+import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -64,6 +66,24 @@ def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, mon
     for _ in range(2):
         finish([Case(scene, "fenicsx")], TWO_CODES, results)
     assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
+
+
+def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "python3").write_text("#!/bin/sh\n")
+    (tmp_path / "python3").chmod(0o755)
+
+    def listed(path: str) -> list[str]:  # root may read everything, so that no mode of a directory will do
+        if path == "/root/bin":
+            raise PermissionError(13, "Permission denied", path)
+        return os.listdir(path)
+
+    places = SimpleNamespace(**vars(os) | {"listdir": listed})
+    monkeypatch.setattr(adapters_fenicsx, "os", places)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setenv("PATH", os.pathsep.join(["/root/bin", str(tmp_path / "absent"), str(tmp_path)]))
+    assert list(adapters_fenicsx.candidates()) == [sys.executable, str(tmp_path / "python3")]
 
 
 @pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])

@@ -49,7 +49,10 @@ def candidates() -> Iterator[str]:
         return
     yield sys.executable
     for directory in os.get_exec_path():
-        names = (path.name for path in Path(directory).glob("python3*")) if Path(directory).is_dir() else ()
+        try:
+            names = os.listdir(directory)
+        except OSError:  # absent, or another user's
+            continue
         for name in sorted(names):
             if re.fullmatch(r"python3(\.\d+)?", name) and (found := shutil.which(name, path=directory)):
                 yield found
