@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 TAIL = 3  # lines of a dead worker's standard error that are worth telling
-NAMED = re.compile(r"[\w.]*(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
+NAMED = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
 FRAME = re.compile(r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*")  # a launcher's rules and advice
 
 
