@@ -14,7 +14,7 @@ from conftest import SCENE
 from validation import engine, solvers
 from validation.cases import Case, attempt, check, execute
 from validation.engine import Finished, evaluate, finish, run_study
-from validation.gates import Gate, Status, judge, rounded
+from validation.gates import Gate, Status, judge, rounded, said
 from validation.history import History, Outcome, Run, read_csv, write_csv
 from validation.results import Results, Row
 from validation.scene import Scene, SceneError, load_scene
@@ -247,6 +247,23 @@ def test_rounding_for_verdicts() -> None:
     assert rounded(0.0363249) == 0.03632
     assert rounded(-3.2e-14) == -1e-13
     assert rounded(0.0) == 0.0
+
+
+@pytest.mark.parametrize("rounding", [0.0, 3.2e-16, -3.2e-16, 1e-14, -9e-13])
+def test_what_is_rounding_reads_alike_on_every_processor(rounding: float) -> None:
+    gate = Gate("scene", ("dda",), "mode1.damping", -1e-9, 1e-9, "none by the formula")
+    assert judge(gate, rounding).record("s")["value"] == 0.0
+    assert said(rounding) == said(judge(gate, rounding).record("s")["value"]) == "below 1e-12"
+
+
+def test_what_is_no_rounding_is_said_in_digits() -> None:
+    assert [said(value) for value in (0, 2e-12, -0.0363249, "undefined", None)] == [
+        "0",
+        "2e-12",
+        "-0.03632",
+        "undefined",
+        "-",
+    ]
 
 
 def test_csv_keeps_every_bit(tmp_path: Path) -> None:

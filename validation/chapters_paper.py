@@ -13,7 +13,7 @@ import numpy as np
 from validation import figures, figures_paper
 from validation.chapters_damping import alarm_blocks, budget_blocks
 from validation.chapters_data import Case, Group, groups
-from validation.chapters_text import DASH, short
+from validation.chapters_text import DASH, bounded, short
 from validation.figures_paper import StepPanel
 from validation.history import Array
 from validation.report import Block, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
@@ -118,7 +118,7 @@ def _sentence(text: str) -> str:
 
 
 def _number(value: object) -> str:
-    return short(float(value)) if isinstance(value, int | float) else str(value or DASH)
+    return bounded(value, short(value)) if isinstance(value, int | float) else str(value or DASH)
 
 
 def figure_1(manifest: Mapping[str, Any], found: Mapping[str, Group], directory: Path) -> list[Block]:

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from validation.alarms import DISCOUNT
-from validation.gates import Verdict
+from validation.gates import Verdict, said
 from validation.history import Outcome
 from validation.results import Results
 
@@ -35,7 +35,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             g.scene.replace("[", r"\["),
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
-            _number(v.value),
+            said(v.value),
             f"{g.low:.4g} .. {g.high:.4g}",
             f"[{colours[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
@@ -47,10 +47,6 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
     words = [str(v.status) for v in verdicts]
     console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
-
-
-def _number(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
 
 
 def print_failures(results: Results, studies: list[str]) -> bool:

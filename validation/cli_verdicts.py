@@ -52,14 +52,14 @@ def _print_changes(found: list[Change]) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from validation.verdicts import shown
+    from validation.gates import said
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("change", "study", "gate", "before", "after"):
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}
     for c in found:
-        values = (f"{word} {shown(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
+        values = (f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
         table.add_row(f"[{colours.get(c.kind, 'default')}]{c.kind}[/]", c.study, escape(c.id), *values)
     console = Console(width=None if sys.stdout.isatty() else 150)
     if found:
