@@ -41,7 +41,7 @@ def test_a_red_round_is_named_logged_and_a_status(
 ) -> None:
     good = portable.Round("good", [[sys.executable, "-c", "print('fine')"]])
     bad = portable.Round("bad", [[sys.executable, "-c", "print('ERROR why'); raise SystemExit(3)"], ["never"]])
-    monkeypatch.setattr(portable, "kernels", lambda short: [good])
+    monkeypatch.setattr(portable, "kernels", lambda short: [good, portable.Round("same", [])])
     monkeypatch.setattr(portable, "versions", lambda short, work: [bad])
     monkeypatch.setattr(portable, "wheel", lambda short, work: [])
     monkeypatch.setattr(sys, "argv", ["portable", "--work", str(tmp_path)])
@@ -51,7 +51,8 @@ def test_a_red_round_is_named_logged_and_a_status(
     assert stopped.value.code == 1 and "2 rounds, 1 red: bad" in said
     assert "ERROR why" in said and str(tmp_path / "bad.log") in said
     assert "ERROR why" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
-    monkeypatch.setattr(sys, "argv", ["portable", "--work", str(tmp_path), "--only", "good"])
-    with pytest.raises(SystemExit) as stopped:
-        portable.main()
-    assert stopped.value.code == 0
+    for only, status in (("good", 0), ("same", 1), ("nothing", 1)):  # no round at all is no success
+        monkeypatch.setattr(sys, "argv", ["portable", "--work", str(tmp_path), "--only", only])
+        with pytest.raises(SystemExit) as stopped:
+            portable.main()
+        assert stopped.value.code == status
