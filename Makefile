@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: report report-all test gates lint api bench clean
+.PHONY: report report-all test gates lint portable api bench clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -23,6 +23,9 @@ lint: $(READY)  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
+
+portable: $(READY)  ## the tests under other kernels, versions and Pythons, and an installed wheel; says which is red
+	$(BIN)/python .ci/portable
 
 api: $(READY)  ## the API reference from the docstrings, in docs/api
 	$(BIN)/pdoc --docformat numpy --output-directory docs/api $$(find dda fem_reference validation -name __init__.py | sed 's,/__init__.py,,; s,/,.,g' | sort)

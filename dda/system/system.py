@@ -214,8 +214,8 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
     if not groups:
         empty = csr_array((0, 0))
         return B, G, empty, empty
-    kappa = csr_array(block_diag([group.stiffness for group in groups]))
-    C = csr_array(block_diag([_inverse(group.stiffness[None])[0] for group in groups]))
+    kappa = csr_array(block_diag([csr_array(group.stiffness) for group in groups]))
+    C = csr_array(block_diag([csr_array(_inverse(group.stiffness[None])[0]) for group in groups]))
     for matrix in (kappa, C):
         matrix.eliminate_zeros()
     return B, G, kappa, C

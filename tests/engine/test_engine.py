@@ -18,7 +18,7 @@ from validation.engine.measure import completed, execute
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.gates.gate import Gate, Status, judge, rounded
+from validation.gates.gate import Gate, Status, judge, rounded, said
 from validation.runs.files import read_csv, write_csv
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -86,6 +86,12 @@ def test_a_lost_history_is_computed_again(scene: Scene, tmp_path: Path) -> None:
     next((tmp_path / "histories").iterdir()).unlink()
     run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
     assert len(seen) == 1
+
+
+def test_a_kept_history_has_the_run_s_columns_and_no_others(scene: Scene, tmp_path: Path) -> None:
+    finish([Case(scene, "dda")], Study("s", "S", "", [scene], ("dda",)), Results(tmp_path))
+    with np.load(next((tmp_path / "histories").iterdir())) as kept:  # what numpy below 2.2 makes of savez's options too
+        assert kept.files == ["time", "displacement", "contact_pressure"]
 
 
 def test_verdict_files_are_identical_from_run_to_run(scene: Scene, tmp_path: Path) -> None:
@@ -249,6 +255,23 @@ def test_rounding_for_verdicts() -> None:
     assert rounded(0.0363249) == 0.03632
     assert rounded(-3.2e-14) == -1e-13
     assert rounded(0.0) == 0.0
+
+
+@pytest.mark.parametrize("rounding", [0.0, 3.2e-16, -3.2e-16, 1e-14, -9e-13])
+def test_what_is_rounding_reads_alike_on_every_processor(rounding: float) -> None:
+    gate = Gate("scene", ("dda",), "mode1.damping", -1e-9, 1e-9, "none by the formula")
+    assert judge(gate, rounding).record("s")["value"] == 0.0
+    assert said(rounding) == said(judge(gate, rounding).record("s")["value"]) == "below 1e-12"
+
+
+def test_what_is_no_rounding_is_said_in_digits() -> None:
+    assert [said(value) for value in (0, 2e-12, -0.0363249, "undefined", None)] == [
+        "0",
+        "2e-12",
+        "-0.03632",
+        "undefined",
+        "-",
+    ]
 
 
 def test_csv_keeps_every_bit(tmp_path: Path) -> None:

@@ -385,9 +385,10 @@ def test_percent(value, text):
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(1e-15, "<10⁻¹⁵"), (-1e-12, ">−10⁻¹²"), (3e-10, "as it is"), (0.01, "as it is")]
+    ("value", "text"),
+    [(1e-15, "<10⁻¹²"), (-1e-12, "<10⁻¹²"), (0.0, "<10⁻¹²"), (0, "as it is"), (2e-12, "as it is"), (1e-9, "as it is")],
 )
-def test_a_kept_power_of_ten_is_a_bound(value, text):
+def test_rounding_is_told_as_a_bound(value, text):
     assert chapters_text.bounded(value, "as it is") == text
 
 

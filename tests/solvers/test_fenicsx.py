@@ -1,8 +1,11 @@
 """FEniCSx as a second finite-element code: absence by name, equality on every mesh and foundation, faults seen."""
 
+import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
+import fem_reference.mesh.mesh.elasticity
 import meshio
 import numpy as np
 import pytest
@@ -28,7 +31,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
 from validation.solvers import worker
-from validation.solvers.fenicsx import VARIABLE, interpreter, launcher
+from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, places
 from validation.solvers.registry import get_solver
 from validation.studies.second_fem_code import SAME, TWO_CODES
 
@@ -72,6 +75,24 @@ def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, mon
     for _ in range(2):
         finish([Case(scene, "fenicsx")], TWO_CODES, results)
     assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
+
+
+def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "python3").write_text("#!/bin/sh\n")
+    (tmp_path / "python3").chmod(0o755)
+
+    def listed(path: str) -> list[str]:  # root may read everything, so that no mode of a directory will do
+        if path == "/root/bin":
+            raise PermissionError(13, "Permission denied", path)
+        return os.listdir(path)
+
+    places = SimpleNamespace(**vars(os) | {"listdir": listed})
+    monkeypatch.setattr(adapters_fenicsx, "os", places)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setenv("PATH", os.pathsep.join(["/root/bin", str(tmp_path / "absent"), str(tmp_path)]))
+    assert list(adapters_fenicsx.candidates()) == [sys.executable, str(tmp_path / "python3")]
 
 
 @pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])
@@ -182,6 +203,44 @@ def test_a_dead_worker_is_named_and_replaced() -> None:
             worker.ask(command, {}, {})
     echo = [sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line, end='', flush=True)"]
     assert [worker.ask(echo, {}, {"a": n}) for n in (1, 2)] == [{"a": 1}, {"a": 2}]
+
+
+def test_the_reason_is_found_under_the_launcher_s_words() -> None:
+    rule = "-" * 74
+    advice = "[host:00012] 1 more process has sent help message help-mpi-api.txt / mpi-abort"
+    error = "PermissionError: [Errno 13] Permission denied: '/nonexistent'"
+    aborted = ["MPI_ABORT was invoked on rank 0", "", "NOTE: invoking MPI_ABORT", rule, advice]
+    assert worker.last_words("\n".join([error, error, rule, *aborted])) == error
+    assert worker.last_words(f"{rule}\norte_session_dir failed\n{rule}\n{advice}\n") == "orte_session_dir failed"
+    assert worker.last_words("\n") == "no message"
+
+
+def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
+    assert places().keys() == {"TMPDIR"}
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    for home in ("/proc/none", "/dev/null/home"):  # where not even root can make a directory
+        monkeypatch.setenv("HOME", home)
+        found = places()
+        assert len({found[name] for name in ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")}) == 1
+        assert os.access(found["XDG_CACHE_HOME"], os.W_OK)
+
+
+@needs_fenicsx
+@pytest.mark.parametrize("solver", ["fenicsx", "fenicsx:2"])
+def test_fenicsx_runs_without_a_home_and_from_any_path(
+    scene: Scene, solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "mit Blank und Ümläuten" / "worker.py"
+    path.parent.mkdir()
+    path.write_bytes(adapters_fenicsx.WORKER.read_bytes())
+    monkeypatch.setattr(adapters_fenicsx, "WORKER", path)
+    monkeypatch.chdir(path.parent)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    for name, value in {"HOME": "/proc/none", "TMPDIR": "/proc/none", "LC_ALL": "POSIX", "PYTHONUTF8": "0"}.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setenv("PYTHONCOERCECLOCALE", "0")
+    assert 0 < error(scene, solver) <= SAME
 
 
 WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is twice the band's edge

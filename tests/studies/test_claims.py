@@ -1,5 +1,6 @@
 """The register of claims: computed, gated, and not deaf: thresholds and code turn verdicts over."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -118,6 +119,11 @@ def test_the_page_in_docs_is_what_a_fresh_run_writes(sound: Finished) -> None:
 
     rows = [_derived_record(sound, REGISTER, claim.id) for claim in CLAIMS]
     assert (ROOT / "docs" / "claims.md").read_text(encoding="utf-8") == page(CLAIMS, rows)
+
+
+def test_the_page_in_docs_holds_no_digits_of_rounding() -> None:
+    text = (ROOT / "docs" / "claims.md").read_text(encoding="utf-8")
+    assert "below 1e-12" in text and not re.search(r"e-1[0-9]", text.replace("below 1e-12", ""))
 
 
 def test_the_command_needs_results(tmp_path: Path) -> None:

@@ -2,9 +2,11 @@
 
 import csv
 import json
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import beside
 from faults.fault import Fault, swapped, with_scheme
@@ -22,6 +24,7 @@ from validation.studies.work import record as work_record
 from validation.studies.work.points import cheapest, floor, front, points
 from validation.studies.work.study import WORK_PRECISION, order, study_cases
 
+ROOT = Path(__file__).parents[1]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
 
 
@@ -117,6 +120,37 @@ def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_pat
     work_record.update(finished, study_cases(), "a test")
     assert work_record.load()["reasons"] == ["a test"]
     assert work_record.ratios(now, work_record.load()["cases"])["work"] == 1
+
+
+def test_what_is_missing_is_not_as_good_as_recorded(results):
+    then = work_record.load()["cases"]
+    name = next(name for name in then if name.endswith("fem"))
+    now = {name: json.loads(json.dumps(then[name]))}
+    assert work_record.ratios(now, then) == {"errors": 1, "work": 1}
+    now[name]["errors"]["displacement"] = "undefined"
+    del now[name]["work"]["solves"]
+    assert work_record.ratios(now, then) == {"errors": np.inf, "work": np.inf}
+    assert work_record.ratios({}, then) == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [(None, "No such file"), ("{", "must be JSON"), ('{"cases": {}}', "nothing was compared")]
+)
+def test_the_command_refuses_to_compare_with_nothing(results, tmp_path, monkeypatch, text, words):
+    path = tmp_path / "record.json"
+    if text is not None:
+        path.write_text(text)
+    monkeypatch.setattr(work_record, "PATH", path)
+    monkeypatch.setattr("validation.work_precision.WORK_PRECISION", COARSE)
+    done = CliRunner().invoke(app, ["record", "--results", str(results.directory)])
+    assert isinstance(done.exception, InputError) and words in str(done.exception)
+    assert "worst ratio" not in done.output
+
+
+def test_the_wheel_holds_the_record():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    package = work_record.PATH.parent.relative_to(ROOT).as_posix().replace("/", ".")
+    assert work_record.PATH.name in settings["package-data"][package]
 
 
 def test_a_study_of_timings_repeats_and_keeps_the_spread(tmp_path):

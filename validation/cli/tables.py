@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from validation.advice.alarms import DISCOUNT
-from validation.gates.gate import Verdict
+from validation.gates.gate import Verdict, said
 from validation.runs.records import VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -41,7 +41,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             g.scene.replace("[", r"\["),
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
-            _number(v.value),
+            said(v.value),
             f"{g.low:.4g} .. {g.high:.4g}",
             f"[{colours[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
@@ -53,10 +53,6 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
     words = [str(v.status) for v in verdicts]
     console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
-
-
-def _number(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
 
 
 def print_failures(results: Results, studies: list[str]) -> bool:
@@ -108,14 +104,14 @@ def print_changes(found: list[Change]) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from validation.gates.changes import shown
+    from validation.gates.gate import said
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("change", "study", "gate", "before", "after"):
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}
     for c in found:
-        values = (f"{word} {shown(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
+        values = (f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
         table.add_row(f"[{colours.get(c.kind, 'default')}]{c.kind}[/]", c.study, escape(c.id), *values)
     console = Console(width=None if sys.stdout.isatty() else 150)
     if found:

@@ -94,11 +94,16 @@ def record(
 
     if update and not reason.strip():
         raise InputError('--reason: must say why the record changes, got nothing; add --reason "..."')
+    then = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
     finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
-    found = work_record.ratios(work_record.measured(finished, study_cases()), work_record.load().get("cases", {}))
-    typer.echo(f"worst ratio to the record: errors {found['errors']:.3f}, work {found['work']:.3f}")
     if update:
         work_record.update(finished, study_cases(), reason)
         typer.echo(f"wrote {work_record.PATH}")
-    elif any(value > 1 + work_record.SLACK[part] for part, value in found.items()):
+        return
+    found = work_record.ratios(work_record.measured(finished, study_cases()), then)
+    if not found:
+        raise InputError(f"{work_record.PATH}: holds no case of the study work-precision; nothing was compared")
+    said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
+    typer.echo(f"worst ratio to the record: {said}")
+    if any(value > 1 + work_record.SLACK[part] for part, value in found.items()):
         raise typer.Exit(GATE_FAILED)

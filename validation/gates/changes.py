@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
+from validation.gates.gate import said
 from validation.runs.records import VerdictRecord
 
 Record = VerdictRecord
@@ -98,11 +99,6 @@ def counted(records: Iterable[Record]) -> str:
     return ", ".join(f"{words.count(word)} {word}" for word in WORDS)
 
 
-def shown(value: object) -> str:
-    """Return a value of a verdict as text."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value if value is not None else "-")
-
-
 def markdown(records: Sequence[Record], since: Sequence[Change] | None = None) -> str:
     """Return a summary: counts, what failed, what was not run, and what changed since a baseline."""
     lines = [f"## dda-validation: {counted(records)}", ""]
@@ -124,12 +120,12 @@ def _rows_of_studies(records: Sequence[Record]) -> list[list[str]]:
 
 
 def _row(v: Record) -> list[str]:
-    band = " .. ".join(shown(float(edge)) for edge in v.get("band", ()))
-    return [_code(v["id"]), shown(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
+    band = " .. ".join(f"{edge:.4g}" for edge in v.get("band", ()))
+    return [_code(v["id"]), said(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
 
 
 def _step(before: object, after: object) -> str:
-    return shown(after) if before == after else f"{shown(before)} → {shown(after)}"
+    return said(after) if before == after else f"{said(before)} → {said(after)}"
 
 
 def _cell(text: str) -> str:

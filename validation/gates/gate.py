@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
+ROUNDING = 1e-12  # a number of this size or less is rounding, and differs from processor to processor
+
 
 class Status(enum.StrEnum):
     """What a gate says."""
@@ -93,7 +95,7 @@ class Verdict:
     def record(self, study: str) -> VerdictRecord:
         """Return the verdict as plain data, rounded well above the last bits and without seconds."""
         g = self.gate
-        value = rounded(self.value) if isinstance(self.value, float) else self.value
+        value = settled(self.value) if isinstance(self.value, float) else self.value
         return {
             "id": g.id,
             "study": study,
@@ -127,6 +129,18 @@ def judge(gate: Gate, value: Value) -> Verdict:
         )
     inside = gate.low <= value <= gate.high
     return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)
+
+
+def said(value: object) -> str:
+    """Return a measured number as text, ``below 1e-12`` where it is rounding; a count, which is an integer, in full."""
+    if isinstance(value, float) and abs(value) <= ROUNDING:
+        return f"below {ROUNDING:g}"
+    return f"{value:.4g}" if isinstance(value, float | int) else str(value if value is not None else "-")
+
+
+def settled(value: float) -> float:
+    """Round as `rounded` does, with zero for all that is rounding: alike on every processor."""
+    return 0.0 if abs(value) <= ROUNDING else rounded(value)
 
 
 def rounded(value: float, digits: int = 4) -> float:

@@ -83,8 +83,11 @@ class Results:
     def _save_history(self, key: str, history: History) -> None:
         columns = {"time": history.time, **history.columns}
 
-        def write(stream: IO[bytes]) -> None:
-            np.savez(stream, allow_pickle=False, **columns)
+        def write(stream: IO[bytes]) -> None:  # np.savez means other things by its options from version to version
+            with zipfile.ZipFile(stream, "w") as kept:
+                for name, values in columns.items():
+                    with kept.open(f"{name}.npy", "w", force_zip64=True) as part:
+                        np.lib.format.write_array(part, values, allow_pickle=False)
 
         write_atomically(self._make("histories", f"{key}.npz"), write)
 

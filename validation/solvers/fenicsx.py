@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -34,10 +35,12 @@ NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or cond
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
 WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx_worker.py")  # type: ignore[union-attr,arg-type]
-# One thread a rank; more ranks than cores and root in a container are the user's own choice.
+# One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
+# that is not of the locale's characters, unless Python reads paths as UTF-8.
 ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "PYTHONSAFEPATH": "1",
+    "PYTHONUTF8": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
@@ -52,7 +55,10 @@ def candidates() -> Iterator[str]:
         return
     yield sys.executable
     for directory in os.get_exec_path():
-        names = (path.name for path in Path(directory).glob("python3*")) if Path(directory).is_dir() else ()
+        try:
+            names = os.listdir(directory)
+        except OSError:  # absent, or another user's
+            continue
         for name in sorted(names):
             if re.fullmatch(r"python3(\.\d+)?", name) and (found := shutil.which(name, path=directory)):
                 yield found
@@ -85,6 +91,29 @@ def launcher(python: str) -> str | None:
     """Return the mpirun that belongs to an interpreter: the one beside it, else the one on the PATH."""
     beside = os.pathsep.join([str(Path(python).parent), os.environ.get("PATH", os.defpath)])
     return shutil.which("mpirun", path=beside) or shutil.which("mpiexec", path=beside)
+
+
+@functools.cache
+def _shelter() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="dda-validate-fenicsx-")
+
+
+def places() -> dict[str, str]:
+    """Return where a worker keeps its files: compiled forms, settings, the launcher's session.
+
+    They are the user's own where dolfinx can write its compiled forms there, otherwise temporary, and last as long as
+    this process.
+    """
+    temporary = {"TMPDIR": tempfile.gettempdir()}  # of TMPDIR and what else there is, the first that can be written
+    try:
+        forms = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fenics"
+        forms.mkdir(parents=True, exist_ok=True)
+        if os.access(forms, os.R_OK | os.W_OK | os.X_OK):
+            return temporary
+    except (OSError, RuntimeError):  # a user without a home is a RuntimeError
+        pass
+    shelter = _shelter().name
+    return temporary | dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), shelter)
 
 
 class FEniCSx(Solver):
@@ -189,7 +218,7 @@ class RemoteMesh(Prepared):
     @functools.cached_property
     def answer(self) -> dict[str, Any]:
         """The worker's answer."""
-        return ask(self.solver.command(), os.environ | ENVIRONMENT, request(self.scene))
+        return ask(self.solver.command(), os.environ | ENVIRONMENT | places(), request(self.scene))
 
 
 def request(scene: Scene) -> dict[str, Any]:

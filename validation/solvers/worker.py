@@ -6,6 +6,7 @@ import atexit
 import contextlib
 import json
 import os
+import re
 import select
 import signal
 import subprocess
@@ -15,6 +16,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 TAIL = 3  # lines of a dead worker's standard error that are worth telling
+NAMED = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
+FRAME = re.compile(r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*")  # a launcher's rules and advice
 
 
 class WorkerDied(RuntimeError):
@@ -23,6 +26,14 @@ class WorkerDied(RuntimeError):
 
 class WorkerHangs(RuntimeError):
     """The worker did not answer within its time limit; it has been killed."""
+
+
+def last_words(text: str) -> str:
+    """Return why a process ended: the errors that its standard error names, else its last lines that say something."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    named = list(dict.fromkeys(line for line in lines if NAMED.fullmatch(line)))  # two ranks say the same
+    said = [line for line in lines if not FRAME.fullmatch(line)]
+    return " | ".join((named or said)[-TAIL:]) or "no message"
 
 
 class Worker:
@@ -64,8 +75,7 @@ class Worker:
 
     def _tail(self) -> str:
         self._errors.seek(0)
-        lines = self._errors.read().decode(errors="replace").split("\n")
-        return " | ".join([line.strip() for line in lines if line.strip()][-TAIL:]) or "no message"
+        return last_words(self._errors.read().decode(errors="replace"))
 
     def close(self) -> None:
         """End the process: its input ends, and so does it."""

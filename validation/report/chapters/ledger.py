@@ -96,7 +96,7 @@ def ledger_table(groups: Sequence[Group]) -> Table:
     return Table(
         tuple(columns),
         tuple(named),
-        "Relative L2 difference over the whole history, as a fraction; below 10⁻⁹ a bound.",
+        "Relative L2 difference over the whole history, as a fraction; below 10⁻¹² a bound.",
         tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)),
     )
 

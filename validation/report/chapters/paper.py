@@ -13,7 +13,7 @@ import numpy as np
 from validation.report.blocks import Block, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.text import DASH, short
+from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures import histories as figures
 from validation.report.figures import paper as figures_paper
 from validation.report.figures.paper import StepPanel
@@ -120,7 +120,7 @@ def _sentence(text: str) -> str:
 
 
 def _number(value: object) -> str:
-    return short(float(value)) if isinstance(value, int | float) else str(value or DASH)
+    return bounded(value, short(value)) if isinstance(value, int | float) else str(value or DASH)
 
 
 def figure_1(manifest: Manifest, found: Mapping[str, Group], directory: Path) -> list[Block]:

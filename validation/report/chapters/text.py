@@ -75,11 +75,8 @@ def short(value: float, digits: int = 4) -> str:
 
 
 def bounded(value: float, text: str) -> str:
-    """Return the text of a kept value; where only the next power of ten was kept, say that it is a bound."""
-    if not 0 < abs(value) <= 1e-9 or f"{value:.12e}".lstrip("-")[:14] != "1.000000000000":
-        return text
-    bound = f"10{raised(round(math.log10(abs(value))))}"
-    return f"<{bound}" if value > 0 else f">−{bound}"
+    """Return the text of a measured value; where it is rounding, say that it is below 1e-12."""
+    return f"<10{raised(-12)}" if isinstance(value, float) and abs(value) <= 1e-12 else text
 
 
 def percent(value: float) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.gates.gate import Gate, rounded
+from validation.gates.gate import Gate, said
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
@@ -120,13 +120,25 @@ class Claim:
 
     def _compute(self, finished: Finished) -> Mapping[str, Value]:
         numbers = self.measure(Evidence(finished))
-        known: dict[str, Value] = {k: float(v) if np.isfinite(v) else "undefined" for k, v in numbers.items()}
+        known: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
         return {"verdict": float(self.finding(numbers))} | known
 
     def gate(self) -> Gate:
         """Return the gate that holds the verdict to the expected one."""
         reason = f"expected verdict: {self.expected.words}, since {self.why}"
         return Gate(REGISTER, (self.id,), "verdict", float(self.expected), float(self.expected), reason)
+
+
+def _plain(number: float) -> Value:
+    """Return a number as JSON keeps it; a count stays an integer, whose zero is no rounding."""
+    if not np.isfinite(number):
+        return "undefined"
+    return number if isinstance(number, int) else float(number)
+
+
+def whole(number: float) -> float:
+    """Return a count of steps as an integer; NaN, where there is none, as it is."""
+    return int(number) if np.isfinite(number) else number
 
 
 def named(*scenes: str) -> dict[str, Scene]:
@@ -152,7 +164,7 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
     ]
     for claim in claims:
         numbers = measured[claim.id]
-        listed = "; ".join(f"{k} {_said(v)}" for k, v in numbers.items() if k != "verdict")
+        listed = "; ".join(f"{k} {said(v)}" for k, v in numbers.items() if k != "verdict")
         verdict = Finding(int(numbers["verdict"])).words
         condition = f" ({claim.condition})" if verdict == Finding.CONDITIONAL.words else ""
         parts += [
@@ -162,7 +174,3 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
             f"**Why:** {claim.why}.",
         ]
     return "\n\n".join(parts) + "\n"
-
-
-def _said(value: Value) -> str:
-    return f"{rounded(value):g}" if isinstance(value, float | int) else str(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
+from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named, whole
 
 A34, A56, A7, A8, A9 = (
     list(named(name)) for name in ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
@@ -49,7 +49,7 @@ def equilibrium(e: Evidence) -> dict[str, float]:
 def force_first(e: Evidence) -> dict[str, float]:
     """Return the settling steps and how many steps the force settles later, at the tolerance where that is least."""
     late = [e.settles(COARSE, "pressure", t) - e.settles(COARSE, "displacement", t) for t in TOLERANCES]
-    return steps_of(e, COARSE) | {"force later by at least, steps (0.2 to 8 %)": min(late)}
+    return steps_of(e, COARSE) | {"force later by at least, steps (0.2 to 8 %)": whole(min(late))}
 
 
 def stiff_alike(e: Evidence) -> dict[str, float]:
@@ -58,7 +58,7 @@ def stiff_alike(e: Evidence) -> dict[str, float]:
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
         for quantity, word in (("displacement", "displacement"), ("pressure", "contact force")):
             steps = [e.settles(case, quantity, tolerance) for case in (STIFF, STIFFEST)]
-            found[f"{word} to {name}, steps apart"] = abs(steps[1] - steps[0])
+            found[f"{word} to {name}, steps apart"] = whole(abs(steps[1] - steps[0]))
     return found | {"contact root at 100E": e.number(STIFFEST, "contact.least_root")}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Value
 
-PATH = Path(__file__).resolve().parents[1] / "reports" / "record.json"
+PATH = Path(__file__).with_name("record.json")
 REFERENCES = {"dda": "bar", "fem": "bar", "bar": "continuum"}
 WORK = ("unknowns", "factorisations", "solves")
 SLACK = {"errors": 0.02, "work": 0.15}  # other libraries round otherwise, and may ask for one check of a space more
@@ -24,8 +25,19 @@ Entry = Mapping[str, Any]
 
 
 def load() -> dict[str, Any]:
-    """Return the record; empty where the suite is installed without its reports."""
-    return dict(json.loads(PATH.read_text(encoding="utf-8"))) if PATH.exists() else {}
+    """Return the record.
+
+    Raises
+    ------
+    InputError
+        There is none, or it cannot be read.
+    """
+    try:
+        return dict(json.loads(PATH.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise InputError(f"{PATH}: the record of errors and work cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise InputError(f"{PATH}: the record of errors and work must be JSON: {error}") from None
 
 
 def measured(finished: Finished, cases: Sequence[tuple[str, str]]) -> dict[str, dict[str, Any]]:
@@ -47,32 +59,36 @@ def _entry(finished: Finished, case: str, solver: str) -> dict[str, Any]:
 
 
 def ratios(now: Mapping[str, Entry], then: Mapping[str, Entry]) -> dict[str, float]:
-    """Return the worst ratio of an error, and of a work count, to the recorded one."""
-    worst = {"errors": 0.0, "work": 0.0}
+    """Return the worst ratio of an error, and of a work count, to the recorded one, over the cases of both.
+
+    A number that was recorded and is no longer measured is infinitely worse; a part in which nothing can be compared
+    is absent.
+    """
+    found: dict[str, list[float]] = {}
     for name in then.keys() & now.keys():
         for part, floor in (("errors", ROUNDING), ("work", 1)):
             for key, value in then[name][part].items():
-                found = now[name][part].get(key)
-                if isinstance(found, int | float) and isinstance(value, int | float):
-                    worst[part] = max(worst[part], max(found, floor) / max(value, floor))
-    return worst
+                if isinstance(value, int | float):
+                    found.setdefault(part, []).append(_ratio(now[name][part].get(key), value, floor))
+    return {part: max(values) for part, values in found.items()}
+
+
+def _ratio(now: Value, then: float, floor: float) -> float:
+    return max(now, floor) / max(then, floor) if isinstance(now, int | float) else math.inf
 
 
 def compared(cases: tuple[tuple[str, str], ...]) -> Derived:
     """Return the row that compares a run with the record."""
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        then = load().get("cases", {})
-        found = ratios(measured(finished, cases), then)
-        return {"record.errors": found["errors"], "record.work": found["work"]} if then else {}
+        found = ratios(measured(finished, cases), load()["cases"])
+        return {f"record.{part}": value for part, value in found.items()}
 
     return Derived("work-precision", "record", cases, compute)
 
 
 def gates() -> Iterator[Gate]:
-    """Yield the gates on the record, where there is one."""
-    if not PATH.exists():
-        return
+    """Yield the gates on the record."""
     for part, slack in SLACK.items():
         yield Gate(
             "work-precision",
@@ -80,7 +96,7 @@ def gates() -> Iterator[Gate]:
             f"record.{part}",
             1 - slack,
             1 + slack,
-            f"worst ratio of {part} to the committed record (reports/record.json): no case may be worse, and where "
+            f"worst ratio of {part} to the committed record (validation/record.json): no case may be worse, and where "
             "all are better `dda-validate record --update-record` is due",
             reference_kind="own last value",
         )
@@ -96,8 +112,7 @@ def update(finished: Finished, cases: Sequence[tuple[str, str]], reason: str) ->
     """
     if not reason.strip():
         raise InputError("--reason: must say why the record changes, got nothing")
-    reasons = [*load().get("reasons", []), reason.strip()]
+    reasons = [*(load()["reasons"] if PATH.exists() else []), reason.strip()]
     data = {"reasons": reasons, "cases": measured(finished, cases)}
-    PATH.parent.mkdir(exist_ok=True)
     text = json.dumps(data, indent=1, sort_keys=True) + "\n"
     write_atomically(PATH, lambda stream: stream.write(text.encode()))
