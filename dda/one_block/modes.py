@@ -39,10 +39,14 @@ class Diagnostics:
 
 
 def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
-    """Return the modes that the load can reach, the largest static share first."""
+    """Return the modes that the load can reach, the largest static share first.
+
+    Where the base alone acts the load is the inertia M R of its unit acceleration.
+    """
     form = model.gap_form.reduced()
     modal = modal_form(form)
-    pushed = modal.load if np.any(form.F) else np.sum(modal.translation, axis=1)
+    alone = model.load_size == 0 and np.any(modal.translation)  # then form.F is that of 1 Pa
+    pushed = np.sum(modal.translation, axis=1) if alone else modal.load
     shares = (pushed / modal.frequencies) ** 2
     shares /= np.sum(shares)
     carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2

@@ -176,7 +176,7 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
     """
     equations = system.equations if full else system.reached
     solve = equations.at_rest
-    F = equations.F if np.any(equations.F) else equations.B.T @ (equations.kappa @ equations.G.sum(axis=1))
+    F = _pushed(system, equations)
     D, _ = solve(F, np.zeros(len(equations.pressure)))
     while True:
         squares, shapes, forces = _lowest(equations, solve, count)
@@ -190,6 +190,17 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
         Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), float(carried[i]))
         for i in np.argsort(-shares, kind="stable")
     )
+
+
+def _pushed(system: BlockSystem, equations: Equations) -> Array:
+    """Return the load that shares refer to: the constant one, else M R of the moving base, else a weight."""
+    if np.any(equations.F):
+        return equations.F
+    ways = (False, False) if system.motion is None else np.any(np.asarray(system.motion.displacement) != 0, axis=0)
+    component = equations.kept % 6
+    rigid = sum((1.0 * (component == i) for i in (0, 1) if ways[i]), 0.0 * component)
+    pushed: Array = equations.blockwise(equations.mass) @ (rigid if np.any(rigid) else 1.0 * (component == 1))
+    return pushed
 
 
 def _lowest(

@@ -39,7 +39,7 @@ def modes(
         The first one is the first axial mode.
     """
     model = build(problem, full) if model is None else model
-    F = model.F if np.any(model.F) else model.base_force.sum(axis=1)
+    F = model.F if np.any(model.F) else _carried(problem, model)
     D = Work().factor(model.K)(F)
     while True:
         squares, shapes = lowest(model, count)
@@ -53,6 +53,14 @@ def modes(
     return tuple(
         Mode(float(frequencies[i]), float(shares[i]), eigenvalues(float(frequencies[i]), scheme)) for i in order
     )
+
+
+def _carried(problem: Problem, model: Model) -> Array:
+    """Inertia M R of a unit acceleration of the base, along the ways that it moves."""
+    component, motion = model.places[2], problem.motion
+    ways = [i for i, part in enumerate(((), ()) if motion is None else (motion.x, motion.y)) if any(part)] or [1]
+    inertia: Array = model.M @ np.isin(component, ways).astype(float)
+    return inertia
 
 
 def lowest(model: Model, count: int) -> tuple[Array, Array]:

@@ -93,6 +93,7 @@ class Solver:
     cached: bool = True  # whether a finished case is kept for the next run
     distributed: bool = False  # whether its option is a number of ranks
     meshed: bool = False  # whether memory goes with the mesh, else with the blocks
+    saves: bool = True  # whether it spares what a mesh repeats
     role: Role = Role.OTHER
     rank: float = -1.0  # users' solvers come first: every other one is a reference for them
     line: LineStyle | None = None  # None: a style that depends on the name alone

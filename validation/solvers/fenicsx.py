@@ -126,6 +126,7 @@ class FEniCSx(Solver):
     sources = ("fem_reference.fenicsx_worker",)
     distributed = True
     meshed = True
+    saves = False
     role, rank = Role.SECOND_CODE, 3.0
     line = LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4)
 

@@ -21,11 +21,11 @@ GIGABYTE = 1e9
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    model = _mesh(scene) if solver.meshed else _blocks(scene)
+    model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
 
 
-def _mesh(scene: Scene) -> tuple[float, str]:
+def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Bytes of assembly and factor of the mesh."""
     if scene.fem.mesh is not None:
         try:
@@ -34,7 +34,8 @@ def _mesh(scene: Scene) -> tuple[float, str]:
             return 0.0, "fem.mesh"  # that it cannot be read is said where it is read
     along = float(scene.fem.degree) * scene.fem.per_side + 1
     uniform = scene.block.poisson == 0 and scene.block.vertices is None and scene.fem.foundation == "distributed"
-    unknowns = 2 * along if uniform and scene.load.centred else 2 * along * along
+    saves = solver.saves and scene.fem.cells == "quadrilaterals"
+    unknowns = 2 * along if saves and uniform and scene.load.centred else 2 * along * along
     return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
 
 

@@ -1,0 +1,279 @@
+"""What ParaView shows: files read back, against strains times moduli, the mean stress of the loads, the history."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import meshio
+import numpy as np
+import pytest
+from oracles.elements import INCLINED, make
+
+import fem_reference
+from fem_reference.mesh.mesh import elasticity, fields
+from fem_reference.mesh.model import assemble, whole_block
+from fem_reference.problem.problem import Array, Problem
+from validation.scenes.scene import load_scene
+from validation.solvers.fem import problem_of
+from validation.solvers.registry import get_solver
+
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
+# Steps far above the period and much damping: after sixty the block is at rest.
+REST = fem_reference.Scheme(0.5625, 1.0, 0.5, 1.0)
+AWAY = ((3.0, -1.0), (5.0, -1.0), (5.0, 1.5), (3.0, 1.5))  # 2 m x 2.5 m, its base off the origin
+TAU, Q, G = 2e5, 5e6, 9.81
+
+
+class Frame(NamedTuple):
+    """One instant of a file."""
+
+    time: float  # s
+    points: Array  # (points, 2) m
+    cells: np.ndarray  # corners of each cell
+    displacement: Array  # (points, 2) m
+    stress: Array  # (cells, 3) Pa: sxx, syy, sxy
+
+
+def read(path: Path) -> list[Frame]:
+    """Return the instants of a file; a .vtu has one without a time."""
+    if path.suffix == ".vtu":
+        mesh = meshio.read(path)
+        return [_frame(float("nan"), mesh.points, mesh.cells, mesh.point_data, mesh.cell_data)]
+    with meshio.xdmf.TimeSeriesReader(str(path)) as reader:
+        points, cells = reader.read_points_cells()
+        return [_frame(time, points, cells, *data) for time, *data in map(reader.read_data, range(reader.num_steps))]
+
+
+def _frame(time: float, points, cells, point_data, cell_data) -> Frame:  # type: ignore[no-untyped-def]
+    assert len(cells) == 1 and not points[:, 2].any() and not point_data["displacement"][:, 2].any()
+    assert set(point_data) == {"displacement"} and set(cell_data) == {"stress"}
+    return Frame(time, points[:, :2], cells[0].data, point_data["displacement"][:, :2], cell_data["stress"][0])
+
+
+def hooke(problem: Problem, exx: Array, eyy: Array, gxy: Array) -> Array:
+    """Return (sxx, syy, sxy) of strains by the printed elasticity matrix, gxy = du/dy + dv/dx."""
+    E, mu = problem.young, problem.poisson
+    if problem.hypothesis == "plane strain":
+        E, mu = E / (1 - mu**2), mu / (1 - mu)
+    plate = E / (1 - mu**2)
+    return np.column_stack([plate * (exx + mu * eyy), plate * (eyy + mu * exx), plate * (1 - mu) / 2 * gxy])
+
+
+def strains(frame: Frame) -> tuple[Array, Array, Array]:
+    """Return strains at the middle of each linear cell: of a bilinear one the least squares' plane through its corners.
+
+    On a parallelogram the bilinear map's gradient at the middle is that of this plane.
+    """
+    found = []
+    for cell in frame.cells:
+        x = frame.points[cell]
+        slope = np.linalg.lstsq(x - x.mean(axis=0), frame.displacement[cell], rcond=None)[0]
+        found.append([slope[0, 0], slope[1, 1], slope[0, 1] + slope[1, 0]])
+    exx, eyy, gxy = np.array(found).T
+    return exx, eyy, gxy
+
+
+def area(frame: Frame) -> Array:
+    """Return the area of each cell, whichever way its corners run [m2]."""
+    x, y = frame.points[frame.cells].transpose(2, 0, 1)
+    return np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)) / 2
+
+
+LOADS: dict[str, dict[str, float]] = {"pressure": {}, "sideways": {"traction": TAU}, "weight": {"gravity": G}}
+SHAPES: dict[str, dict[str, object]] = {
+    "column": {},
+    "half": {"poisson": 0.3, "elements": 4},
+    "whole, plane strain": {"poisson": 0.25, "hypothesis": "plane strain", "elements": 3, "vertices": AWAY},
+    "triangles": {"poisson": 0.3, "cells": "triangles", "vertices": AWAY},
+}
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".xdmf"])
+@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, load: str, suffix: str) -> None:
+    """In every cell of every frame of linear elements, read from the file alone."""
+    problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))  # type: ignore[arg-type]
+    path = tmp_path / f"block{suffix}"
+    fem_reference.solve(problem, fem_reference.Scheme(0.25, 0.5, 1.0, 1e-3), 8, COLUMNS, fields=path)
+    frames = read(path)
+    assert len(frames) == (1 if suffix == ".vtu" else 8)
+    for frame in frames:
+        expected = hooke(problem, *strains(frame))
+        # E times rounding of differences of displacements that are 1e2 times the strain's share of a cell
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(frame.stress, expected, rtol=0, atol=1e-9 * scale)
+        if load == "sideways":
+            assert np.abs(frame.stress[:, 2]).max() > 1e-4 * scale  # there is shear to be seen
+
+
+@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("shape", ["half", "whole, plane strain", "triangles"])
+def test_the_mean_stress_at_rest_is_that_of_the_forces(tmp_path: Path, shape: str, load: str) -> None:
+    """Volume times the mean of (sxx, syy, sxy) is the sum of force times place, for linear fields exactly.
+
+    With y from the base: syy has the top's pressure and half the weight, sxy the top's traction, and sxx the shear
+    springs, whose forces follow from the displacement of the base in the file itself.
+    """
+    problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))  # type: ignore[arg-type]
+    path = tmp_path / "block.vtu"
+    fem_reference.solve(problem, REST, 60, COLUMNS, fields=path)
+    (frame,) = read(path)
+    width, height = np.ptp(frame.points, axis=0)
+    mean = area(frame) @ frame.stress / (width * height)
+    weight = problem.density * problem.gravity * height
+    assert area(frame).sum() == pytest.approx(width * height, rel=1e-12)
+    assert mean[1] == pytest.approx(-Q - weight / 2, rel=1e-7)
+    assert mean[2] == pytest.approx(problem.traction, abs=1e-7 * Q)
+    x, u, v = base_of(frame)
+    x = x - x[0]
+    springs = -2 * 7e8 / width * trapezoid_of_products(x, x, u)
+    sideways = problem.traction * width**2 / 2 + springs
+    assert mean[0] == pytest.approx(sideways / (width * height), abs=1e-7 * Q)
+    # what the springs carry
+    assert 2 * problem.stiffness / width**2 * -np.trapezoid(v, x) == pytest.approx(Q + weight, rel=1e-7)
+    assert 2 * 7e8 / width * np.trapezoid(u, x) == pytest.approx(problem.traction * width, abs=1e-7 * Q)
+
+
+def base_of(frame: Frame) -> tuple[Array, Array, Array]:
+    """Return x, u and v along the base, from left to right."""
+    on = np.flatnonzero(frame.points[:, 1] == frame.points[:, 1].min())
+    on = on[np.argsort(frame.points[on, 0])]
+    return frame.points[on, 0], frame.displacement[on, 0], frame.displacement[on, 1]
+
+
+def trapezoid_of_products(x: Array, f: Array, g: Array) -> float:
+    """Return the integral of the product of two functions that are linear between the places."""
+    h = np.diff(x)
+    ends = 2 * f[:-1] * g[:-1] + f[:-1] * g[1:] + f[1:] * g[:-1] + 2 * f[1:] * g[1:]
+    return float(np.sum(h * ends / 6))
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
+@pytest.mark.parametrize("shape", [{}, {"vertices": INCLINED, "base": 1, "top": 3}, {"cells": "triangles"}], ids=str)
+def test_a_linear_displacement_has_its_stress_in_every_cell(
+    tmp_path: Path, shape: dict[str, object], hypothesis: str, degree: int
+) -> None:
+    """D made up: u = 1e-3 + 2e-3 x - 3e-3 y, v = -2e-3 + 5e-3 x + 1e-3 y, so exx, eyy, gxy = 2e-3, 1e-3, 2e-3."""
+    problem = make(**(shape | {"hypothesis": hypothesis}), poisson=0.3, elements=2, degree=degree)  # type: ignore[arg-type]
+    model = whole_block(problem)
+    x, y, component = model.places
+    u, v = 1e-3 + 2e-3 * x - 3e-3 * y, -2e-3 + 5e-3 * x + 1e-3 * y
+    path = tmp_path / "made_up.vtu"
+    writer = fields.FieldWriter(problem, model, path, 0.1, 1)
+    writer.record(1, np.where(component == 0, u, v) / problem.load_size)
+    writer.close()
+    (frame,) = read(path)
+    one = np.ones(1)
+    expected = hooke(problem, 2e-3 * one, 1e-3 * one, 2e-3 * one)
+    assert np.abs(frame.stress - expected).max() <= 1e-11 * np.abs(expected).max()
+    x, y = (frame.points - np.array(problem.vertices[problem.base])).T
+    corners = {tuple(point) for point in np.round(frame.points, 12)}
+    assert {tuple(np.round(point, 12)) for point in problem.vertices} <= corners
+    linear = np.column_stack([1e-3 + 2e-3 * x - 3e-3 * y, -2e-3 + 5e-3 * x + 1e-3 * y])
+    assert np.abs(frame.displacement - linear).max() <= 1e-15
+
+
+@pytest.mark.parametrize("vertical", [False, True])
+def test_a_quadratic_displacement_has_the_stress_of_the_middle_of_a_cell(tmp_path: Path, vertical: bool) -> None:
+    """D made up: u = 1e-3 x y, v = 1e-3 x^2 or 1e-3 y^2, whose strains at a cell's middle (x, y) are linear in it."""
+    for cells in ("quadrilaterals", "triangles"):
+        problem = make(poisson=0.2, elements=3, degree=2, cells=cells)  # type: ignore[arg-type]
+        model = whole_block(problem)
+        x, y, component = model.places
+        path = tmp_path / f"{cells}.vtu"
+        writer = fields.FieldWriter(problem, model, path, 0.1, 1)
+        writer.record(1, 1e-3 * np.where(component == 0, x * y, y**2 if vertical else x**2) / problem.load_size)
+        writer.close()
+        (frame,) = read(path)
+        x, y = frame.points[frame.cells].mean(axis=1).T
+        slope = (2e-3 * y, 1e-3 * x) if vertical else (0 * y, 1e-3 * x + 2e-3 * x)
+        expected = hooke(problem, 1e-3 * y, *slope)
+        assert np.abs(frame.stress - expected).max() <= 1e-11 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("solver_side", [False, True], ids=["package", "scene"])
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize(("poisson", "load"), [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})])
+def test_the_frames_are_the_history(
+    tmp_path: Path, scene_file: Path, poisson: float, load: dict[str, float], degree: int, solver_side: bool
+) -> None:
+    """The middle node and the base of every frame give the columns of its step; the last is the .vtu's."""
+    scene = load_scene(scene_file).with_values(
+        {"block.poisson": poisson, "fem.degree": degree, "time.steps": 12, "run.columns": list(COLUMNS)}
+        | {f"load.{name}": value for name, value in load.items()}
+    )
+    problem = problem_of(scene)
+    scheme, paths = fem_reference.Scheme(0.5, 1.0, 1.0, 2e-3), [tmp_path / "block.xdmf", tmp_path / "block.vtu"]
+    for path in paths:
+        if solver_side:
+            run = get_solver("fem").solve(scene, fields=path).history
+            assert run is not None
+            columns = run.columns
+        else:
+            columns = fem_reference.solve(problem, scheme, 12, COLUMNS, fields=path).columns
+    frames = read(paths[0])
+    assert [frame.time for frame in frames] == pytest.approx([2e-3 * (k + 1) for k in range(12)], rel=1e-12)
+    for k, frame in enumerate(frames):
+        middle = int(np.argmin(np.hypot(*(frame.points - 1.0).T)))
+        assert tuple(frame.points[middle]) == (1.0, 1.0)
+        seen = dict(zip(("horizontal_displacement", "displacement"), frame.displacement[middle], strict=True))
+        for name, value in seen.items():
+            assert value == pytest.approx(columns[name][k], rel=1e-9, abs=1e-12 * Q / 1e9), name
+        x, _, v = base_of(frame)
+        if degree == 1 or not poisson:  # of degree 2 the file shows the corners alone; without contraction they suffice
+            assert -2e9 / 4 * np.trapezoid(v, x) == pytest.approx(columns["contact_pressure"][k], abs=1e-9 * Q)
+    (last,) = read(paths[1])
+    np.testing.assert_allclose(last.displacement, frames[-1].displacement, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(last.stress, frames[-1].stress, rtol=0, atol=1e-12 * Q)
+
+
+def test_at_rest_top_and_base_are_where_the_bar_says(tmp_path: Path) -> None:
+    """Without contraction v = -q W / 2 p - (q / E) y, and syy = -q alone; 2 mm of E, 5 mm of springs."""
+    path = tmp_path / "block.vtu"
+    fem_reference.solve(make(elements=3), REST, 60, fields=path)
+    (frame,) = read(path)
+    expected = -Q * 2.0 / 2e9 - Q / 1e9 * frame.points[:, 1]
+    np.testing.assert_allclose(frame.displacement[:, 1], expected, rtol=1e-7)
+    np.testing.assert_allclose(frame.displacement[:, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(frame.stress, np.tile([0, -Q, 0], (9, 1)), rtol=0, atol=1e-7 * Q)
+
+
+def test_a_moved_base_carries_the_field(tmp_path: Path) -> None:
+    """At rest on a base moved by (1, -2) mm the whole field is moved so, without stress."""
+    motion = fem_reference.Motion((0.0,), (1e-3,), (-2e-3,))
+    path = tmp_path / "block.xdmf"
+    problem = make(poisson=0.3, elements=2, vertices=AWAY, motion=motion)
+    problem = type(problem)(
+        **{name: getattr(problem, name) for name in problem.__dataclass_fields__} | {"pressure": 0.0}
+    )
+    fem_reference.solve(problem, REST, 60, fields=path)
+    last = read(path)[-1]
+    np.testing.assert_allclose(last.displacement, np.tile([1e-3, -2e-3], (9, 1)), rtol=0, atol=1e-10)
+    assert np.abs(last.stress).max() <= 1e9 * 1e-10
+
+
+@pytest.mark.parametrize(("steps", "stride"), [(1, 1), (200, 1), (201, 2), (399, 2), (400, 2), (403, 3)])
+def test_a_series_has_every_stride_and_the_last_step(tmp_path: Path, steps: int, stride: int) -> None:
+    path = tmp_path / "block.xdmf"
+    fem_reference.solve(make(elements=1, degree=1), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), steps, fields=path)
+    with meshio.xdmf.TimeSeriesReader(str(path)) as reader:
+        reader.read_points_cells()
+        times = [reader.read_data(k)[0] for k in range(reader.num_steps)]
+    numbers = sorted({*range(stride, steps + 1, stride), steps})
+    assert times == pytest.approx([1e-3 * n for n in numbers], rel=1e-12)
+
+
+def test_the_assembled_matrices_and_the_field_share_their_moduli() -> None:
+    """D' K D of a linear displacement is the area times stress times strain."""
+    problem = make(poisson=0.3, hypothesis="plane strain", elements=2, degree=1)
+    assembled = assemble(problem)
+    x, y = assembled.basis.doflocs
+    component = elasticity.components(assembled.basis)
+    D = np.where(component == 0, 2e-3 * x - 3e-3 * y, 5e-3 * x + 1e-3 * y)
+    stress = hooke(problem, *(np.full(1, value) for value in (2e-3, 1e-3, 2e-3)))[0]
+    energy = problem.area * stress @ np.array([2e-3, 1e-3, 2e-3])
+    twice = float(D @ (assembled.K @ D))
+    assert twice == pytest.approx(energy, rel=1e-12)

@@ -1,0 +1,310 @@
+"""Loads in every place and of either sign: upright edges, outlines that begin elsewhere, weight and records alone.
+
+Each expectation is statics, a symmetry or the superposition of a linear model.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.elements import make
+from test_base_records import ABSENT
+
+import dda
+import fem_reference
+from dda.model.load import pressed_part
+from dda.system.joints import gap_groups
+from fem_reference.mesh import elasticity
+from fem_reference.mesh.model import assemble
+from validation.runs.history import Array
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
+
+A, P, Q = 2.0, 1e9, 5e6
+SQUARE = ((0.0, 0.0), (A, 0.0), (A, A), (0.0, A))
+COLUMNS = ["displacement", "contact_pressure", "horizontal_displacement"]
+GLUED = {"block.subdivide": [1, 4], "block.glue_ratio": 1e6}
+MODELS = {
+    "dda": ("dda", {}),
+    "sub-blocks": ("dda", GLUED),
+    "fem": ("fem", {"fem.elements": 2}),
+    "fenicsx": ("fenicsx", {"fem.elements": 2}),
+}
+EVERY = [pytest.param(*model, id=name, marks=[ABSENT] * (name == "fenicsx")) for name, model in MODELS.items()]
+PRESSED = [
+    *EVERY,
+    *(pytest.param(name, {}, id=name) for name in ("dda-textbook", "bar", "continuum", "dda-60", "bar-60")),
+]
+
+
+@pytest.fixture
+def scene(scene_file) -> Scene:  # type: ignore[no-untyped-def]
+    return load_scene(scene_file).with_values({"run.columns": COLUMNS, "time.steps": 20})
+
+
+def columns_of(solver: str, scene: Scene) -> dict[str, Array]:
+    history = get_solver(solver).solve(scene).history
+    assert history is not None
+    return dict(history.columns)
+
+
+@pytest.mark.parametrize(("solver", "values"), PRESSED)
+def test_a_pull_is_the_negative_of_a_pressure(scene: Scene, solver: str, values: dict[str, object]) -> None:
+    scene = scene.with_values({"run.columns": COLUMNS[:2], "time.steps": 6, **values})
+    push, pull = (columns_of(solver, scene.with_values({"load.pressure": q})) for q in (Q, -Q))
+    for name in COLUMNS[:2]:
+        assert np.abs(push[name]).max() > 0
+        np.testing.assert_allclose(pull[name], -push[name], rtol=1e-13)
+    if not solver.endswith("60"):  # these report no statics
+        static = get_solver(solver).static(scene.with_values({"load.pressure": -Q}))
+        assert static["displacement"] == pytest.approx(0.01, rel=1e-5)  # glue of 1e6 E gives by 1e-6
+        assert static["contact_pressure"] == pytest.approx(-Q, rel=1e-11)
+
+
+@pytest.mark.parametrize(("solver", "values"), EVERY)
+@pytest.mark.parametrize("g", [9.81, -3.0])
+def test_weight_alone_is_carried(scene: Scene, solver: str, values: dict[str, object], g: float) -> None:
+    """Pressure rho g h; v = -rho g h W / 2 p - (strain from 0 at the top to rho g h / E at the base over h / 2).
+
+    The DDA block has one strain for its whole height, rho g h / 2 E, and n glued ones have n.
+    """
+    scene, E, rho = scene.with_values({"load": {"gravity": g}, **values}), 1e9, 2700.0
+    static = get_solver(solver).static(scene)
+    strain = rho * g * A / E
+    mean = {"dda": 0.5, "glued": 0.75}["glued" if values == GLUED else "dda"] if solver == "dda" else 0.75
+    expected = -rho * g * A * A / (2 * P) - mean * strain * A / 2
+    assert static["contact_pressure"] == pytest.approx(rho * g * A, rel=1e-9)
+    assert static["displacement"] == pytest.approx(expected, rel=1e-5)  # the glue
+    run = columns_of(solver, scene.with_values({"time.step": 0.01, "time.steps": 400, "time.gg": 0.9}))
+    assert run["contact_pressure"][-1] == pytest.approx(rho * g * A, rel=1e-8)
+    assert run["displacement"][-1] == pytest.approx(static["displacement"], rel=1e-8)
+
+
+@pytest.mark.parametrize(("solver", "values"), EVERY)
+@pytest.mark.parametrize("way", ["x", "y"])
+def test_a_record_moves_what_the_pressure_does_not_reach(
+    scene: Scene,
+    tmp_path,
+    solver: str,
+    values: dict[str, object],
+    way: str,  # type: ignore[no-untyped-def]
+) -> None:
+    """Both together are the sum of each alone, also where the pressure by itself moves v only."""
+    (tmp_path / "quake.csv").write_text(f"time,{way}\n0,0\n0.01,1e-3\n0.5,0\n")
+    loads = ({"pressure": Q}, {"base_motion": str(tmp_path / "quake.csv")})
+    alone = [columns_of(solver, scene.with_values({"load": load, **values})) for load in loads]
+    both = columns_of(solver, scene.with_values({"load": loads[0] | loads[1], **values}))
+    for name in COLUMNS:
+        total = alone[0][name] + alone[1][name]
+        np.testing.assert_allclose(both[name], total, rtol=0, atol=1e-10 * np.abs(total).max(initial=1e-6))
+    moved = "horizontal_displacement" if way == "x" else "displacement"
+    assert np.abs(alone[1][moved]).max() > 1e-4
+
+
+@pytest.mark.parametrize(("solver", "values"), [*EVERY, pytest.param("bar", {}, id="bar")])
+def test_nothing_acts_and_nothing_moves(scene: Scene, solver: str, values: dict[str, object]) -> None:
+    scene = scene.with_values({"load": {"pressure": 0.0}, "run.columns": COLUMNS[:2], **values})
+    for found in (columns_of(solver, scene), get_solver(solver).static(scene)):
+        assert all(not np.any(found[name]) for name in COLUMNS[:2])
+    if solver in ("dda", "fem", "bar"):
+        pressed = get_solver(solver).modes(scene.with_values({"load.pressure": Q}))
+        modes = get_solver(solver).modes(scene)
+        assert modes[0].frequency == pytest.approx(pressed[0].frequency, rel=1e-12)
+
+
+@pytest.mark.parametrize(("solver", "values"), EVERY)
+@pytest.mark.parametrize("turn", [1, 2, 3])
+def test_it_does_not_matter_where_the_outline_begins(
+    scene: Scene, solver: str, values: dict[str, object], turn: int
+) -> None:
+    """An eccentric pressure and a traction on a quadrilateral whose vertices are listed from another one on."""
+    corners = [[0.3, 0.1], [2.3, 0.4], [1.9, 1.6], [0.5, 1.4]]
+    loads = {"load": {"pressure": Q, "traction": 2e5}, "block.poisson": 0.2, "time.steps": 5, **values}
+    listed = {
+        "block.vertices": np.roll(corners, turn, axis=0).tolist(),
+        "block.base": turn,
+        "block.top": (2 + turn) % 4,
+    }
+    first, other = (
+        columns_of(solver, scene.with_values(loads | outline))
+        for outline in ({"block.vertices": corners, "block.base": 0, "block.top": 2}, listed)
+    )
+    for name in COLUMNS:
+        np.testing.assert_allclose(other[name], first[name], rtol=0, atol=1e-11 * np.abs(first[name]).max())
+
+
+@pytest.mark.parametrize("side", [1, 3])
+@pytest.mark.parametrize("e", [0.0, 0.3, -0.3])
+@pytest.mark.parametrize("foundation", ["block", "sub-blocks", "corner"])
+def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None:
+    """A vertical pressure and a horizontal traction on a wall of a rigid block: force, moment over p a^2 / 2.
+
+    The eccentricity of the pressed part runs towards +y on an upright edge, so it moves no vertical force's lever.
+    """
+    tau, x = 4e5, A / 2 if side == 1 else -A / 2
+    moment = -Q * (A - 2 * abs(e)) * x - tau * A * (A / 2)
+    if foundation == "corner":
+        problem = make(poisson=0.2, elements=2, foundation="corner", top=side)
+        stiff = replace(problem, young=1e16, eccentricity=e, traction=tau)
+        static = fem_reference.static(stiff)
+    else:
+        block = dda.Block(SQUARE, dda.Material(2700.0, 1e16, 0.2))
+        model = dda.TwoBlockModel(block, dda.Contact(P), Q, top=side, eccentricity=e, traction=tau)
+        cut = dda.subdivided(model, 1, 3, 1e20)
+        static = model.static() if foundation == "block" else dda.static_system(cut)
+    rotation = moment / (P * A * A / 2)
+    assert static["rotation"] == pytest.approx(rotation, rel=2e-6)  # E / p = 1e7 of rigidity
+    assert static["displacement"] == pytest.approx(-Q * (A - 2 * abs(e)) / (2 * P), rel=2e-6)
+    assert static["horizontal_displacement"] == pytest.approx(tau * A / (2 * P) - A / 2 * rotation, rel=2e-6)
+
+
+@pytest.mark.parametrize("e", [0.3, -0.3])
+@pytest.mark.parametrize(
+    ("start", "end", "along"),
+    [((0, 0), (2, 0), (1, 0)), ((2, 1), (0, 0), (1, 0)), ((1, 0), (1, 2), (0, 1)), ((1, 2), (1, 0), (0, 1))],
+)
+def test_the_pressed_part_is_shifted_towards_plus_x_or_on_an_upright_edge_plus_y(
+    start: tuple[float, float], end: tuple[float, float], along: tuple[float, float], e: float
+) -> None:
+    first, last = np.array(start, float), np.array(end, float)
+    low, high = pressed_part(first, last, e)
+    length = np.hypot(*(last - first))
+    assert np.hypot(*(high - low)) == pytest.approx(length - 2 * abs(e), rel=1e-14)
+    shift = (low + high - first - last) / 2
+    assert np.hypot(*shift) == pytest.approx(abs(e), rel=1e-13) and math.copysign(1, e) == np.sign(shift @ along)
+    assert np.all(low == first) or np.all(high == last)  # it is the longest such part
+
+
+@pytest.mark.parametrize("side", [1, 3])
+@pytest.mark.parametrize("e", [0.3, -0.3])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_elements_press_the_same_part_of_an_upright_edge(side: int, e: float, degree: int) -> None:
+    """Work of the load on v = y: -q times the pressed length times the height of its middle."""
+    assembled = assemble(replace(make(elements=3, degree=degree, top=side), eccentricity=e))
+    y = assembled.basis.doflocs[1] * elasticity.components(assembled.basis)
+    assert assembled.F @ y == pytest.approx(-Q * (A - 2 * abs(e)) * (A / 2 + e), rel=1e-12)
+
+
+@pytest.mark.parametrize("e", [1.0, -1.0, 1.6, -1.6])
+def test_an_eccentricity_that_leaves_nothing_is_refused(e: float) -> None:
+    words = r"eccentricity: must be below half the top edge,? 1, got"
+    with pytest.raises(ValueError, match=words):
+        dda.TwoBlockModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Contact(P), Q, eccentricity=e)
+    with pytest.raises(ValueError, match=words):
+        replace(make(elements=1), eccentricity=e)
+
+
+@pytest.mark.parametrize(
+    ("time", "moved"),
+    [
+        ([0.0, 0.0], [[0, 0], [1, 1]]),
+        ([0.0, -1.0], [[0, 0], [1, 1]]),
+        ([0.0, 1.0], [[0, 0], [math.nan, 1]]),
+        ([0.0, 1.0], [[0, 0], [1, math.inf]]),
+        ([0.0, math.nan], [[0, 0], [1, 1]]),
+        ([0.0, 1.0], [[0, 0]]),
+        ([0.0], [[0, 0], [1, 1]]),
+        ([], np.zeros((0, 2))),
+    ],
+    ids=["twice", "back", "nan", "inf", "no time", "short", "long", "empty"],
+)
+def test_records_that_are_none_are_refused_by_both_codes(time: list[float], moved: list[list[float]]) -> None:
+    with pytest.raises(ValueError, match=r"^(time|displacement): "):
+        dda.BaseMotion(time, moved)
+    x, y = (tuple(part) for part in np.array(moved, float).T)
+    with pytest.raises(ValueError, match=r"^motion: "):
+        fem_reference.Motion(tuple(time), x, y)
+
+
+def test_a_record_gives_x_and_y_for_every_instant() -> None:
+    with pytest.raises(ValueError, match=r"^displacement: "):
+        dda.BaseMotion([0.0, 1.0], [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
+    for x, y in (((0.0,), (0.0, 1.0)), ((0.0, 1.0), (0.0,))):
+        with pytest.raises(ValueError, match=r"^motion: "):
+            fem_reference.Motion((0.0, 1.0), x, y)
+
+
+@pytest.mark.parametrize("elements", [1, 2, 3])
+@pytest.mark.parametrize("cells", ["quadrilaterals", "triangles"])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_the_rotation_of_the_middle_is_the_mean_over_the_elements_that_meet_there(
+    elements: int, cells: str, degree: int
+) -> None:
+    """With u = -3e-3 y, v = 5e-3 x it turns by 4e-3 whether one, two, four or six elements meet in the middle."""
+    assembled = assemble(make(elements=elements, degree=degree, cells=cells))  # type: ignore[arg-type]
+    x, y = assembled.basis.doflocs
+    D = np.where(elasticity.components(assembled.basis) == 0, -3e-3 * y, 5e-3 * x)
+    assert assembled.observers["rotation"] @ D == pytest.approx(4e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("elements", [2, 3, 4, 5])
+def test_the_middle_of_triangles_is_read_in_its_own_triangle(elements: int) -> None:
+    """Any nodal values, linear in each triangle: the middle's own triangle is found by its barycentric coordinates."""
+    vertices = ((0.0, 0.0), (3.0, 0.0), (2.0, 1.6), (0.4, 1.0))
+    problem = make(vertices, elements=elements, degree=1, cells="triangles")  # type: ignore[arg-type]
+    assembled = assemble(problem)
+    mesh, values = assembled.basis.mesh, np.random.default_rng(elements).standard_normal(assembled.basis.N)
+    for name, dofs in (
+        ("horizontal_displacement", assembled.basis.nodal_dofs[0]),
+        ("displacement", assembled.basis.nodal_dofs[1]),
+    ):
+        found = []
+        for cell in mesh.t.T:
+            weights = np.linalg.solve(np.vstack([mesh.p[:, cell], np.ones(3)]), [*problem.centroid, 1.0])
+            found += [weights @ values[dofs[cell]]] * bool(np.all(weights >= -1e-12))
+        assert assembled.observers[name] @ values == pytest.approx(found[0], rel=1e-11)
+
+
+def test_a_load_on_a_block_that_is_not_there_is_refused() -> None:
+    block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
+    load = dda.SurfaceLoad(1, (0.0, A), (A, A), (0.0, -Q))
+    with pytest.raises(ValueError, match="must name blocks from 0 to 0, got 1"):
+        dda.BlockSystem([block], [], (1.0, 1.0), A, [load])
+
+
+@pytest.mark.parametrize("glue", [0.0, -1.0, math.inf, math.nan])
+def test_glue_that_is_no_stiffness_is_refused(glue: float) -> None:
+    model = dda.TwoBlockModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Contact(P), Q)
+    with pytest.raises(ValueError, match="glue: must be finite and positive"):
+        dda.subdivided(model, 1, 2, glue)
+
+
+@pytest.mark.parametrize(("off", "inside"), [(1e-10, True), (1e-6, False)])
+def test_an_observed_point_on_the_boundary_may_be_off_by_rounding(off: float, inside: bool) -> None:
+    block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
+    if inside:
+        assert dda.BlockSystem([block], [], (A + off, 1.0), A).observed[0] > A
+    else:
+        with pytest.raises(ValueError, match="observed: must lie in a block"):
+            dda.BlockSystem([block], [], (A + off, 1.0), A)
+
+
+@pytest.mark.parametrize(("off", "met"), [(0.0, True), (3e-10, True), (1e-6, False)])
+def test_joints_whose_ends_differ_by_rounding_meet(off: float, met: bool) -> None:
+    """Two joints end to end: a shared point makes one group of gaps of it, apart they are two plain joints."""
+    material = dda.Material(2700.0, 1e9, 0.0)
+    rows = [[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [1, 1], [1, 2], [0, 2]], [[1, 1], [2, 1], [2, 2], [1, 2]]]
+    blocks = [dda.Block(corners, material) for corners in rows]
+    joints = [dda.Joint(1, 0, (0, 1), (1, 1), 1e9, 1e9), dda.Joint(2, 0, (1 + off, 1), (2, 1), 1e9, 1e9)]
+    assert len(gap_groups(blocks, joints)) == (3 if met else 2)
+
+
+def test_inverses_of_graded_matrices_keep_their_digits() -> None:
+    """The inverse of R H R is (1/R) H^-1 (1/R) entry by entry, however R is graded."""
+    from dda.system.system import _inverse
+
+    rng = np.random.default_rng(1)
+    for _ in range(100):
+        half = rng.standard_normal((6, 6))
+        H = half @ half.T + 1e-3 * np.eye(6)
+        H /= np.sqrt(np.outer(np.diag(H), np.diag(H)))
+        grade = 10.0 ** rng.uniform(-40, 40, 6)
+        R = np.outer(grade, grade)
+        found, expected = _inverse((R * H)[None])[0], np.linalg.inv(H)
+        # six unknowns: a few roundings times the condition; the grading unscaled costs thirty times more
+        assert (
+            np.abs(found * R - expected).max() <= 12 * np.finfo(float).eps * np.linalg.cond(H) * np.abs(expected).max()
+        )

@@ -1,0 +1,240 @@
+"""Which mode a load excites most, how many are looked for, and what one step's diagnostics measure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.elements import make
+from scipy.linalg import eigh
+from test_bar import OTHER, PAPER
+
+import dda
+import fem_reference
+from fem_reference.mesh.model import build
+from fem_reference.scheme.diagnostics import diagnostics
+from fem_reference.scheme.modal import weighted_response
+from validation.runs.history import Array
+
+A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
+M = RHO * A * A
+SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
+RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3))}
+
+
+def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
+    """Return frequencies and shares (phi' M R)^2 / (w^2 R' M K^-1 M R), the largest share first."""
+    squares, shapes = eigh(stiffness, mass)
+    inertia = mass @ rigid
+    shares = (shapes.T @ inertia) ** 2 / squares / (inertia @ np.linalg.solve(stiffness, inertia))
+    order = np.argsort(-shares)
+    return np.sqrt(squares[order]), shares[order]
+
+
+def upright(n: int, p: float) -> tuple[Array, Array, Array]:
+    """Return M, K and R of n linear elements on the spring 2 p; n = 1 is (v, ey) of the DDA block as well."""
+    h = A / n
+    mass, stiffness = np.zeros((2, n + 1, n + 1))
+    for i in range(n):
+        mass[i : i + 2, i : i + 2] += RHO * A * h / 6 * np.array([[2, 1], [1, 2]])
+        stiffness[i : i + 2, i : i + 2] += E * A / h * np.array([[1, -1], [-1, 1]])
+    stiffness[0, 0] += 2 * p
+    return mass, stiffness, np.ones(n + 1)
+
+
+def sideways(p: float) -> tuple[Array, Array, Array]:
+    """Return M, K and R of (u, r, gxy) of the DDA block on two corners: the springs' stretches as vectors."""
+    normal, tangential = np.array([0.0, A / 2, A / 4]), np.array([1.0, A / 2, -A / 4])
+    stiffness = 2 * p * (np.outer(normal, normal) + np.outer(tangential, tangential))
+    stiffness[2, 2] += E / 2 * A * A
+    return M * np.diag([1.0, A * A / 6, A * A / 24]), stiffness, np.array([1.0, 0.0, 0.0])
+
+
+def model(p: float, way: str) -> dda.TwoBlockModel:
+    motion = dda.BaseMotion([0.0, 0.01], np.transpose(RECORDS[way]))
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    return dda.TwoBlockModel(block, dda.Contact(p), 0.0, motion=motion)
+
+
+def problem(n: int, p: float, way: str, **changes: object) -> fem_reference.Problem:
+    motion = fem_reference.Motion((0.0, 0.01), *RECORDS[way])
+    return replace(make(p=p, elements=n, degree=1), pressure=0.0, motion=motion, **changes)  # type: ignore[arg-type]
+
+
+def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-untyped-def]
+    """Compare the modes that have a share worth the name; dense solvers and glue leave 1e-8 of the others."""
+    seen = [mode for mode in found if mode.share > 1e-4]
+    kept = expected[1] > 1e-4
+    assert [mode.frequency for mode in seen] == pytest.approx(expected[0][kept].tolist(), rel=1e-7)
+    assert [mode.share for mode in seen] == pytest.approx(expected[1][kept].tolist(), rel=1e-6)
+
+
+@pytest.mark.parametrize("p", [1e9, 1e10, 1e11])
+@pytest.mark.parametrize("way", RECORDS)
+@pytest.mark.parametrize("solver", ["whole", "one sub-block"])
+def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way: str, solver: str) -> None:
+    """The springs' push K R would make the stiff contact mode the first one: it has no limit for stiff springs."""
+    case = model(p, way)
+    if solver == "whole":
+        found = dda.modes(case, SCHEME)
+    else:
+        found = dda.system_modes(dda.subdivided(case, 1, 1, 1e9), SCHEME)
+    agree(found, carried(*(upright(1, p) if way == "y" else sideways(p))))
+
+
+@pytest.mark.parametrize("p", [1e9, 1e11])
+@pytest.mark.parametrize("n", [1, 5])
+@pytest.mark.parametrize("solver", ["fem", "whole fem", "sub-blocks"])
+def test_shares_of_a_column_under_a_moving_base(p: float, n: int, solver: str) -> None:
+    if solver == "sub-blocks":
+        found = dda.system_modes(dda.subdivided(model(p, "y"), 1, n, 1e17), SCHEME)
+    else:
+        found = fem_reference.modes(problem(n, p, "y"), SAME, count=60, full=solver == "whole fem")
+    agree(found, carried(*upright(n, p)))
+
+
+def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
+    """Of the paper's block at p = 1E, mu = 0: 327.7 and 137.4 rad/s for elements, 344.6 and 226.5 for the block."""
+    for way, fem, block in (("y", 327.7, 344.561), ("x", 137.4, 226.5)):
+        assert fem_reference.modes(problem(8, 1e9, way), SAME)[0].frequency == pytest.approx(fem, abs=0.5)
+        assert dda.modes(model(1e9, way), SCHEME)[0].frequency == pytest.approx(block, abs=0.05)
+
+
+def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(P), 0.0), 1, 1, 1e9)
+    modes = dda.system_modes(system, SCHEME)
+    agree(modes, carried(*upright(1, P)))  # those of a weight, which is M R as well
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int) -> None:
+    """Of the whole block the rocking modes lie lower; asked for few, the search goes on."""
+    few = fem_reference.modes(make(elements=4), SAME, count=count, full=True)
+    assert few[0].frequency == pytest.approx(327.682, abs=0.01)
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(P), 5e6), 3, 3, 1e13)
+    found = dda.system_modes(system, SCHEME, count=count, full=True)
+    assert found[0].share > 0.8 and found[0].frequency == pytest.approx(327.7, abs=4.0)  # coarse: three blocks high
+
+
+@pytest.mark.parametrize("dense", [1, 10**6])
+def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatch, dense: int) -> None:
+    """Of a long chain, all blocks breathing against their joints: w^2 = 12 (E w h + 2 g h^2) / (m h^2).
+
+    Blocks w x h with joints of 2 g; the ends of n blocks spoil it by pi^2 / n^2 at most.
+    """
+    monkeypatch.setattr("dda.system.solution._DENSE", dense)
+    n, width, h, g = 60, 0.5, 0.1, 3e9
+    block = dda.Block.rectangle(width, n * h, dda.Material(RHO, E, 0.0))
+    system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(g), 5e6), 1, n, g)
+    expected = np.sqrt(12 * (E * width * h + 2 * g * h * h) / (RHO * width * h * h * h))
+    assert dda.highest_frequency(system) == pytest.approx(expected, rel=np.pi**2 / n**2)
+
+
+@pytest.mark.parametrize("dense", [1, 10**6])
+@pytest.mark.parametrize("full", [False, True])
+def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense: int, full: bool) -> None:
+    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", dense)
+    case = make(poisson=0.3, elements=6, degree=1)
+    equations = build(case, full)
+    exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
+    assert fem_reference.highest_frequency(case, full) == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize("bar", [PAPER, OTHER])
+def test_a_bar_s_shares_are_those_of_a_force_on_its_top(bar: fem_reference.Bar) -> None:
+    """(phi' F)^2 / (w^2 M_i F' D): phi = cos(b (1 - y/h)), M_i = rho W h (1 + sin 2b / 2b) / 2, D = F (1/k + h/EW)."""
+    modes = bar.modes(SAME, 40)
+    soft = 1 / bar.base_stiffness + bar.height / (bar.young * bar.width)
+    for mode in modes:
+        b = mode.frequency * bar.height * np.sqrt(bar.density / bar.young)
+        inertia = bar.density * bar.width * bar.height * (1 + np.sin(2 * b) / (2 * b)) / 2
+        assert mode.share == pytest.approx(1 / (mode.frequency**2 * inertia * soft), rel=1e-11)
+    assert 0.98 < sum(mode.share for mode in modes) < 1
+
+
+def test_a_double_root_at_zero_stops_a_mode_in_its_second_step() -> None:
+    """At gg = 0, (1/4, 1/2) and w dt = 2 both roots vanish: x1 = 1 - 2/4, x2 = 0 and nothing after."""
+    found = weighted_response(
+        np.array([1.0, 2.0]), np.array([[0.0, 1.0]]), fem_reference.Scheme(0.25, 0.5, 0.0, 1.0), 5
+    )
+    np.testing.assert_allclose(found[0], [0.5, 1.0, 1.0, 1.0, 1.0], rtol=0, atol=1e-15)
+
+
+def radius(omega: float, alpha: float, delta: float, gg: float) -> float:
+    """Return the larger |lambda| of trace and determinant."""
+    h = omega**2 / (1 + alpha * omega**2)
+    trace, det = 1 - h / 2 + gg * (1 - delta * h), gg * (1 + (0.5 - delta) * h)
+    return float(np.max(np.abs(np.roots([1.0, -trace, det]))))
+
+
+@pytest.mark.parametrize("step", [1e-4, 1e-2])  # the first mode lasts longest, and the highest does
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+def test_diagnostics_are_of_the_mode_that_lasts_longest(step: float, gg: float) -> None:
+    alpha, delta = 0.5, 1.0
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    case = dda.TwoBlockModel(block, dda.Contact(P), 5e6)
+    mass, stiffness, _ = upright(1, P)
+    for found, omegas in (
+        (dda.diagnostics(case, dda.Scheme(alpha, delta, gg, step)), frequencies(mass, stiffness) * step),
+        (mesh_diagnostics(1, alpha, delta, gg, step), frequencies(mass, stiffness) * step),
+        (mesh_diagnostics(7, alpha, delta, gg, step), frequencies(*upright(7, P)[:2]) * step),
+    ):
+        expected = max(radius(float(w), alpha, delta, gg) for w in omegas)
+        assert found.spectral_radius == pytest.approx(expected, rel=1e-9)
+        assert found.predicted_radius == pytest.approx(expected, rel=1e-9)
+        assert found.largest_omega == pytest.approx(omegas.max(), rel=1e-9)
+    own = mass + alpha * step**2 * stiffness
+    assert mesh_diagnostics(1, alpha, delta, gg, step).condition_number == pytest.approx(np.linalg.cond(own), rel=1e-9)
+
+
+def frequencies(mass: Array, stiffness: Array) -> Array:
+    return np.sqrt(eigh(stiffness, mass, eigvals_only=True))
+
+
+def mesh_diagnostics(n: int, alpha: float, delta: float, gg: float, step: float):  # type: ignore[no-untyped-def]
+    return diagnostics(make(elements=n, degree=1), fem_reference.Scheme(alpha, delta, gg, step))
+
+
+def test_diagnostics_of_a_large_mesh_know_its_highest_frequency() -> None:
+    case = make(poisson=0.3, elements=14, degree=1)
+    found = diagnostics(case, SAME, full=True)
+    assert np.isnan(found.condition_number)
+    assert found.largest_omega == pytest.approx(1e-3 * fem_reference.highest_frequency(case, full=True), rel=1e-9)
+    assert found.predicted_radius == pytest.approx(found.spectral_radius, rel=1e-9)
+
+
+def test_the_condition_number_of_the_block_is_that_of_its_six_unknowns() -> None:
+    """S = M + alpha dt^2 K of (u, v, r, ex, ey, gxy): mu = 0 makes it (v, ey), (u, r, gxy) and ex."""
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    found = dda.diagnostics(dda.TwoBlockModel(block, dda.Contact(P), 5e6), dda.Scheme(0.5, 1.0, 1.0, 2e-3))
+    inertia, J = np.diag([M, M * A * A / 12]), M * A * A / 12
+    upward = np.array([[2 * P, -P * A], [-P * A, E * A * A + P * A * A / 2]])
+    S = np.zeros((6, 6))
+    S[:3, :3] = sideways(P)[0] + 0.5 * 2e-3**2 * sideways(P)[1]
+    S[3:5, 3:5] = inertia + 0.5 * 2e-3**2 * upward
+    S[5, 5] = J + 0.5 * 2e-3**2 * (E * A * A + P * A * A / 2)
+    assert found.condition_number == pytest.approx(np.linalg.cond(S), rel=1e-9)
+
+
+def test_residuals_are_those_of_the_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solution that is off by 1e-6 leaves a scaled residual of that order, a sound one leaves rounding."""
+    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
+    case = dda.TwoBlockModel(block, dda.Contact(P), 5e6)
+    assert dda.diagnostics(case, SCHEME).scaled_residual <= 1e-15
+    assert diagnostics(make(elements=4), SAME).scaled_residual <= 1e-15
+    solve, factor = np.linalg.solve, fem_reference.scheme.newmark.Work.factor
+    with monkeypatch.context() as patch:
+        patch.setattr(np.linalg, "solve", lambda a, b: solve(a, b) * (1 + 1e-6))
+        # S x - b is 1e-6 b; the scale is |S| |x| + |b|, some ten times |b|
+        assert 1e-8 < dda.diagnostics(case, SCHEME).scaled_residual <= 5e-7
+    with monkeypatch.context() as patch:
+
+        def slack(work, matrix):  # type: ignore[no-untyped-def]
+            sound = factor(work, matrix)
+            return lambda right: sound(right) * (1 + 1e-6)
+
+        patch.setattr("fem_reference.scheme.diagnostics.Work.factor", slack)
+        assert 1e-9 < diagnostics(make(elements=4), SAME).scaled_residual <= 5e-7

@@ -1,0 +1,112 @@
+"""A user's columns in other units, with another sign, or as a force: each slip is named, and nothing sound is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation.runs.history import Array
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
+from validation.solvers.user import UNITS, _judged
+
+COLUMNS = ("displacement", "contact_pressure")
+SI = {  # how much of it makes one s, one m, one Pa: written down here once more
+    "time": {"milliseconds": 1000.0, "microseconds": 1000.0**2},
+    "displacement": {"mm": 1000.0, "cm": 100.0, "micrometres": 1000.0**2, "km": 1 / 1000.0},
+    "contact_pressure": {"kPa": 1 / 1000.0, "MPa": 1 / 1000.0**2, "GPa": 1 / 1000.0**3, "bar": 1 / 100000.0},
+}
+NAMES = [(column, unit) for column, units in SI.items() for unit in units]
+VARIANTS = {  # the unit must be seen on any scene, and under a solver that is off by some percent or damped otherwise
+    "paper": {},
+    "long steps": {"time.step": 0.01, "contact.stiffness": 1e10},
+    "pulled": {"load.pressure": -2e5, "time.gg": 0.9},
+}
+
+
+def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str, Array]:
+    """Return the sound history of a scene, some of its columns multiplied."""
+    history = get_solver("dda").solve(scene).history
+    assert history is not None
+    found = {"time": history.time, **history.columns}
+    return {name: values * (times or {}).get(name, 1.0) for name, values in found.items()}
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def test_every_unit_of_the_table_is_tested() -> None:
+    assert {(column, unit) for column, units in UNITS.items() for unit in units.values()} == set(NAMES)
+
+
+@pytest.mark.parametrize("values", VARIANTS.values(), ids=VARIANTS)
+@pytest.mark.parametrize("size", [0.85, 1.0, 1.2])
+@pytest.mark.parametrize(("column", "unit"), NAMES)
+def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float, values: dict[str, object]) -> None:
+    if column == "time":
+        size = 1.0  # the instants are the scene's own
+    scene, factor = scene.with_values(values), SI[column][unit]
+    run = _judged(scene, columns_of(scene, {column: size * factor}))
+    assert run.outcome is Outcome.WRONG_UNITS
+    assert run.notes == (f"wrong units: {column} is {factor:g} times what is expected in SI, {unit}?",)
+
+
+@pytest.mark.parametrize("values", VARIANTS.values(), ids=VARIANTS)
+@pytest.mark.parametrize("column", COLUMNS)
+def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, object]) -> None:
+    scene = scene.with_values(values)
+    run = _judged(scene, columns_of(scene, {column: -1.0}))
+    assert run.outcome is Outcome.WRONG_UNITS and run.notes[0].startswith(f"wrong sign: {column} is the negative of")
+    assert "downwards is negative, compression positive" in run.notes[0]
+
+
+@pytest.mark.parametrize("width", [0.4, 1.6, 2.0, 7.0])
+def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width: float) -> None:
+    scene = scene.with_values({"block.width": width, "block.height": 1.5})
+    run = _judged(scene, columns_of(scene, {"contact_pressure": width}))
+    assert run.outcome is Outcome.WRONG_UNITS
+    words = f"wrong units: contact_pressure is {width:g} times what is expected, the length of the base: a force?"
+    assert run.notes == (words,)
+    # a displacement off by the same factor is bad, but no force
+    assert _judged(scene, columns_of(scene, {"displacement": width})).outcome is Outcome.COMPLETED
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        {},
+        {"displacement": 0.5},
+        {"displacement": 10.0},  # no unit is ten times another here
+        {"contact_pressure": 1.05},  # nearly one: not the base's length of 2 m
+        {"contact_pressure": 1.9, "displacement": 3.0},
+        {"contact_pressure": 0.0},
+    ],
+    ids=str,
+)
+def test_a_bad_answer_in_si_is_no_slip_of_units(scene: Scene, times: dict[str, float]) -> None:
+    assert _judged(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
+
+
+def test_a_base_of_one_metre_makes_force_and_pressure_one(scene: Scene) -> None:
+    scene = scene.with_values({"block.side": 1.0})
+    assert _judged(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+
+
+def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> None:
+    """A column that is alike by less than 0.8 tells nothing of units: here it is noise of a thousandfold size."""
+    columns = columns_of(scene)
+    noise = np.random.default_rng(3).standard_normal(scene.time.steps)
+    size = np.linalg.norm(columns["displacement"]) / np.linalg.norm(noise)
+    assert _judged(scene, columns | {"displacement": 1e3 * size * noise}).outcome is Outcome.COMPLETED
+
+
+def test_time_is_judged_before_the_columns(scene: Scene) -> None:
+    run = _judged(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
+    assert "time is 1000 times" in run.notes[0]
+    late = columns_of(scene) | {"time": columns_of(scene)["time"] + scene.time.step}
+    assert _judged(scene, late).outcome is Outcome.WRONG_SHAPE
