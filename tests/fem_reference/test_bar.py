@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from scipy.special import i0e, i1e
+from oracles.bars import OTHER, PAPER, damped_by_kernel
 
 from fem_reference.exact import continuum, damped
 from fem_reference.exact.bar import Bar, applicable
@@ -14,8 +14,6 @@ from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.scheme.modal import applicable as scheme_applicable
 from fem_reference.scheme.modal import first_steps, roots, weighted_response
 
-PAPER = Bar(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6)
-OTHER = Bar(3.1, 1.7, 1900.0, 4.2e9, 7.7e10, 3.3e5)
 SOFT = Bar(0.8, 2.6, 3100.0, 2.5e10, 9e7, 1.2e6)
 
 
@@ -217,22 +215,6 @@ def test_a_mode_that_stops_at_once_has_no_power():
     for name, values in result.columns.items():
         assert np.all(np.isfinite(values)) and values[2:] == pytest.approx(bar.static()[name], rel=1e-13)
     assert np.isfinite(result.estimate)
-
-
-def damped_by_kernel(column, t, kappa, a):
-    """Damped history at one instant: Bessel kernel on the undamped waves, panels graded towards the fronts."""
-    first, gap = (1.0, 2.0) if column == "contact_pressure" else (0.5, 1.0)
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    total = np.exp(-a * t) * continuum.undamped(column, np.array([t]), kappa)[0, 0]
-    for front in np.arange(first, t, gap):
-        length = min(gap, t - front)
-        edges = np.unique(np.append(length * 2.0 ** -np.arange(0, 40, 0.5), np.linspace(0, length, 60)))
-        half = np.diff(edges)[:, None] / 2
-        u = (front + edges[:-1, None] + half * (1 + nodes)).ravel()
-        z = np.sqrt((t - u) * (t + u))
-        kernel = a * np.exp(-a * u * u / (t + z)) * (i0e(a * z) + t * i1e(a * z) / z)
-        total += ((half * weights).ravel() * kernel) @ continuum.undamped(column, u, kappa)[0]
-    return total
 
 
 @pytest.mark.parametrize("kappa", [2.0, 1e3, 1e9])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_bar import damped_by_kernel
+from oracles.bars import damped_by_kernel
 
 from fem_reference.exact import continuum, damped
 from validation.scenes.scene import load_scene

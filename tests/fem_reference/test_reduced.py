@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.elements import make
+from oracles.elements import COLUMNS, error, make, stepped
 
 from fem_reference import Scheme, solve
 from fem_reference.history import reduced
@@ -12,19 +12,8 @@ from fem_reference.history.solver import run
 from fem_reference.mesh.model import build
 from fem_reference.scheme.newmark import Stepper
 
-COLUMNS = ("displacement", "contact_pressure")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 PATCH = {"poisson": 0.3, "hypothesis": "plane strain", "foundation": "patch", "patch_width": 0.31}
-
-
-def stepped(problem, scheme, steps):
-    """Return the columns by plain steps on the same unknowns."""
-    model = build(problem)
-    return problem.load_size * run(Stepper(model.M, model.K, model.F, scheme), model, steps, COLUMNS, None)
-
-
-def error(found, columns):
-    return max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(found, columns, strict=True))
 
 
 @pytest.mark.parametrize(

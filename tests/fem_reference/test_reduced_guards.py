@@ -1,8 +1,7 @@
 """Where a small space would not hold the digits: what is asked for comes out all the same, as plain steps give it."""
 
 import pytest
-from oracles.elements import make
-from test_fem_reduced import error, stepped
+from oracles.elements import error, make, stepped
 
 from fem_reference import Scheme, solve
 

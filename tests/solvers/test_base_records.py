@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SCENE
+from oracles.second_code import ABSENT
 
 import dda
 import fem_reference
 from validation.runs.history import Array
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.fenicsx import NEEDED, interpreter
 from validation.solvers.registry import get_solver
 
 A, E, RHO, P = 2.0, 1.0e9, 2700.0, 1.0e9  # m, Pa, kg/m3, N/m: of `conftest.SCENE`
@@ -29,7 +29,6 @@ TIME = (0.0, 0.011, 0.02, 0.05)  # s
 X = (7e-4, -2e-3, 3e-3, -4e-4)  # m: first, last and what is between differ
 Y = (-9e-4, 1e-3, -2e-3, 5e-4)
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-ABSENT = pytest.mark.skipif(interpreter() is None, reason=f"fenicsx is NOT RUN: {NEEDED})")
 SOLVERS = ["dda", "fem", pytest.param("fenicsx", marks=ABSENT)]
 GLUE = 1e12  # over E: what it adds to a column's compliance is below 1e-11
 SCHEMES = {  # constant acceleration never uses the first acceleration, these do

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.elements import make
-from test_base_records import ABSENT
+from oracles.second_code import ABSENT
 
 import dda
 import fem_reference

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_base_records import ABSENT
+from oracles.second_code import ABSENT
 
 import dda
 from validation.scenes.scene import Scene, load_scene

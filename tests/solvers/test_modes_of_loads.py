@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.bars import OTHER, PAPER
 from oracles.elements import make
 from scipy.linalg import eigh
-from test_bar import OTHER, PAPER
 
 import dda
 import fem_reference
