@@ -314,6 +314,23 @@ def test_tiny_contact_forces_are_resolved() -> None:
     assert 0 < motion.at([8.999 * PAPER.travel]).contact_pressure[0] < 1e-100
 
 
+def test_a_soft_spring_keeps_its_digits() -> None:
+    """Each wave that a soft spring reflects divides by kappa once more."""
+    problem = replace(OTHER, base_stiffness=3e9 * 4e-3, gravity=9.81, velocity=-1.0)
+    end = 60 * problem.travel
+    motion, finer = solve(problem, end), solve(problem, end, digits=250)
+    t = np.linspace(0, end, 30)
+    for name in ("displacement", "gap", "contact_pressure", "mean_velocity"):
+        a, b = getattr(motion.at(t), name), getattr(finer.at(t), name)
+        assert np.abs(a - b).max() <= 1e-15 * np.abs(b).max(), name
+
+
+def test_a_small_load_beside_a_large_one_counts() -> None:
+    problem = replace(PAPER, pressure=1e-6, gravity=9.81, gap=0.01)
+    history = solve(problem, 0.08).at(np.linspace(0, 0.08, 30))
+    assert np.abs(history.momentum_residual).max() <= 1e-40 * problem.density * problem.height
+
+
 def test_resting_states() -> None:
     still = solve(replace(PAPER, pressure=0.0), 0.02)
     assert still.closed_at_start

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -268,6 +269,7 @@ def test_energy_complementarity_and_the_digits_of_random_motions(seed: int) -> N
     assert np.abs(history.energy - history.energy[0]).max() <= 1e-13 * scale
     assert np.all(history.closed * history.gap <= 1e-13 * np.abs(history.gap).max())
     assert np.all((1 - history.closed) * history.gap >= -1e-13 * np.abs(history.gap).max())
+    assert history.contact_pressure * problem.width == pytest.approx(history.normal_force.sum(axis=0), rel=1e-14)
     assert np.all(np.diff(history.released) >= 0)
     assert (history.released[-1] > 0) == (problem.shear_stiffness > 0 and "opens" in {s.kind for s in motion.switches})
 
@@ -336,6 +338,22 @@ def test_a_centred_load_moves_nothing_sideways(seed: int) -> None:
     history = motion.at(np.linspace(0, motion.end, 40))
     assert not history.displacement[[0, 2, 5]].any()
     assert switch_times(motion) == switch_times(motion, "N")
+
+
+def test_a_long_flight_keeps_its_digits() -> None:
+    """Pulled up for 5000 radians: v = -q t^2 / (2 rho b), ey = -(q / 2E) (1 - cos w t), w = sqrt(12) c / b."""
+    problem = replace(OTHER, pressure=-2e6, gap=1.0)
+    end = 5000 / np.sqrt(12) * travel(problem)
+    motion = solve(problem, end)
+    t = np.linspace(0.9, 1.0, 50) * end
+    history = motion.at(t)
+    with mpmath.workdps(30):
+        w = mpmath.sqrt(12 * mpmath.mpf(problem.young) / problem.density) / problem.height
+        angle = [float(1 - mpmath.cos(w * mpmath.mpf(x))) for x in t]
+    assert not motion.switches
+    assert history.displacement[1] == pytest.approx(2e6 / (2 * 2400.0 * 1.5) * t**2, rel=1e-14)
+    # 60 rad in a float are rounded by 1e-14, 5000 rad would be by 5e-13
+    assert history.displacement[4] == pytest.approx(2e6 / 6e9 * np.array(angle), abs=1e-13 * 2e6 / 3e9)
 
 
 def test_resting_states() -> None:
