@@ -17,8 +17,10 @@ from matplotlib.figure import Figure
 
 from validation import advice, cli_damping, cli_tables, cli_verdicts, figures, load_scene, solve
 from validation.chapters_curves import style_of
+from validation.claims import page
 from validation.gates import Gate, judge
 from validation.history import Outcome, read_csv
+from validation.paper import CLAIMS
 from validation.results import Results
 from validation.spectra import Damping, ModeDamping, parts, runs, sentence
 from validation.verdicts import changes, markdown
@@ -321,6 +323,14 @@ def test_plot_draws_x_over_y_and_leaves_out_what_is_not_positive(
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rest", [3e-15, -8e-14, 0.0])
+def test_the_page_of_claims_says_zero_of_what_rounding_leaves_and_is_the_same_everywhere(rest: float) -> None:
+    numbers = {"verdict": 2.0, "rest": rest, "share": 0.0123456, "other": "undefined", "small": 3.456e-11}
+    text = page(CLAIMS[:1], [{"name": CLAIMS[0].id, "metrics": numbers}])
+    assert f"## {CLAIMS[0].id}: confirmed\n" in text
+    assert "**Measured:** rest 0; share 0.01235; other undefined; small 3.5e-11." in text
 
 
 def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from validation.engine import Finished
 
 REGISTER = "claims"  # the name under which gates find the register's rows
+ROUNDING = 1e-12  # numbers of the page below differ from machine to machine: its bands call them zero
 Needs = tuple[tuple[str, str], ...]
 
 
@@ -150,7 +151,8 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
     parts = [
         "# The paper's statements and slips",
         "Every line is computed: the verdict follows from the measured numbers and is a gate of the study `paper`. "
-        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run.",
+        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run. "
+        "Numbers below 1e-12 are written as 0.",
     ]
     for claim in claims:
         numbers = measured[claim.id]
@@ -167,4 +169,7 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def _said(value: Value) -> str:
-    return f"{rounded(value):g}" if isinstance(value, float | int) else str(value)
+    """Return a number with the digits that every machine gives; what is left of a zero by rounding is a zero."""
+    if not isinstance(value, float | int):
+        return str(value)
+    return "0" if abs(value) < ROUNDING else f"{rounded(value):g}"
