@@ -182,11 +182,11 @@ def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> No
 # ---- the reference pack -------------------------------------------------------------------------------------------
 
 ONE = load_scene("figures-3-4").with_values({"time.steps": 12, "fem.elements": 2})
-NAMES = {step: f"figures-3-4[time.step={step}]" for step in (0.01, 0.002)}
+NAMES = {step: f"mine[time.step={step}]" for step in (0.01, 0.002)}
 
 
 def small_study() -> Study:
-    scene = ONE.model_copy(update={"sweep": {"time.step": [0.01, 0.002]}})
+    scene = ONE.model_copy(update={"name": "mine", "sweep": {"time.step": [0.01, 0.002]}})
     gates = (
         Gate(NAMES[0.01], ("dda", "bar"), "displacement.l2", 0.1, 0.2, "one"),
         Gate(NAMES[0.002], ("dda", "bar"), "pressure.l2", 0.3, 0.4, "two", until=0.016),
@@ -209,11 +209,11 @@ def packed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_each_history_of_a_pack_is_that_of_its_own_scene_and_solver(packed: Path) -> None:
     paths = {path.name: path for path in (packed / "histories").iterdir()}
-    wanted = {f"figures-3-4_time.step_{step}.{solver}.csv": (step, solver)
+    wanted = {f"mine_time.step_{step}.{solver}.csv": (step, solver)
               for step in (0.01, 0.002) for solver in ("dda", "bar")}  # fmt: skip
     assert paths.keys() == wanted.keys()
     for name, (step, solver) in wanted.items():
-        scene = load_scene(packed / "scenes" / f"figures-3-4_time.step_{step}.toml")
+        scene = load_scene(packed / "scenes" / f"mine_time.step_{step}.toml")
         exact = get_solver(solver).solve(ONE.with_values({"time.step": step})).history
         found = read_csv(paths[name])
         assert exact is not None and scene.time.step == step and np.array_equal(found.time, exact.time)
@@ -224,7 +224,7 @@ def test_each_history_of_a_pack_is_that_of_its_own_scene_and_solver(packed: Path
 
 def test_each_band_of_a_pack_says_what_its_gate_says(packed: Path) -> None:
     bands = json.loads((packed / "bands.json").read_text())
-    slug = {step: f"figures-3-4_time.step_{step}" for step in NAMES}
+    slug = {step: f"mine_time.step_{step}" for step in NAMES}
     own = [(slug[step], metric, 0.0, 1e-6, f"{slug[step]}.dda.csv", None)
            for step in (0.01, 0.002) for metric in ("displacement.max", "pressure.max")]  # fmt: skip
     fields = ("scene", "metric", "low", "high", "reference", "until")
