@@ -11,8 +11,8 @@ import pytest
 from made_cases import made_history, made_row
 from scipy.optimize import brentq
 
-from validation import budget
-from validation.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, removed_motion
+from validation import budget, chapters_damping
+from validation.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
 from validation.chapters_damping import agreement_table, ringing_table, tension_table
 from validation.history import History
 from validation.scene import Scene, load_scene
@@ -130,6 +130,16 @@ def test_the_tables_of_alarms_hold_their_numbers_in_their_columns() -> None:
     ]
 
 
+def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:
+    def warned(*pairs: tuple[float, float], **more: float) -> list[tuple[str, str]]:
+        cases = [SCENE.with_values({"time.step": step, "time.gg": gg} | more) for step, gg in pairs]
+        return [(alarm.scene, alarm.sentence[:34]) for alarm in fixed_discount(cases)]
+
+    assert warned((0.002, 0.98), (0.001, 0.98)) == [("figures-3-4", "dt is varied at a fixed gg = 0.98,")]
+    assert warned((0.002, 0.98)) == warned((0.002, 1.0), (0.001, 1.0)) == warned((0.002, 0.0), (0.001, 0.0)) == []
+    assert warned((0.002, 0.98), (0.001, 0.97)) == []
+
+
 # ---- the damping budget -------------------------------------------------------------------------------------------
 
 OBLONG = {
@@ -213,6 +223,20 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
+
+
+def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
+    def told(**changes: Any) -> dict[str, Any]:
+        return {"limits": {"wave transit": 1.0}, "floor": 1.0516, "gg": 1.0, "gg_rate": None} | changes
+
+    plain = chapters_damping._caption([told()])
+    assert "DDA's first frequency is 1.052 times the bar's at any dt." in plain
+    assert not any(word in plain for word in ("overdamped", "held as a rate", "gg acts per step"))
+    assert "is 1.052 to 1.102 times the bar's" in chapters_damping._caption([told(floor=1.102), told()])
+    assert "The discount is held as a rate." in chapters_damping._caption([told(gg=0.9, gg_rate=30.0)])
+    per_step = chapters_damping._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
+    assert "gg acts per step" in per_step and "Grey: overdamped." in per_step
+    assert chapters_damping._label("dt = 0.01 s, p = 10E, n = 8") == "p = 10E"
 
 
 def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:

@@ -22,6 +22,7 @@ from validation.foreign import Foreign
 from validation.identify import Interval, Target
 from validation.open_close import Variant, rectangle_of
 from validation.report import Callout, FigureBlock, Paragraph, Table
+from validation.rivals import Rival
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
 OWN = Variant(0.5, 1.0, 1.0)
@@ -138,6 +139,22 @@ def test_each_fault_is_told_with_its_number(cause: str, fields: dict[str, Any], 
 def test_what_is_no_fault_is_told_with_its_number() -> None:
     text = said(["gg", "base-compliance", "own-weight"], soft=0.031, weight=0.97)
     assert "given a base that adds 3.1 % to the static displacement and the block's own weight (0.97 x 9.81" in text
+
+
+def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
+    best = Rival("bar", 0.5, 1.0, 0.97, 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
+    models = {"bar": "the exact bar"}
+    assert wording.rival_sentence(best, True, ["base-compliance"], None, models) == (
+        f"Same model as bar (the exact bar), same scheme: {scheme}; a base that gives way a little; what is left "
+        "differs by 1.2 %."
+    )
+    assert wording.rival_sentence(best, False, ["scheme"], Departure(7, "phase"), models) == (
+        f"Nearest is bar (the exact bar), another scheme: {scheme}; departs from step 7 on, mainly in phase; another "
+        "scheme; what is left differs by 1.2 %."
+    )
+    exact = Rival("continuum", None, None, None, 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    assert "same scheme: exact in time; what" in wording.rival_sentence(exact, True, [], None, models)
 
 
 # ---- where and how a history departs ------------------------------------------------------------------------------

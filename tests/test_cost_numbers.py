@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,9 +12,10 @@ import pytest
 from made_cases import between, kept_study, made_case, made_group, made_history, made_row
 
 from validation import chapters_subblocks, chapters_work, work_precision, work_record
+from validation.report import Paragraph
 from validation.results import Results
 from validation.scene import load_scene
-from validation.work_points import COSTS, Point, cheapest, floor, points, table
+from validation.work_points import COSTS, METHODS, Point, cheapest, floor, front, points, table
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40, "fem.elements": 12})
 V, P = "displacement", "contact pressure"
@@ -125,6 +127,23 @@ def test_the_table_of_runs_reads_across_as_its_heads_say() -> None:
     assert shown.rows[3][:3] == ("fem, quadratic", "2", "12")
 
 
+def test_orders_are_shown_with_value_band_and_verdict() -> None:
+    verdicts = [{"scene": "a", "metric": "order.v", "value": 1.98765, "band": [1.98, 2.02], "verdict": "PASS"},
+                {"scene": "b", "metric": "order.p", "value": None, "band": [3.0, 5.0], "verdict": "FAIL"}]  # fmt: skip
+    said, shown = chapters_work.order_blocks(verdicts)
+    assert said == Paragraph("1 of 2 gates fails")
+    assert [c.title for c in shown.columns] == ["Refined", "Metric", "Value", "Band", "Verdict"]
+    assert shown.rows == (("a", "order.v", "1.988", "1.98 … 2.02", "PASS"), ("b", "order.p", "–", "3 … 5", "FAIL"))
+
+
+def test_scenes_and_methods_of_the_study_have_their_own_names() -> None:
+    alphas = {prefix: work_precision.named(f"{prefix}-linear").time.alpha for prefix in chapters_work.SCHEMES}
+    words = {chapters_work.SCHEMES[prefix].split()[0]: alpha for prefix, alpha in alphas.items()}
+    assert words == {"Constant": 0.5, "Average": 0.25}
+    assert {name for (_, degree), name in METHODS.items() if degree == 2} == {"fem, quadratic"}
+    assert front([(1, 5), (2, 4.9), (3, 6), (4, 1), (4, 0.5)]) == [(1, 5), (2, 4.9), (4, 0.5)]
+
+
 # ---- the record ---------------------------------------------------------------------------------------------------
 
 
@@ -200,6 +219,17 @@ def test_sub_blocks_are_told_by_rows_with_signed_errors_and_milliseconds() -> No
     line = chapters_subblocks._line("squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2")
     assert line is not None
     assert (list(line.x), list(line.y), line.note) == ([0.005], [0.0123], "3")
+
+
+def test_the_growth_of_a_step_is_fitted_on_its_seconds() -> None:
+    """Thrice the unknowns take nine times as long a step, over twice the steps: power two."""
+    cases = []
+    for n, steps, seconds in ((8, 40, 0.4), (24, 80, 7.2)):
+        case = cut(n, 8, {}, {}, time__steps=steps)
+        row = made_row("dda", {}, case.name, work={"unknowns": 48 * n}, seconds={"stepping": seconds})
+        cases.append(replace(case, rows={"dda": row}))
+    (said,) = chapters_subblocks._growth({"subblocks-rocking": made_group(*cases)})
+    assert "number to the power 2.00 (1152 unknowns)" in said.text
 
 
 def test_glue_is_told_for_the_axial_and_for_the_rocking_motion() -> None:

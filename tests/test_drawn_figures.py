@@ -15,6 +15,7 @@ from validation.results import Row
 from validation.scene import load_scene
 from validation.work_points import Point
 
+GREY = "#bbbbbb"
 ENDS = {"dda": -0.004, "fem": -0.010, "bar": -0.016, "continuum": -0.001}  # m; in no order
 STARTS = {"dda": -0.015, "fem": -0.001, "bar": -0.006, "continuum": -0.011}
 
@@ -41,6 +42,8 @@ def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> Non
         x, y = line_in(top, color(name))
         assert x[-1] == pytest.approx(0.05) and y[-1] == pytest.approx(1e3 * last)
         assert np.allclose(y, 1e3 * histories[name].displacement)
+    ticks = zip(below.get_xticks(), below.get_xticklabels(), strict=True)
+    assert all(float(label.get_text()) == pytest.approx(tick) for tick, label in ticks)
     assert set(names_at(below)) == set(ENDS) - {"bar"}
     for name, (value, drawn) in names_at(below).items():
         tail = (histories[name].displacement - histories["bar"].displacement)[-1]
@@ -62,7 +65,7 @@ def test_the_difference_is_measured_from_the_reference_over_the_static_value() -
     _, y = line_in(figure.axes[1], color("dda"))
     assert np.allclose(y, 0.1)
     assert len(lines_of(figure.axes[1])) == 1
-    assert rules_of(figure.axes[0], "#bbbbbb") == ([pytest.approx(-10)], [])  # mm: the hairline
+    assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
 
 
 def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
@@ -79,6 +82,7 @@ def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
     parts = {"code": (1e-13, 2e-13), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
     figure = figures.ledger_figure([figures.LedgerLine("one", {}), figures.LedgerLine("two", parts)])
+    assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 0), ("two", 1)]
     for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
         assert axes.get_title(loc="left") == part
         shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
@@ -96,10 +100,12 @@ def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last
     lines = {"dda": steps / 50.0, "bar": 2.0 - steps / 25.0}  # at step 50: 1 and 0; at 100: 2 and -2
     (axes,) = figures_paper.steps_figure([figures_paper.StepPanel("", lines, 0.5, 30.0)], "v", 50).axes
     assert names_at(axes) == {"dda": (pytest.approx(1.0), color("dda")), "bar": (pytest.approx(0.0), color("bar"))}
+    ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
+    assert all(float(label.get_text()) == tick for tick, label in ticks)
     for name, values in lines.items():
         drawn = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
         assert np.array_equal(drawn[0][0], steps[:50]) and np.array_equal(drawn[0][1], values[:50])
-    assert rules_of(axes, "#bbbbbb") == ([0.5], []) and rules_of(axes, color("dda")) == ([], [30.0])
+    assert rules_of(axes, GREY) == ([0.5], []) and rules_of(axes, color("dda")) == ([], [30.0])
     assert "30 steps" in [text.get_text() for text in axes.texts]
 
 
@@ -110,6 +116,7 @@ def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
             for k, name in enumerate(("constant (1/2, 1)", "b", "c", "d"))}}  # fmt: skip
     (axes,) = figures_paper.radius_figure(data, [(2.0, 0.5), (20.0, 0.7)]).axes
     ends = names_at(axes)
+    assert [ends[name][1] for name in "bcd"] == list(figures_paper.SCHEME_COLORS[1:])
     assert ends["constant (1/2, 1)"][0] == pytest.approx(0.9, abs=0.05)
     assert ends["constant: √(1+h), as printed"][0] == pytest.approx(0.2, abs=0.05)
     first = to_hex(figures_paper.SCHEME_COLORS[0])
@@ -219,6 +226,9 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
     assert shown[3] == {(600.0, 0.3): orange, (60.0, 0.5): orange, (600.0, 0.2): black}
     level = [line.get_ydata()[0] for line in figure.axes[1].lines if line.get_linestyle() == ":"]
     assert level == [0.3]  # DDA at its finest step
+    assert {text.get_text(): to_hex(text.get_color()) for text in figure.texts} == {"dda": orange, "bar": black}
+    grey = [line for line in figure.axes[0].lines if to_hex(line.get_color()) == GREY]
+    assert [(list(line.get_xdata()), line.get_drawstyle()) for line in grey] == [([0.05], "steps-post")]
 
 
 # ---- stiff contacts and extremes ----------------------------------------------------------------------------------

@@ -84,13 +84,26 @@ def test_a_least_pressure_within_rounding_of_the_load_is_nothing() -> None:
     assert [row[-1] for row in chapters.damping_table(group).rows] == ["0", "−6.000×10⁻⁹"]  # of 5 MPa, 1e-9 is 5e-3 Pa
 
 
+def test_the_reason_of_a_gate_carries_its_reference_and_its_uncertainty() -> None:
+    verdict = {"reason": "so", "reference_kind": "other code", "reference_uncertainty": 2.5e-4, "why": "it broke"}
+    assert chapters.reason(verdict) == "so [other code ± 2.5×10⁻⁴] It broke."
+    assert chapters.reason({"reason": "so", "reference_kind": "exact", "reference_uncertainty": 0.0}) == "so [exact]"
+
+
 # ---- the conclusion -----------------------------------------------------------------------------------------------
 
 
 def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() -> None:
     ratios = {0.01: (0.30, 0.0081, 0.0067), 0.002: (0.16, 0.0363, 0.0403), 0.001: (0.08, 0.0897, 0.104)}
     cases = [
-        made_case(stepped(step), {"dda": {"mode1.damping": xi, "pressure.minimum": -1e6 * step}, "bar": {}})
+        made_case(
+            stepped(step),
+            {
+                "dda": {"mode1.damping": xi, "pressure.minimum": -1e6 * step},
+                "fem": {"pressure.minimum": -9e6},  # named after dda and the bar
+                "bar": {"pressure.minimum": -2e8 * step},
+            },
+        )
         for step, (xi, _, _) in ratios.items()
     ]
     pairs = [between(stepped(step).name, "dda", "bar", displacement_l2=v, pressure_l2=p)
@@ -99,8 +112,8 @@ def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() ->
     assert said == (
         "Against bar, dda differs by 0.81\u00a0% to 8.97\u00a0% in displacement and 0.67\u00a0% to 10.4\u00a0% in "
         "contact pressure (relative L2); no gate judges this scene; the locked contact hides tension, down to "
-        "−0.0100 MPa in dda; the difference falls as the damping grows, from 8.97\u00a0% at ξ₁ = 8.00\u00a0% to "
-        "0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no merit."
+        "−0.0100 MPa in dda and −2.00 MPa in bar; the difference falls as the damping grows, from 8.97\u00a0% at "
+        "ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no merit."
     )
 
 
@@ -195,6 +208,9 @@ def test_without_textbook_or_bar_the_ledger_says_where_its_numbers_come_from() -
     pair = between(BASE.name, "dda", "fem", displacement_l2=0.61, pressure_l2=0.62)
     group = made_group(made_case(BASE, rows), comparisons=(pair,))
     code, form = (chapters_ledger.entry(group, group.cases[0], part) for part in ("code", "model form"))
+    table = chapters_ledger.ledger_table([group])
+    assert table.rows[0][2:4] == ("3.0×10⁻¹⁴ ¹",) * 2 and table.rows[0][6] == "6.1×10⁻¹ ³"
+    assert (table.notes[0], table.notes[2]) == (f"¹ {code.remark}", f"³ {form.remark}")
     assert (code.values, form.values) == ((3e-14, 3e-14), (0.61, 0.62))
     assert "own estimate" in code.remark and "against fem" in form.remark
 
@@ -250,6 +266,9 @@ def test_the_data_of_a_scene_are_those_of_the_scene_with_their_units() -> None:
         "distributed foundation."
     )
     assert "dt =" not in chapters_text.parameters(scene, {"time.step"})
+    other = scene.with_values({"block.hypothesis": "plane strain", "time.gg_rate": 20.0, "time.start": "consistent"})
+    line = chapters_text.parameters(other, set())
+    assert all(part in line for part in ("plane strain", "gg = 0.941765", "consistent initial acceleration"))
 
 
 def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:
