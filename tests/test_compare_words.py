@@ -190,6 +190,11 @@ def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noi
     assert departure.measured(WANTED, given, rows, noise).step == step
 
 
+def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("validation.compare.causes.opened", lambda target, found: [3, 4, 9])
+    assert softened("dda", 1 / 1.04).opened == (3, 9)
+
+
 # ---- what is printed ----------------------------------------------------------------------------------------------
 
 
