@@ -11,7 +11,7 @@ import pytest
 from oracles.elements import INCLINED, make
 
 import fem_reference
-from fem_reference.mesh.mesh import elasticity, fields
+from fem_reference.mesh import elasticity, fields
 from fem_reference.mesh.model import assemble, whole_block
 from fem_reference.problem.problem import Array, Problem
 from validation.scenes.scene import load_scene

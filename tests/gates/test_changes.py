@@ -145,7 +145,7 @@ def test_a_pack_is_complete(pack: Path) -> None:
 
 
 def test_scenes_of_a_pack_give_its_histories(pack: Path) -> None:
-    for path in sorted((pack / "scenes").glob("figures-*.toml")):
+    for path in sorted((pack / "scenes").glob("*.toml")):
         history = solve(load_scene(path), "dda").history
         kept = read_csv(pack / "histories" / f"{path.stem}.dda.csv")
         assert history is not None and np.array_equal(history.displacement, kept.displacement)

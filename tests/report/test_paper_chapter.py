@@ -9,12 +9,12 @@ import pytest
 
 from validation.advice import budget
 from validation.engine.run import run_study
-from validation.engine.study import Study
 from validation.report.blocks import FigureBlock, Table
 from validation.report.chapters.paper import claims_table, conclusion
 from validation.report.chapters.registry import chapter_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
+from validation.studies import Study
 from validation.studies.catalogue import scene_study
 from validation.studies.paper.study import PAPER
 

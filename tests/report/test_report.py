@@ -17,21 +17,12 @@ from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
 from validation.report.blocks import Callout, Column, FigureBlock, Heading, Math, PageBreak, Paragraph, Table
 from validation.report.book import build, figures, ordered_studies
-from validation.report.chapters import (
-    data as chapters_data,
-)
-from validation.report.chapters import (
-    front as chapters_front,
-)
-from validation.report.chapters import (
-    ledger as chapters_ledger,
-)
-from validation.report.chapters import (
-    scene as chapters,
-)
-from validation.report.chapters import (
-    text as chapters_text,
-)
+from validation.report.chapters import data as chapters_data
+from validation.report.chapters import front as chapters_front
+from validation.report.chapters import gates as chapters_gates
+from validation.report.chapters import ledger as chapters_ledger
+from validation.report.chapters import scene as chapters
+from validation.report.chapters import text as chapters_text
 from validation.report.typesetting import _typeset
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -343,7 +334,7 @@ def test_gates_share_their_reason_and_failures_come_first(results):
     ],
 )
 def test_a_band_shows_as_many_digits_as_tell_its_edges_apart(band, text):
-    assert chapters.band({"band": band}) == text
+    assert chapters_gates.band({"band": band}) == text
 
 
 def test_damping_table_tells_undefined_from_not_reported(results):

@@ -279,10 +279,10 @@ def _answer_of_rival(scene: Scene, foreign: Foreign, reading: Reading, others: S
         ids.append("scheme")
     if abs(best.softness) > 1e-3:
         ids.append("base-compliance" if 0 < best.softness < 2 * causes.BENIGN_COMPLIANCE else "springs-factor")
-    gone = None
-    if best.misfit > UNEXPLAINED or not same_scheme or reading.slips:
-        rows = reading.stepping.rows
-        gone = departure.measured(best.displacement[rows], reading.displacement, rows, 0.0)
+    gone, off = None, "springs-factor" in ids
+    if best.misfit > UNEXPLAINED or not same_scheme or reading.slips or off:
+        rows, wanted = reading.stepping.rows, best.unsoftened if off else best.displacement
+        gone = departure.measured(wanted[rows], reading.displacement, rows, 0.0)
     time = np.cumsum(reading.stepping.steps)[reading.stepping.rows]
     return Answer(
         {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},

@@ -31,6 +31,7 @@ class Rival:
     misfit: float  # relative L2 [-]
     softness: float  # ln of the scene's spring stiffness over that in effect [-]
     displacement: Array  # of every step [m]
+    unsoftened: Array  # the same on the scene's own springs [m]
 
 
 def rivals(
@@ -84,6 +85,7 @@ def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
     wanted, softness = goal.scaled(goal.displacement, goal.pressure), 0.0
     try:
         best, shown = _response(scene, name, goal, softness)
+        plain = shown
         for _ in range(ROUNDS):
             slope = (_response(scene, name, goal, softness + NUDGE)[0] - best) / NUDGE
             change = float(slope @ (wanted - best)) / (float(slope @ slope) or 1.0)
@@ -98,8 +100,8 @@ def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
         return None
     t, misfit = scene.time, float(np.linalg.norm(wanted - best))
     if name == "continuum":
-        return Rival(name, None, None, None, misfit, softness, shown)
-    return Rival(name, t.alpha, t.delta, t.discount, misfit, softness, shown)
+        return Rival(name, None, None, None, misfit, softness, shown, plain)
+    return Rival(name, t.alpha, t.delta, t.discount, misfit, softness, shown, plain)
 
 
 def _response(scene: Scene, name: str, goal: Goal, softness: float) -> tuple[Array, Array]:

@@ -160,7 +160,8 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
     parts = [
         "# The paper's statements and slips",
         "Every line is computed: the verdict follows from the measured numbers and is a gate of the study `paper`. "
-        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run.",
+        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run. "
+        "Numbers below 1e-12 are written as 0.",
     ]
     for claim in claims:
         numbers = measured[claim.id]

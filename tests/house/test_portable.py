@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-SCRIPT = Path(__file__).parents[1] / ".ci" / "portable"
+SCRIPT = Path(__file__).parents[2] / ".ci" / "portable"
 
 
 @pytest.fixture

@@ -1,0 +1,246 @@
+"""The numbers in alarms and damping budgets, against histories made by hand and closed forms written apart."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.made_cases import made_history, made_row
+from scipy.optimize import brentq
+
+from validation.advice import budget
+from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
+from validation.report.chapters import damping as chapters_damping
+from validation.report.chapters.damping import agreement_table, ringing_table, tension_table
+from validation.runs.history import History
+from validation.scenes.scene import Scene, load_scene
+
+STEPS = 4
+SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
+REST = np.full(STEPS, -0.01)
+
+
+def raised(scene: Scene, rows: dict[str, dict[str, Any]], histories: dict[str, History] | None = None) -> Any:
+    """Return the alarms of made cases by kind."""
+    kept = {(scene.name, solver): made_row(solver, metrics, scene.name) for solver, metrics in rows.items()}
+    finished = SimpleNamespace(rows=kept, history=lambda _, solver: (histories or {}).get(solver))
+    return {alarm.kind: alarm for alarm in alarms([scene], finished)}
+
+
+# ---- what damping removed -----------------------------------------------------------------------------------------
+
+
+def test_the_kinetic_part_of_the_damping_is_the_root_of_gg_a_step() -> None:
+    """At gg = 0.81 each step keeps 0.9 by kinetic damping; of |lambda| = 0.45 half is left for the algorithm."""
+    scene = SCENE.with_values({"time.gg": 0.81})
+    squares = [0.25, 0.25**2, 0.25**3, 0.25**4]
+    assert removed_motion(scene, 0.45) == pytest.approx(1 - math.sqrt(sum(squares) / 4), rel=1e-12)
+    assert removed_motion(scene, 0.0) == removed_motion(SCENE.with_values({"time.gg": 0.0}), 0.5) == 1.0
+
+
+def agreeing() -> dict[str, History]:
+    """DDA is 2 % from the bar; the bar is 50 % and DDA 53 % from the continuum, in relative L2."""
+    return {name: made_history(0.002, factor * REST) for name, factor in
+            {"dda": 1.53, "bar": 1.5, "fem": 1.2, "continuum": 1.0}.items()}  # fmt: skip
+
+
+def test_agreement_is_with_the_bar_and_the_time_error_is_the_bars() -> None:
+    rows = {"dda": {"mode1.spectral_radius": 0.1}, "bar": {}, "fem": {}, "continuum": {}}
+    alarm = raised(SCENE, rows, agreeing())[AGREEMENT]
+    removed = 1 - math.sqrt((1e-2 + 1e-4 + 1e-6 + 1e-8) / 4)
+    assert dict(alarm.values) == pytest.approx({"agreement": 0.02, "removed": removed, "time error": 0.5})
+    assert alarm.sentence == (
+        "DDA agrees with the elastic block to 2 % because both are damped: damping took 95 % of the first mode's "
+        "motion, and the time error is 50 %"
+    )
+    assert alarm.record()["values"]["removed"] == float(f"{removed:.4g}") != round(removed, 2)
+
+
+def test_agreement_is_with_the_elements_where_no_bar_ran_and_is_told_from_the_time_error_alone() -> None:
+    histories = agreeing()
+    del histories["bar"]
+    rows = {"dda": {"mode1.spectral_radius": 0.1}, "fem": {}, "continuum": {}}
+    assert AGREEMENT not in raised(SCENE, rows, histories)  # 27.5 % from the elements, which are 20 % from the truth
+    histories["fem"] = made_history(0.002, 1.4 * REST)
+    assert raised(SCENE, rows, histories)[AGREEMENT].values["agreement"] == pytest.approx(0.13 / 1.4)
+    rows["dda"]["mode1.spectral_radius"] = 0.99  # takes 2 % of the motion: no alarm
+    assert AGREEMENT not in raised(SCENE, rows, histories)
+
+
+# ---- tension and ringing ------------------------------------------------------------------------------------------
+
+
+def pulling(least: float, when: float, duration: float) -> dict[str, float]:
+    return {"pressure.minimum": least, "pressure.minimum_time": when, "pressure.tension_time": duration}
+
+
+def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> None:
+    rows = {
+        "dda": pulling(-0.4321e6, 0.0025, 0.0375),
+        "dda-textbook": pulling(-0.5e6, 0.1, 0.2),
+        "fem:full": pulling(-0.5e6, 0.1, 0.2),
+        "bar": pulling(-1.25e6, 0.015, 0.003),
+        "continuum": pulling(-4.0, 0.1, 0.2),  # below a millionth of the load: rounding
+        "fem": {"pressure.minimum": 0.0, "pressure.minimum_time": "undefined", "pressure.tension_time": "undefined"},
+    }
+    alarm = raised(SCENE, rows)[TENSION]
+    assert alarm.sentence == (
+        "the locked contact pulls, in dda by 0.432 MPa at t = 0.0025 s and for 0.0375 s in all; "
+        "in bar by 1.25 MPa at t = 0.015 s and for 0.003 s in all"
+    )
+    assert dict(alarm.values) == {
+        "dda.minimum": -0.4321e6, "dda.time": 0.0025, "dda.duration": 0.0375,
+        "bar.minimum": -1.25e6, "bar.time": 0.015, "bar.duration": 0.003,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("root", "radius", "words"),
+    [
+        (-0.95, 0.95, "a root of the contact mode is -0.95: the contact force rings from step to step and takes 90 "
+         "steps to fall to 1 %"),
+        (-0.91, 0.98, "a root of the contact mode is -0.91: the contact force rings from step to step and takes 228 "
+         "steps to fall to 1 %"),
+        (-1.0, 1.0, "a root of the contact mode is -1: the contact force rings from step to step and hardly ever "
+         "decays"),
+        (-0.89, 0.98, None),
+    ],
+)  # fmt: skip
+def test_ringing_falls_to_one_per_cent_in_so_many_steps(root: float, radius: float, words: str | None) -> None:
+    """0.95^90 = 0.0099 and 0.98^228 = 0.00999."""
+    alarm = raised(SCENE, {"dda": {"contact.least_root": root, "contact.spectral_radius": radius}}).get(RINGING)
+    assert (None if alarm is None else alarm.sentence) == words
+
+
+def test_the_tables_of_alarms_hold_their_numbers_in_their_columns() -> None:
+    labels = {"s": "dt = 1 s"}
+    agreed = Alarm(AGREEMENT, "s", "", {"agreement": 0.0123, "removed": 0.87, "time error": 0.456}).record()
+    assert agreement_table([agreed], labels).rows == (("dt = 1 s", "1.23\u00a0%", "87\u00a0%", "45.6\u00a0%"),)
+    values = {"dda.minimum": -1.234e6, "dda.time": 0.0567, "dda.duration": 0.0089}
+    pulled = Alarm(TENSION, "s", "", values | {"bar.minimum": -2e5, "bar.time": 0.01, "bar.duration": 0.002}).record()
+    table = tension_table([pulled], labels)
+    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "pulls for [ms]"]
+    assert table.rows == (("dt = 1 s", "dda", "−1.23", "56.7", "8.9"), ("", "bar", "−0.200", "10", "2"))
+    rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-1, 1))]
+    assert [row[1:] for row in ringing_table(rings, labels).rows] == [
+        ("−0.9500", "0.9800", "228"),
+        ("−1.000", "1.000", "∞"),
+    ]
+
+
+def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:
+    def warned(*pairs: tuple[float, float], **more: float) -> list[tuple[str, str]]:
+        cases = [SCENE.with_values({"time.step": step, "time.gg": gg} | more) for step, gg in pairs]
+        return [(alarm.scene, alarm.sentence[:34]) for alarm in fixed_discount(cases)]
+
+    assert warned((0.002, 0.98), (0.001, 0.98)) == [("figures-3-4", "dt is varied at a fixed gg = 0.98,")]
+    assert warned((0.002, 0.98)) == warned((0.002, 1.0), (0.001, 1.0)) == warned((0.002, 0.0), (0.001, 0.0)) == []
+    assert warned((0.002, 0.98), (0.001, 0.97)) == []
+
+
+# ---- the damping budget -------------------------------------------------------------------------------------------
+
+OBLONG = {
+    "block.width": 1.0,
+    "block.height": 3.0,
+    "block.density": 2500.0,
+    "block.young": 4e9,
+    "contact.stiffness": 2e10,
+    "time.gg": 0.97,
+    "time.alpha": 0.36,
+    "time.delta": 0.7,
+}
+
+
+def oblong(**more: Any) -> Scene:
+    """Return a block 1 m wide and 3 m high under a scheme with damping of both kinds."""
+    changes = {key.replace("__", "."): value for key, value in more.items()}
+    return SCENE.with_values(OBLONG).with_values(changes)
+
+
+def frequencies(scene: Scene) -> np.ndarray:
+    """Return both axial frequencies [rad/s] of a block 1 m wide and 3 m high at mu = 0, from (v, ey)."""
+    m, p, E, h = scene.block.density * 3.0, scene.contact.stiffness, scene.block.young, 3.0
+    stiffness = np.array([[2 * p, -p * h], [-p * h, E * 3.0 + p * h * h / 2]])
+    mass = np.diag([m, m * h * h / 12])
+    return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
+
+
+def of_scheme(omega: float, alpha: float, delta: float, gg: float) -> tuple[float, float]:
+    """Return xi and |lambda| of a complex pair from trace and determinant of a step."""
+    beta = 1 + alpha * omega**2
+    trace = 1 - omega**2 / (2 * beta) + gg * (1 - delta * omega**2 / beta)
+    roots = np.roots([1.0, -trace, gg * (1 + (0.5 - delta) * omega**2 / beta)])
+    log = np.log(complex(roots[0]))
+    return float(-log.real / abs(log)), float(np.abs(roots).max())
+
+
+@pytest.mark.parametrize(("name", "mode"), [("first axial", 0), ("contact", 1)])
+def test_a_budget_holds_each_modes_total_algorithmic_and_kinetic_damping(name: str, mode: int) -> None:
+    scene = oblong()
+    (found,) = budget.budgets([scene])
+    w, curves, dt = frequencies(scene)[mode], found["modes"][name], np.array(found["dt"])
+    middle = [i for i in range(len(dt)) if 0.2 < w * dt[i] < 1.5]
+    assert len(middle) > 10
+    for i in middle:
+        total, radius = of_scheme(w * dt[i], 0.36, 0.7, 0.97)
+        own, _ = of_scheme(w * dt[i], 0.36, 0.7, 1.0)
+        told = [curves[part][i] for part in ("total", "algorithmic", "kinetic", "spectral_radius")]
+        assert told == pytest.approx([total, own, total - own, radius], rel=1e-4)  # five digits are kept
+
+
+def test_a_budget_of_a_rate_takes_the_discount_of_each_step() -> None:
+    scene = oblong(time__gg_rate=30.0)
+    (found,) = budget.budgets([scene])
+    assert found["gg_rate"] == 30.0
+    w, first, dt = frequencies(scene)[0], found["modes"]["first axial"], np.array(found["dt"])
+    i = int(np.argmin(np.abs(w * dt - 0.5)))
+    total, radius = of_scheme(w * dt[i], 0.36, 0.7, math.exp(-30.0 * dt[i]))
+    assert [first["total"][i], first["spectral_radius"][i]] == pytest.approx([total, radius], rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "speed"),
+    [
+        ({}, math.sqrt(4e9 / 2500)),
+        ({"block.poisson": 0.3, "block.hypothesis": "plane strain"}, math.sqrt(4e9 / (1 - 0.09) / 2500)),
+        ({"block.width": 5.0, "block.young": 1e9}, math.sqrt(1e9 / 2500)),
+    ],
+)
+def test_a_wave_crosses_the_height_and_not_the_width(changes: dict[str, Any], speed: float) -> None:
+    scene = oblong(**changes)
+    assert budget.transit(scene) == pytest.approx(3.0 / speed, rel=1e-12)
+    (found,) = budget.budgets([scene])
+    assert found["limits"]["wave transit"] == pytest.approx(3.0 / speed, rel=1e-3)
+
+
+def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> None:
+    """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
+    scene = oblong()
+    (found,) = budget.budgets([scene])
+    b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
+    assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
+    assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
+
+
+def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
+    def told(**changes: Any) -> dict[str, Any]:
+        return {"limits": {"wave transit": 1.0}, "floor": 1.0516, "gg": 1.0, "gg_rate": None} | changes
+
+    plain = chapters_damping._caption([told()])
+    assert "DDA's first frequency is 1.052 times the bar's at any dt." in plain
+    assert not any(word in plain for word in ("overdamped", "held as a rate", "gg acts per step"))
+    assert "is 1.052 to 1.102 times the bar's" in chapters_damping._caption([told(floor=1.102), told()])
+    assert "The discount is held as a rate." in chapters_damping._caption([told(gg=0.9, gg_rate=30.0)])
+    per_step = chapters_damping._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
+    assert "gg acts per step" in per_step and "Grey: overdamped." in per_step
+    assert chapters_damping._label("dt = 0.01 s, p = 10E, n = 8") == "p = 10E"
+
+
+def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:
+    cases = [oblong(time__step=step, time__gg=gg) for gg in (0.97, 0.9) for step in (2e-4, 1e-4)]
+    found = list(budget.budgets(cases))
+    assert [(b["gg"], b["steps"]) for b in found] == [(0.97, [1e-4, 2e-4]), (0.9, [1e-4, 2e-4])]

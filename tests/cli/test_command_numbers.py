@@ -1,0 +1,227 @@
+"""Every number that a command prints, with its unit: computed apart, or kept by hand in a results directory."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import typed
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import between, kept_study, line_in, made_history, made_row
+
+from validation import load_scene
+from validation.cli import tables
+from validation.cli import tables as cli_tables
+from validation.cli.run import _status
+from validation.gates.changes import against, changes, markdown
+from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import style_of
+from validation.runs.files import read_csv
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.studies.catalogue import get_study
+from validation.studies.paper.claims import page
+from validation.studies.paper.study import CLAIMS
+
+CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
+
+
+# ---- solve and run ------------------------------------------------------------------------------------------------
+
+
+def test_solve_prints_the_last_values_and_the_duration(scene_file: Path, tmp_path: Path) -> None:
+    done = typed("solve", scene_file, "--solver", "bar", "--csv", tmp_path / "h.csv")
+    history = read_csv(tmp_path / "h.csv")
+    assert done.stdout.startswith(
+        f"small bar: 50 steps to t = 0.1 s; last: displacement {history.displacement[-1]:.6g}, "
+        f"contact_pressure {history.contact_pressure[-1]:.6g}; "
+    )
+    assert history.time[-1] == pytest.approx(0.1) and history.displacement[-1] != history.displacement[0]
+
+
+def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results, scene = Results(tmp_path), load_scene("figures-3-4").with_values({"time.step": 0.002}, label=True)
+    rows = [made_row("dda", {}, scene.name, seconds={"setup": 1.25, "stepping": 2.5}),
+            made_row("bar", {}, scene.name, seconds={"a": 7.0}, outcome=Outcome.OVERFLOW, notes=("at 3",))]  # fmt: skip
+    alarms = [{"kind": kind, "scene": name, "sentence": said} for kind, name, said in
+              (("hidden tension", "a", "x"), ("hidden tension", "a", "y"), ("hidden tension", "b", "z"),
+               ("contact ringing", "a", "w"), ("fixed discount", "c", "dt is varied"))]  # fmt: skip
+    kept_study(results, [(scene, row, None) for row in rows], alarms=alarms)
+    gate = Gate(scene.name, ("dda", "bar"), "displacement.l2", 0.031, 0.042, "the reason", until=0.2)
+    cli_tables.print_verdicts([judge(gate, 0.0512), judge(gate, 0.04)], results, ["made"])
+    lines = capsys.readouterr().out.splitlines()
+    shown = [line.split() for line in lines if line.strip().startswith("figures-3-4[")]
+    middle = ["dda", "|", "bar", "displacement.l2@0.2s"]
+    assert [row[1:] for row in shown] == [
+        [*middle, "0.0512", "0.031", "..", "0.042", "FAIL", "3.75"],
+        [*middle, "0.04", "0.031", "..", "0.042", "PASS", "3.75"],
+    ]
+    assert lines[-1] == "1 PASS, 1 FAIL, 0 NOT RUN" and f"FAIL: {gate.id}: the reason" in " ".join(lines)
+    cli_tables.print_alarms(results, ["made"])
+    told = capsys.readouterr()
+    assert told.out == "alarms: hidden tension in 2 cases, contact ringing in 1 case (see the report)\n"
+    assert told.err == "warning: c: dt is varied\n"
+    assert cli_tables.print_failures(results, ["made"]) is False
+    assert capsys.readouterr().out == f"{scene.name} bar: overflow: {Outcome.OVERFLOW.sentence} at 3\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "required", "refused", "worse", "status"),
+    [
+        (["PASS", "NOT RUN"], [], False, None, 0),
+        (["PASS", "NOT RUN"], ["fem"], False, None, 0),
+        (["PASS", "NOT RUN"], ["bar"], False, None, 1),
+        (["PASS", "FAIL"], [], False, None, 1),
+        (["PASS", "FAIL"], [], False, False, 0),  # it failed in the baseline as well
+        (["PASS", "PASS"], [], False, True, 1),  # a gate of the baseline is gone
+        (["PASS", "NOT RUN"], ["bar"], False, False, 1),
+        (["PASS", "FAIL"], [], True, False, 2),
+    ],
+)
+def test_the_status_of_a_run(words: list[str], required: list[str], refused: bool, worse: Any, status: int) -> None:
+    gate = Gate("s", ("dda", "bar"), "displacement.l2", 0.0, 1.0, "why")
+    assert _status([Verdict(gate, None, Status(word)) for word in words], required, refused, worse) == status
+
+
+def test_one_refused_case_among_others_is_seen(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outcomes = (Outcome.REFUSED, Outcome.COMPLETED, Outcome.TIMEOUT)
+    rows = [made_row(name, {}, CASE.name, outcome=outcome) for name, outcome in zip("abc", outcomes, strict=True)]
+    kept_study(Results(tmp_path), [(CASE, row, None) for row in rows])
+    assert cli_tables.print_failures(Results(tmp_path), ["made"]) is True
+    assert [line.split(":")[1].strip() for line in capsys.readouterr().out.splitlines()] == ["refused", "timeout"]
+
+
+def test_the_list_names_every_study_and_scene_with_its_title() -> None:
+    lines = typed("list").stdout.splitlines()
+    for name in ("figures-3-4", "stiff-contact"):
+        assert f"  {name:<18} {load_scene(name).title}" in lines
+    for name in ("core", "paper"):
+        assert f"  {name:<18} {get_study(name).title}" in lines
+
+
+# ---- verdicts side by side ----------------------------------------------------------------------------------------
+
+
+def verdict(name: str, word: str, value: object, study: str = "s") -> dict[str, Any]:
+    return {"study": study, "id": name, "verdict": word, "value": value, "band": [0.25, 0.75], "reason": "why"}
+
+
+OLD = [verdict("a", "PASS", 0.5), verdict("b", "FAIL", 0.125), verdict("c", "PASS", 0.3)]
+NEW = [verdict("a", "FAIL", 0.875), verdict("b", "FAIL", 0.1), OLD[2], verdict("d", "NOT RUN", None, "t")]
+
+
+def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> None:
+    lines = markdown(NEW, changes(OLD, NEW[:3])).splitlines()
+    assert lines[0] == "## dda-validation: 1 PASS, 2 FAIL, 1 NOT RUN"
+    assert lines[2] == "| study | PASS | FAIL | NOT RUN |"
+    assert lines[4:6] == ["| s | 1 | 2 | 0 |", "| t | 0 | 0 | 1 |"]
+    assert "| gate | value | band | why |" in lines and "| `a` | 0.875 | 0.25 .. 0.75 | why |" in lines
+    assert "| `d` | - | 0.25 .. 0.75 | why |" in lines
+    assert lines[-4:] == [
+        "| change | gate | verdict | value |",
+        "|---|---|---|---|",
+        "| worse | `a` | PASS → FAIL | 0.5 → 0.875 |",
+        "| value | `b` | FAIL | 0.125 → 0.1 |",
+    ]
+
+
+def test_a_baselines_other_studies_are_not_lost_gates(tmp_path: Path) -> None:
+    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 1.0, "other")]))
+    assert [(c.kind, c.id) for c in against(tmp_path / "old.json", NEW[:3])] == [("worse", "a"), ("value", "b")]
+
+
+def test_differences_are_printed_as_before_and_after(capsys: pytest.CaptureFixture[str]) -> None:
+    tables.print_changes(changes(OLD, NEW[:3]))
+    lines = [line.split() for line in capsys.readouterr().out.splitlines() if line.strip()]
+    assert lines[0] == ["change", "study", "gate", "before", "after"]
+    assert lines[2:4] == [
+        ["worse", "s", "a", "PASS", "0.5", "FAIL", "0.875"],
+        ["value", "s", "b", "FAIL", "0.125", "FAIL", "0.1"],
+    ]
+    assert " ".join(lines[-1]) == "2 gates differ: 1 worse, 1 value"
+
+
+# ---- rows and plot ------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Results:
+    """Return three steps of DDA and one of the bar, with work, seconds and differences from the bar."""
+    results, cases, pairs = Results(tmp_path / "results"), [], []
+    for k, step in enumerate((0.01, 0.002, 0.001)):
+        scene = load_scene("figures-3-4").with_values({"time.step": step}, label=True)
+        row = made_row("dda", {"pressure.peak": 6e6 + k}, scene.name, work={"solves": 10**k},
+                       seconds={"setup": 0.5, "stepping": 1.0 + k})  # fmt: skip
+        cases.append((scene, row, made_history(step, np.ones(3))))
+        pairs.append(between(scene.name, "dda", "bar", displacement_l2=0.1 * (3 - k), pressure_l2=0.0))
+    cases.append((scene, made_row("bar", {}, scene.name, seconds={"setup": 9.0}), None))
+    kept_study(results, cases, pairs)
+    return results
+
+
+def test_rows_are_written_under_their_names(made: Results, tmp_path: Path) -> None:
+    done = typed("rows", "made", "--csv", tmp_path / "a.csv", "--results", made.directory)
+    with (tmp_path / "a.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert done.stdout == f"wrote {tmp_path / 'a.csv'}: 4 rows, {len(lines[0])} columns\n"
+    names = ("solver", "work.solves", "seconds.total", "pressure.peak", "bar:displacement.l2")
+    assert [tuple(line[name] for name in names) for line in lines] == [
+        ("dda", "1", "1.5", "6000000.0", repr(0.1 * 3)),
+        ("dda", "10", "2.5", "6000001.0", "0.2"),
+        ("dda", "100", "3.5", "6000002.0", "0.1"),
+        ("bar", "", "9.0", "", ""),
+    ]
+
+
+def test_plot_draws_x_over_y_and_leaves_out_what_is_not_positive(
+    made: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    caught: list[Figure] = []
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure) or path)
+    columns = ("--x", "work.solves", "--y", "bar:displacement.l2")
+    assert typed("plot", "made", *columns, "--out", tmp_path / "a.svg", "--results", made.directory).returncode == 0
+    (axes,) = caught[0].axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("work.solves", "bar:displacement.l2")
+    x, y = line_in(axes, to_hex(style_of("figures-3-4 dda").color))
+    assert (list(x), list(y)) == ([1, 10, 100], pytest.approx([0.3, 0.2, 0.1]))
+    nothing = typed("plot", "made", "--y", "bar:pressure.l2", "--results", made.directory)
+    assert nothing.returncode == 2 and "must be columns with positive numbers" in nothing.stderr
+
+
+# ---- claims -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rest", [3e-15, -8e-14, 0.0])
+def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_same_everywhere(rest: float) -> None:
+    numbers = {"verdict": 2.0, "rest": rest, "share": 0.0123456, "other": "undefined", "small": 3.456e-11}
+    text = page(CLAIMS[:1], [{"name": CLAIMS[0].id, "metrics": numbers}])
+    assert f"## {CLAIMS[0].id}: confirmed\n" in text
+    assert "**Measured:** rest below 1e-12; share 0.01235; other undefined; small 3.456e-11." in text
+
+
+@pytest.mark.parametrize(
+    ("verdict", "head"), [(2.0, "confirmed"), (1.0, "confirmed under a condition (only so)"), (0.0, "refuted")]
+)
+def test_a_condition_is_told_of_what_holds_under_it_alone(verdict: float, head: str) -> None:
+    claim = replace(CLAIMS[0], condition="only so")
+    assert f"## C1: {head}\n" in page([claim], [{"name": "C1", "metrics": {"verdict": verdict}}])
+
+
+def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:
+    derived = [{"scene": "claims", "name": name, "metrics": {"verdict": verdict}} for name, verdict in
+               (("C1", 2.0), ("C2", 0.0), ("C6", 1.0))]  # fmt: skip
+    Results(tmp_path).write_json("studies/paper.json", {"study": "paper", "derived": derived})
+    lines = {line.split()[0]: line for line in typed("claims", "--results", tmp_path).stdout.splitlines()}
+    words = {name: line[5:32].strip() for name, line in lines.items()}
+    assert [words[name] for name in ("C1", "C2", "C6", "C3")] == [
+        "confirmed", "refuted", "confirmed under a condition", "not run",
+    ]  # fmt: skip

@@ -1,0 +1,256 @@
+"""Rows, windows, comparisons and the reference pack: each number is of its own case, steps and static value."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.made_cases import made_history, made_row
+
+from validation.engine.finished import Finished
+from validation.engine.judge import compare, evaluate
+from validation.engine.study import Study
+from validation.gates.gate import Gate
+from validation.metrics import poles as pencil
+from validation.metrics.catalogue import pair, solo
+from validation.metrics.columns import Measurable
+from validation.metrics.measurable import Measurable
+from validation.runs import provenance
+from validation.runs.files import read_csv
+from validation.runs.history import History
+from validation.runs.modes import Mode
+from validation.runs.results import Results
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
+from validation.studies import pack
+
+# ---- windows ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("step", "window", "count"), [(0.002, 0.2, 100), (1e-3, 0.3, 300), (1e-5, 0.07, 7000)])
+def test_a_window_holds_the_step_that_ends_with_it(step: float, window: float, count: int) -> None:
+    """The times are sums of rounded steps, some a rounding beyond the window's end."""
+    time = np.cumsum(np.full(2 * count, step))
+    history = History(time, {"displacement": np.arange(2.0 * count)})
+    kept = history.until(window)
+    assert (len(kept.time), len(kept.displacement), kept.displacement[-1]) == (count, count, count - 1)
+    assert len(history.until(window - step / 2).time) == count - 1
+    assert len(history.until(window + step / 2).time) == count
+
+
+def finished(tmp_path: Path, rows: dict[str, tuple[dict[str, Any], History]]) -> Finished:
+    results, kept = Results(tmp_path), {}
+    for solver, (found, history) in rows.items():
+        row = made_row(solver, found)
+        results.append(row, history)
+        kept["s", solver] = row
+    return Finished(kept, results)
+
+
+def gate(metric: str, until: float | None = None, pair: tuple[str, ...] = ("dda", "bar")) -> Gate:
+    return Gate("s", pair, metric, -1e9, 1e9, "a test", until=until)
+
+
+def test_a_gates_window_counts_every_step_up_to_its_end_and_none_beyond(tmp_path: Path) -> None:
+    """From step 3 on DDA is off by so much that a step more or less shows."""
+    error = np.array([0.0, 1.0, 2.0, 4.0, 8.0])
+    made = finished(tmp_path, {"dda": ({}, made_history(0.1, 10 + error, 20 + 2 * error)),
+                               "bar": ({}, made_history(0.1, np.full(5, 10.0), np.full(5, 20.0)))})  # fmt: skip
+    for until, last in ((0.3, 3), (0.4, 4), (None, 5)):
+        squares = float(np.sum(error[:last] ** 2))
+        for metric in ("displacement.l2", "pressure.l2"):
+            value = evaluate(gate(metric, until), made).value
+            assert value == pytest.approx(math.sqrt(squares / (100 * last)), rel=1e-12)
+        assert evaluate(gate("displacement.max", until), made).value == pytest.approx(error[last - 1] / 10)
+
+
+# ---- comparisons --------------------------------------------------------------------------------------------------
+
+STATICS = {  # an error of 0.5 beside a reference of 2 at most
+    "dda": ({"displacement.static": 10.0, "pressure.static": 25.0}, made_history(0.1, [0.5, 2.5], [0.0, 2.5])),
+    "bar": ({"displacement.static": 4.0, "pressure.static": 5.0}, made_history(0.1, [0.0, 2.0], [0.5, 2.0])),
+}
+
+
+def test_a_scaled_error_is_over_the_runs_own_static_value(tmp_path: Path) -> None:
+    made = finished(tmp_path, STATICS)
+    assert evaluate(gate("displacement.scaled"), made).value == pytest.approx(0.05)
+    assert evaluate(gate("pressure.scaled"), made).value == pytest.approx(0.02)
+    (found,) = compare(made)
+    assert (found["solver"], found["reference"], found["window"]) == ("dda", "bar", pytest.approx(0.2))
+    values = found["metrics"]
+    assert (values["displacement.scaled"], values["pressure.scaled"]) == (0.05, 0.02)
+    assert values["displacement.max"] == values["worst.max"] == 0.25
+    assert values["displacement.l2"] == pytest.approx(math.sqrt(0.5) / 2, rel=1e-5)
+
+
+def test_a_scaled_error_is_over_the_references_maximum_where_that_is_larger() -> None:
+    run, reference = made_history(0.1, [0.5, 8.0]), made_history(0.1, [0.0, 2.0])
+    assert pair("displacement.scaled", run, reference, {"displacement.static": -0.1}) == 3.0
+    assert pair("displacement.scaled", run, reference, {"displacement.static": -12.0}) == 0.5
+
+
+def test_histories_of_unequal_length_are_compared_on_all_their_common_steps() -> None:
+    short, long = made_history(0.1, [1.0, 3.0]), made_history(0.1, [1.0, 2.0, 9.0])
+    assert pair("displacement.max", short, long) == 0.5
+    assert pair("displacement.max", long, short) == pytest.approx(1 / 3)
+
+
+def test_a_metric_of_one_run_is_compared_as_a_ratio_to_the_reference(tmp_path: Path) -> None:
+    made = finished(tmp_path, STATICS)
+    assert evaluate(gate("displacement.static"), made).value == pytest.approx(1.5)
+    assert evaluate(gate("displacement.static", pair=("bar",)), made).value == 4.0
+
+
+# ---- metrics of one run -------------------------------------------------------------------------------------------
+
+
+def test_each_metric_of_a_history_is_its_own() -> None:
+    v = -0.01 * np.array([0.5, 1.2, 1.6, 1.4, 0.7, 0.9, 1.05, 1.005, 0.9995, 1.00005])
+    p = 5e6 * np.array([-0.2, -0.5, -0.1, 0.4, 1.7, 1.3, 0.995, 1.0005, 1.00005, 1.0])
+    roots = (-0.3 + 0j, -0.9 + 0j)
+    modes = (
+        Mode(300.0, 1.0, (0.5 + 0.4j, 0.5 - 0.4j), 0.9),
+        Mode(900.0, 0.0, (0.1 + 0.2j, 0.1 - 0.2j), 0.1),
+        Mode(2000.0, 0.0, roots, -0.4),
+    )
+    static = {"displacement": -0.01, "contact_pressure": 5e6}
+    found = solo(Measurable(made_history(0.002, v, p), 0.002, static, modes))
+    expected = {
+        "displacement.static": -0.01,
+        "displacement.final": -0.01 * 1.00005,
+        "displacement.minimum": -0.016,
+        "displacement.peak": -0.016,
+        "displacement.peak_time": 0.006,
+        "displacement.settling_step": 8.0,
+        "displacement.fine_settling_step": 10.0,
+        "pressure.static": 5e6,
+        "pressure.final": 5e6,
+        "pressure.minimum": -2.5e6,
+        "pressure.minimum_time": 0.004,
+        "pressure.tension_time": 0.006,
+        "pressure.peak": 8.5e6,
+        "pressure.peak_time": 0.01,
+        "pressure.settling_step": 7.0,
+        "pressure.fine_settling_step": 9.0,
+        "mode1.frequency": 300.0,
+        "mode1.spectral_radius": math.hypot(0.5, 0.4),
+        "contact.frequency": 2000.0,  # the mode that carries most of the contact pressure, of those after the first
+        "contact.spectral_radius": 0.9,
+        "contact.least_root": -0.9,
+        "contact.damping": "undefined",
+    }
+    assert {name: found[name] for name in expected} == {
+        name: value if isinstance(value, str) else pytest.approx(value) for name, value in expected.items()
+    }
+
+
+@pytest.mark.parametrize(("size", "count"), [(0.3, 400), (0.06, 1200), (0.06, 1399)])
+def test_long_histories_are_thinned_without_changing_frequency_or_damping(size: float, count: int) -> None:
+    xi, step = 0.02, 1e-3
+    n = np.arange(1, count + 1)
+    signal = 3 * np.exp(-xi * size * n) * np.cos(math.sqrt(1 - xi**2) * size * n) + np.exp(-0.05 * size * n) * np.cos(
+        2.5 * size * n
+    )
+    strongest = pencil.poles(signal, step)[0]
+    assert strongest.frequency == pytest.approx(size / step, rel=1e-6)
+    assert strongest.damping == pytest.approx(xi, rel=1e-6)
+
+
+def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> None:
+    names = ("predicted_radius", "spectral_radius", "condition_number", "scaled_residual", "largest_omega")
+    told = dict(zip(names, (0.91, 0.92, 3e5, 4e-16, 5.5), strict=True))
+    found = solo(Measurable(made_history(0.1, np.ones(3)), 0.1, diagnostics=told), ("stability",))
+    assert found == {
+        "stability.radius": 0.91,
+        "stability.radius_seen": 0.92,
+        "stability.condition": 3e5,
+        "stability.residual": 4e-16,
+        "stability.omega": 5.5,
+        "stability.growth": "undefined",
+        "stability.kind": "stable",
+    }
+
+
+# ---- the reference pack -------------------------------------------------------------------------------------------
+
+ONE = load_scene("figures-3-4").with_values({"time.steps": 12, "fem.elements": 2})
+NAMES = {step: f"mine[time.step={step}]" for step in (0.01, 0.002)}
+
+
+def small_study() -> Study:
+    scene = ONE.model_copy(update={"name": "mine", "sweep": {"time.step": [0.01, 0.002]}})
+    gates = (
+        Gate(NAMES[0.01], ("dda", "bar"), "displacement.l2", 0.1, 0.2, "one"),
+        Gate(NAMES[0.002], ("dda", "bar"), "pressure.l2", 0.3, 0.4, "two", until=0.016),
+        Gate(NAMES[0.002], ("dda", "dda"), "displacement.final", -0.5, 0.5, "three", against=NAMES[0.01]),
+        Gate(NAMES[0.002], ("dda",), "displacement.static", -0.6, 0.6, "four", "own last value"),
+        Gate(NAMES[0.002], ("dda", "dda-textbook"), "displacement.l2", 0.0, 1.0, "not for others"),
+        Gate(NAMES[0.002], ("fem", "bar"), "displacement.l2", 0.0, 1.0, "no code of others"),
+    )
+    return Study("core", "", "", [scene], ("dda", "fem", "bar"), gates=lambda: gates)
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("pack")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pack, "get_study", lambda name: small_study())
+        assert pack.write_pack(directory) == pack.Written(2, 4, 8)
+    return directory
+
+
+def test_each_history_of_a_pack_is_that_of_its_own_scene_and_solver(packed: Path) -> None:
+    paths = {path.name: path for path in (packed / "histories").iterdir()}
+    wanted = {f"mine_time.step_{step}.{solver}.csv": (step, solver)
+              for step in (0.01, 0.002) for solver in ("dda", "bar")}  # fmt: skip
+    assert paths.keys() == wanted.keys()
+    for name, (step, solver) in wanted.items():
+        scene = load_scene(packed / "scenes" / f"mine_time.step_{step}.toml")
+        exact = get_solver(solver).solve(ONE.with_values({"time.step": step})).history
+        found = read_csv(paths[name])
+        assert exact is not None and scene.time.step == step and np.array_equal(found.time, exact.time)
+        for column in ("displacement", "contact_pressure"):
+            assert np.array_equal(found.columns[column], exact.columns[column]), (name, column)
+    assert paths[min(wanted)].read_text().startswith("time,displacement,contact_pressure\n")
+
+
+def test_each_band_of_a_pack_says_what_its_gate_says(packed: Path) -> None:
+    bands = json.loads((packed / "bands.json").read_text())
+    slug = {step: f"mine_time.step_{step}" for step in NAMES}
+    own = [(slug[step], metric, 0.0, 1e-6, f"{slug[step]}.dda.csv", None)
+           for step in (0.01, 0.002) for metric in ("displacement.max", "pressure.max")]  # fmt: skip
+    fields = ("scene", "metric", "low", "high", "reference", "until")
+    assert [tuple(band[field] for field in fields) for band in bands] == [
+        *own,
+        (slug[0.01], "displacement.l2", 0.1, 0.2, f"{slug[0.01]}.bar.csv", None),
+        (slug[0.002], "pressure.l2", 0.3, 0.4, f"{slug[0.002]}.bar.csv", 0.016),
+        (slug[0.002], "displacement.final", -0.5, 0.5, f"{slug[0.01]}.dda.csv", None),
+        (slug[0.002], "displacement.static", -0.6, 0.6, None, None),
+    ]
+    assert [band["reason"] for band in bands[4:]] == ["one", "two", "three", "four"]
+    assert [band["reference_kind"] for band in bands[-2:]] == ["exact", "own last value"]
+    with (packed / "bands.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert lines == [{name: "" if value is None else str(value) for name, value in band.items()} for band in bands]
+
+
+# ---- provenance ---------------------------------------------------------------------------------------------------
+
+
+def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkeypatch: pytest.MonkeyPatch) -> None:
+    import platform
+
+    import scipy
+
+    monkeypatch.setattr(provenance, "_commit", lambda: "the commit")
+    monkeypatch.setattr(provenance, "_processor", lambda: "the processor")
+    found = provenance.provenance()
+    assert found["python"] == platform.python_version()
+    assert (found["packages"]["numpy"], found["packages"]["scipy"]) == (np.__version__, scipy.__version__)
+    assert (found["commit"], found["processor"]) == ("the commit", "the processor")

@@ -1,0 +1,115 @@
+"""Cases, rows and histories made by hand, so that a test knows every number that a reader should meet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+
+from validation.report.chapters.data import Case, Group
+from validation.runs.history import History
+from validation.runs.results import Results, Row
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+
+
+def made_row(solver: str, metrics: Mapping[str, Any] | None = None, scene: str = "s", **more: Any) -> Row:
+    """Return a row that completed, unless it is told otherwise."""
+    outcome = more.pop("outcome", Outcome.COMPLETED)
+    return Row(f"{scene} {solver}", "study", scene, solver, outcome, metrics or {}, **more)
+
+
+def made_case(
+    scene: Scene,
+    metrics: Mapping[str, Mapping[str, Any] | Row],
+    histories: Mapping[str, History] | None = None,
+    label: str = "",
+) -> Case:
+    """Return a case of a report's page from the metrics, or the rows, of its solvers."""
+    rows = {s: m if isinstance(m, Row) else made_row(s, m, scene.name) for s, m in metrics.items()}
+    return Case(scene.name, label or scene.name, scene, rows, histories or {})
+
+
+def made_group(*cases: Case, **parts: Any) -> Group:
+    """Return a scene of a study, with comparisons, verdicts, alarms or budgets."""
+    return Group("scene", "A scene", cases, parts.pop("comparisons", ()), parts.pop("verdicts", ()), **parts)
+
+
+def between(scene: str, solver: str, reference: str, **metrics: float) -> dict[str, Any]:
+    """Return a comparison of two solvers; displacement_l2 stands for displacement.l2."""
+    values = {name.replace("_", ".", 1): value for name, value in metrics.items()}
+    return {"scene": scene, "solver": solver, "reference": reference, "window": 1.0, "metrics": values}
+
+
+def made_history(step: float, *columns: Any) -> History:
+    """Return a history of displacement [m] and, if given, contact pressure [Pa]."""
+    names = ("displacement", "contact_pressure")
+    values = {name: np.array(column, dtype=float) for name, column in zip(names, columns, strict=False)}
+    return History(step * np.arange(1, len(values["displacement"]) + 1), values)
+
+
+def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any) -> dict[str, Any]:
+    """Keep (scene, row, history) triples as a study named "made", and return its manifest."""
+    entries = []
+    for scene, row, history in cases:
+        results.append(row, history)
+        entries.append(
+            {
+                "scene": scene.name,
+                "title": scene.title,
+                "solver": row.solver,
+                "key": row.key,
+                "definition": scene.definition(),
+            }
+        )
+    manifest = {"study": "made", "title": "Made", "purpose": "Why.", "cases": entries, "comparisons": list(comparisons)}
+    results.write_json("studies/made.json", manifest | parts)
+    return manifest | parts
+
+
+# ---- what a drawn axes shows --------------------------------------------------------------------------------------
+
+
+def height_of(axes: Axes, fraction: float) -> float:
+    """Return the value on the y axis at a height from 0 at the bottom to 1 at the top."""
+    low, high = axes.get_ylim()
+    if axes.get_yscale() == "log":
+        return float(low * (high / low) ** fraction)
+    return float(low + fraction * (high - low))
+
+
+def names_at(axes: Axes) -> dict[str, tuple[float, str]]:
+    """Return the names beside an axes: name -> value on the y axis at which its leader begins, and colour."""
+    leaders = [line for line in axes.lines if line.get_transform() == axes.transAxes]
+    starts = {round(float(line.get_ydata()[1]), 9): float(line.get_ydata()[0]) for line in leaders}
+    colors = {text.get_text(): to_hex(text.get_color()) for text in axes.texts}
+    return {name: (height_of(axes, starts[round(place, 9)]), colors[name]) for name, place in places_of(axes).items()}
+
+
+def places_of(axes: Axes) -> dict[str, float]:
+    """Return the names beside an axes and how high they stand, as a share of the height."""
+    beside = [text for text in axes.texts if text.get_transform() == axes.transAxes and text.get_position()[0] > 1]
+    return {text.get_text(): float(text.get_position()[1]) for text in beside}
+
+
+def rules_of(axes: Axes, color: str) -> tuple[list[float], list[float]]:
+    """Return where the rules of a colour stand that cross an axes: heights of level ones, x of upright ones."""
+    rules = [line for line in axes.lines if to_hex(line.get_color()) == color]
+    level = [line.get_ydata()[0] for line in rules if line.get_transform() == axes.get_yaxis_transform(which="grid")]
+    upright = [line.get_xdata()[0] for line in rules if line.get_transform() == axes.get_xaxis_transform(which="grid")]
+    return level, upright
+
+
+def lines_of(axes: Axes) -> list[tuple[str, Any, Any]]:
+    """Return the lines in data coordinates: colour, x and y."""
+    drawn = [line for line in axes.lines if line.get_transform() == axes.transData]
+    return [(to_hex(line.get_color()), np.array(line.get_xdata()), np.array(line.get_ydata())) for line in drawn]
+
+
+def line_in(axes: Axes, color: str) -> tuple[Any, Any]:
+    """Return x and y of the one line of a colour with more than one point."""
+    (found,) = [(x, y) for own, x, y in lines_of(axes) if own == color and x.size > 1]
+    return found

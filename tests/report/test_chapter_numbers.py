@@ -1,0 +1,251 @@
+"""The numbers in the chapters of the paper, of stiff contacts and of extremes, from results made by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
+
+from validation.report.chapters import (
+    paper as chapters_paper,
+)
+from validation.report.chapters import (
+    stability as chapters_stability,
+)
+from validation.report.chapters import (
+    stiff_contact as chapters_contact,
+)
+from validation.report.chapters.paper import PaperFigure
+from validation.report.chapters.stability import Cell
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import style_of
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+
+BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
+GREY = "#bbbbbb"
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+    """Catch the figures that a chapter writes, by the names of their files."""
+    caught: dict[str, Figure] = {}
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.setdefault(path.name, figure))
+    return caught
+
+
+# ---- the paper's figures ------------------------------------------------------------------------------------------
+
+PAPER_METRICS = {
+    "displacement.static": -0.01,
+    "pressure.static": 5e6,
+    "displacement.settling_step": 12.0,
+    "pressure.settling_step": 17.0,
+    "displacement.fine_settling_step": 22.0,
+    "pressure.fine_settling_step": 27.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("quantity", "relative", "value", "level", "settled", "unit"),
+    [
+        ("displacement", False, -12.0, -10.0, 12.0, "[mm]"),
+        ("pressure", False, 6.5, 5.0, 17.0, "[MPa]"),
+        ("displacement", True, 20.0, 0.0, None, "[%]"),
+    ],
+)
+def test_the_papers_figures_are_in_their_units(
+    quantity: str,
+    relative: bool,
+    value: float,
+    level: float,
+    settled: float | None,
+    unit: str,
+    drawn: dict[str, Figure],
+    tmp_path: Path,
+) -> None:
+    history = made_history(0.002, np.full(40, -0.012), np.full(40, 6.5e6))
+    group = made_group(made_case(BASE, {"dda": PAPER_METRICS}, {"dda": history}))
+    figure = PaperFigure(3, "s", quantity, 30, "Caption", relative)
+    chapters_paper.figure_block(figure, group, tmp_path)
+    (axes,) = drawn["figure-3.svg"].axes
+    orange = to_hex(style_of("dda").color)
+    (line,) = [y for own, x, y in lines_of(axes) if own == orange and x.size == 30]
+    assert np.allclose(line, value) and axes.get_ylabel().endswith(unit)
+    assert rules_of(axes, GREY) == ([pytest.approx(level)], [])
+    assert rules_of(axes, orange) == ([], [] if settled is None else [settled])
+
+
+def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """A period of 2 pi / 300 = 21 ms has ten steps of 2 ms and five of 4 ms."""
+    history = made_history(0.002, np.full(40, -0.012), np.full(40, 6.5e6))
+    captions = []
+    for step in (0.002, 0.004):
+        rows = {"dda": PAPER_METRICS, "bar": {"mode1.frequency": 300.0}, "continuum": {}}
+        case = made_case(BASE.with_values({"time.step": step}), rows, {"dda": history, "continuum": history})
+        figure = PaperFigure(3 if step == 0.002 else 4, "s", "displacement", 30, "Caption")
+        captions.append(chapters_paper.figure_block(figure, made_group(case), tmp_path).caption)
+    assert ["continuum is left out" in caption for caption in captions] == [False, True]
+    assert [set(names_at(figure.axes[0])) for figure in drawn.values()] == [{"dda", "continuum"}, {"dda"}]
+
+
+def test_the_operators_of_figure_1_lie_at_w_dt() -> None:
+    metrics = {
+        "mode1.frequency": 300.0,
+        "mode1.spectral_radius": 0.8,
+        "contact.frequency": 900.0,
+        "contact.spectral_radius": 0.5,
+    }
+    cases = [made_case(BASE.with_values({"time.step": step}), {"dda": metrics}) for step in (0.002, 1e-4)]
+    assert chapters_paper._points(cases) == [
+        (pytest.approx(0.6), 0.8), (pytest.approx(1.8), 0.5),
+    ]  # fmt: skip  # w dt = 0.03 and 0.09 lie outside the figure
+
+
+def test_the_register_counts_and_words_each_verdict() -> None:
+    rows = {name: {"verdict": verdict} for name, verdict in
+            (("a", 0.0), ("b", 0.0), ("c", 1.0), ("d", 2.0), ("e", 2.0), ("f", 2.0))}  # fmt: skip
+    assert chapters_paper.conclusion(rows) == (
+        "Of 6 statements and equations of the paper that were tested, 3 are confirmed, 1 holds under a condition that "
+        "the paper does not name, 2 are refuted."
+    )
+    claim = {"id": "a", "says": "It is so", "place": "page 1", "why": "it is not", "condition": "never"}
+    table = chapters_paper.claims_table([claim], {"a": {"verdict": 0.0, "steps": 44.0, "share": "undefined"}})
+    assert table.rows == (
+        ("a", "refuted", "It is so (page 1)", "It is not.", "steps 44; share undefined"),
+    )  # fmt: skip
+
+
+# ---- stiff contacts -----------------------------------------------------------------------------------------------
+
+
+def contact_case(ratio: float, alpha: float, displacement: Any, pressure: Any, radius: float) -> Any:
+    scene = BASE.with_values({"contact.stiffness": 2e9 * ratio, "block.young": 2e9, "time.alpha": alpha}, label=True)
+    metrics = {
+        "displacement.fine_settling_step": displacement,
+        "pressure.fine_settling_step": pressure,
+        "displacement.settling_step": 1.0,
+        "pressure.settling_step": 2.0,
+        "contact.spectral_radius": radius,
+    }
+    return made_case(scene, {"dda": metrics})
+
+
+CONTACT = made_group(
+    contact_case(100.0, 0.5, 60.0, "undefined", 0.98),
+    contact_case(100.0, 0.5625, 61.0, 62.0, 0.34),
+    contact_case(1.0, 0.5, 50.0, 530.0, 0.5),
+    contact_case(1.0, 0.5625, 51.0, 55.0, 0.4),
+)
+
+
+def test_steps_to_settle_stand_under_their_scheme_and_beside_their_stiffness() -> None:
+    table = chapters_contact.settling_table(chapters_contact.by_ratio(CONTACT))
+    heads = [(c.group, c.title) for c in table.columns]
+    constant, complex_ = ("α, δ = (1/2, 1)", "α, δ = (9/16, 1)")
+    assert heads[0] == ("", "p / E") and [g for g, _ in heads[1:]] == [constant] * 3 + [complex_] * 3
+    assert [t for _, t in heads[1:]] == ["displ.", "press.", "|λ| of the contact"] * 2
+    assert table.rows == (
+        ("1", "50", "530", "0.50000000", "51", "55", "0.40000000"),
+        ("100", "60", "–", "0.98000000", "61", "62", "0.34000000"),
+    )
+
+
+def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme() -> None:
+    table = chapters_contact.by_ratio(CONTACT)
+    lines = {line.name: (list(line.ratios), list(line.steps)) for line in chapters_contact.lines(table)}
+    nan = pytest.approx(np.nan, nan_ok=True)
+    assert lines == {
+        "displacement (1/2, 1)": ([1.0, 100.0], [50.0, 60.0]),
+        "pressure (1/2, 1)": ([1.0, 100.0], [530.0, nan]),
+        "displacement (9/16, 1)": ([1.0, 100.0], [51.0, 61.0]),
+        "pressure (9/16, 1)": ([1.0, 100.0], [55.0, 62.0]),
+    }
+    said = chapters_contact.conclusion(table)
+    assert "under (1/2, 1) up to 530 steps (at p = 1 E) and under (9/16, 1) up to 62 steps (at p = 100 E)" in said
+
+
+# ---- extremes -----------------------------------------------------------------------------------------------------
+
+
+def extreme(solver: str, ratio: float, step: float, error: float | None, **more: Any) -> Cell:
+    start, outcome = more.get("start", "zero"), more.get("outcome", Outcome.COMPLETED)
+    metrics = {"stability.kind": more.get("kind", "stable")} | more.get("metrics", {})
+    errors = {} if error is None else {"displacement": error, "pressure": 10 * error}
+    row = made_row(solver, metrics, outcome=outcome)
+    return Cell(more.get("scene", "extremes-a"), solver, ratio, step, start, row, errors)
+
+
+def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() -> None:
+    found = [
+        extreme("dda", 1.0, 1e-3, 1e-14),
+        extreme("dda", 1e6, 1e-3, 4e-13),  # the pressure keeps 4e-12: eleven digits
+        extreme("dda", 1e6, 1.0, None, outcome=Outcome.UNSTABLE, kind="unstable as predicted"),
+        extreme("dda", 1e6, 2.0, None, outcome=Outcome.OVERFLOW, kind="overflow"),
+        extreme("fem", 1.0, 1e-3, 1e-11),
+        extreme("fem", 1e14, 1e-3, 1e-2),  # beyond what fem promises
+    ]
+    assert chapters_stability.conclusion(found) == (
+        "Correct digits kept at least, in both quantities: dda 11, fem 10 for p/E from 10⁻³ to 10¹²; 2 runs of dda "
+        "left their bounds, all as predicted."
+    )
+    odd = [*found, extreme("dda", 1.0, 1.0, None, outcome=Outcome.MISPREDICTED)]
+    assert chapters_stability.conclusion(odd).endswith("2 runs of dda left their bounds, all but 1 more as predicted.")
+
+
+def test_outcomes_are_counted_under_their_names() -> None:
+    found = [
+        extreme("dda", 1.0, 1e-3, 1e-14),
+        extreme("dda", 1.0, 1e-3, 1e-14, kind="marginal"),
+        extreme("dda", 1.0, 1e-3, 1e-14, kind="marginal"),
+        extreme("dda", 1.0, 1e-3, None, outcome=Outcome.OVERFLOW, kind="overflow"),
+        extreme("dda", 1.0, 1e-3, None, outcome=Outcome.NOT_APPLICABLE),
+    ]
+    table = chapters_stability.outcome_table(found)
+    shown = dict(zip([c.title for c in table.columns], table.rows[0], strict=True))
+    assert shown == {
+        "Solver": "dda",
+        "stable": "1",
+        "marginal": "2",
+        "unstable as predicted": "0",
+        "overflow": "1",
+        "otherwise": "not applicable 1",
+    }
+
+
+def test_a_map_of_digits_shows_the_worst_of_a_place_at_its_stiffness_and_step(
+    drawn: dict[str, Figure], tmp_path: Path
+) -> None:
+    own = [
+        extreme("dda", 1.0, 1e-3, 0.9e-14),
+        extreme("dda", 1.0, 1e-3, 0.9e-9),  # the worse of two discounts
+        extreme("dda", 1.0, 1e-1, 0.9e-12),
+        extreme("dda", 1e3, 1e-1, 0.9e-7),
+    ]
+    (block,) = chapters_stability._maps("s", own, chapters_stability.STARTS["zero"], tmp_path)
+    assert block.file == "s-digits-dda-zero.svg" and block.caption.startswith("dda from A(0) = 0: correct digits, the")
+    left, right = drawn[block.file].axes
+    assert {text.get_position(): text.get_text() for text in left.texts} == {(0, 0): "9", (1, 0): "12", (1, 1): "7"}
+    assert {text.get_position(): text.get_text() for text in right.texts} == {(0, 0): "8", (1, 0): "11", (1, 1): "6"}
+    assert [label.get_text() for label in left.get_yticklabels()] == ["$10^{0}$", "$10^{3}$"]
+    assert [label.get_text() for label in left.get_xticklabels()] == ["$10^{-3}$", "$10^{-1}$"]
+    assert (left.get_title(loc="left"), right.get_title(loc="left")) == ("Displacement", "Contact pressure")
+    assert chapters_stability.STARTS["consistent"] == "from the consistent start"
+
+
+def test_the_one_factor_table_shows_radius_condition_residual_and_digits() -> None:
+    numbers = {"stability.radius": 0.98, "stability.condition": 4.5e7, "stability.residual": 6.1e-17}
+    found = [
+        extreme("dda", 1.0, 1e-3, 0.9e-13, scene="extreme-a", metrics=numbers),
+        extreme("dda-textbook", 1.0, 1e-3, 0.9e-6, scene="extreme-a"),
+        extreme("fem", 1.0, 1e-3, None, scene="extreme-a", outcome=Outcome.REFUSED),
+    ]
+    _, table = chapters_stability.factor_tables(found)
+    heads = [c.title for c in table.columns]
+    assert heads == ["Scene", "|λ|", "condition", "residual", "dda", "dda-textbook", "fem"]
+    assert table.rows == (("extreme-a", "0.98", "4.5×10⁷", "6.1×10⁻¹⁷", "13 / 12", "6 / 5", "refused"),)

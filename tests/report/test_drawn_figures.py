@@ -1,0 +1,270 @@
+"""What a drawn figure tells its reader: each name stands beside its own line's end, each line holds its own numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from oracles.made_cases import line_in, lines_of, made_history, names_at, places_of, rules_of
+
+from validation.report.figures import (
+    cost as figures_cost,
+)
+from validation.report.figures import curves
+from validation.report.figures import (
+    histories as figures,
+)
+from validation.report.figures import (
+    paper as figures_paper,
+)
+from validation.report.figures import (
+    stability as figures_stability,
+)
+from validation.report.figures import (
+    work as figures_work,
+)
+from validation.runs.results import Row
+from validation.scenes.scene import load_scene
+from validation.studies.work.points import Point
+
+GREY = "#bbbbbb"
+ENDS = {"dda": -0.004, "fem": -0.010, "bar": -0.016, "continuum": -0.001}  # m; in no order
+STARTS = {"dda": -0.015, "fem": -0.001, "bar": -0.006, "continuum": -0.011}
+
+
+def color(name: str) -> str:
+    return to_hex(curves.style_of(name).color)
+
+
+def towards_ends(names: Any = ENDS, count: int = 50) -> dict[str, Any]:
+    """Histories that begin in one order, swing through -0.02 m and end in another order."""
+    share = np.linspace(0, 1, count)
+    swing = -0.02 * np.sin(np.pi * share) ** 2
+    return {n: made_history(0.001, STARTS[n] + share * (ENDS[n] - STARTS[n]) + 0.2 * swing) for n in names}
+
+
+def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> None:
+    histories = towards_ends()
+    figure = figures.history_figure([curves.Panel("", histories, -0.01, "bar")], "displacement")
+    top, below = figure.axes
+    found = names_at(top)
+    assert set(found) == set(ENDS)
+    for name, last in ENDS.items():
+        assert found[name] == (pytest.approx(1e3 * last, abs=1e-9), color(name))  # mm; the ends are far apart
+        x, y = line_in(top, color(name))
+        assert x[-1] == pytest.approx(0.05) and y[-1] == pytest.approx(1e3 * last)
+        assert np.allclose(y, 1e3 * histories[name].displacement)
+    ticks = zip(below.get_xticks(), below.get_xticklabels(), strict=True)
+    assert all(float(label.get_text()) == pytest.approx(tick) for tick, label in ticks)
+    assert set(names_at(below)) == set(ENDS) - {"bar"}
+    for name, (value, drawn) in names_at(below).items():
+        tail = (histories[name].displacement - histories["bar"].displacement)[-1]
+        assert (value, drawn) == (pytest.approx(abs(tail) / 0.01, rel=0.1), color(name))  # one fortieth is two steps
+
+
+def test_crowded_names_keep_the_order_of_the_lines() -> None:
+    ends = {"bar": 1.000, "dda": 1.002, "fem": 0.998, "continuum": 1.001}
+    lines = {name: made_history(0.1, np.linspace(0, last, 5)) for name, last in ends.items()}
+    figure = figures.history_figure([curves.Panel("", lines, 1.0, "bar")], "displacement")
+    placed = places_of(figure.axes[0])
+    assert sorted(placed, key=placed.__getitem__) == sorted(ends, key=ends.__getitem__)
+    assert min(np.diff(sorted(placed.values()))) > 0.1  # of 24 mm: letters are 2.5 mm high
+
+
+def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
+    histories = {"bar": made_history(0.1, np.full(40, -0.02)), "dda": made_history(0.1, np.full(40, -0.021))}
+    figure = figures.history_figure([curves.Panel("", histories, -0.01, "bar")], "displacement")
+    _, y = line_in(figure.axes[1], color("dda"))
+    assert np.allclose(y, 0.1)
+    assert len(lines_of(figure.axes[1])) == 1
+    assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
+
+
+def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
+    n = np.array([4.0, 8.0, 16.0])
+    lines = [figures.Line("fem", n, np.array([3.0, 2.0, 1.0]), ": falls"), figures.Line("bar", n, 1 + n / 8)]
+    (axes,) = figures.line_figure(lines, "n", "v", {"dda": 2.0}).axes
+    assert names_at(axes) == {
+        "fem: falls": (pytest.approx(1.0), color("fem")),
+        "bar": (pytest.approx(3.0), color("bar")),
+        "dda": (pytest.approx(2.0), color("dda")),
+    }
+
+
+def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
+    parts = {"code": (1e-13, 2e-13), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
+    figure = figures.ledger_figure([figures.LedgerLine("one", {}), figures.LedgerLine("two", parts)])
+    assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 0), ("two", 1)]
+    for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
+        assert axes.get_title(loc="left") == part
+        shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
+        filled, hollow = shown[to_hex(figures.DOT)], shown.get("#ffffff")
+        assert filled.get_xdata()[0] == displacement
+        assert round(filled.get_ydata()[0]) == 1  # the second line of the ledger
+        assert (None if hollow is None else hollow.get_xdata()[0]) == pressure
+
+
+# ---- the paper's figures ------------------------------------------------------------------------------------------
+
+
+def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last() -> None:
+    steps = np.arange(1, 101)
+    lines = {"dda": steps / 50.0, "bar": 2.0 - steps / 25.0}  # at step 50: 1 and 0; at 100: 2 and -2
+    (axes,) = figures_paper.steps_figure([figures_paper.StepPanel("", lines, 0.5, 30.0)], "v", 50).axes
+    assert names_at(axes) == {"dda": (pytest.approx(1.0), color("dda")), "bar": (pytest.approx(0.0), color("bar"))}
+    ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
+    assert all(float(label.get_text()) == tick for tick, label in ticks)
+    for name, values in lines.items():
+        drawn = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
+        assert np.array_equal(drawn[0][0], steps[:50]) and np.array_equal(drawn[0][1], values[:50])
+    assert rules_of(axes, GREY) == ([0.5], []) and rules_of(axes, color("dda")) == ([], [30.0])
+    assert "30 steps" in [text.get_text() for text in axes.texts]
+
+
+def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
+    omega = np.geomspace(0.1, 100, 30)
+    true, printed = np.linspace(1.0, 0.9, 30), np.where(omega > 4, 0.2, np.linspace(1.0, 0.9, 30))
+    data = {"omega": omega, "schemes": {name: {"radius": true - k / 10, "printed": printed - k / 10}
+            for k, name in enumerate(("constant (1/2, 1)", "b", "c", "d"))}}  # fmt: skip
+    (axes,) = figures_paper.radius_figure(data, [(2.0, 0.5), (20.0, 0.7)]).axes
+    ends = names_at(axes)
+    assert [ends[name][1] for name in "bcd"] == list(figures_paper.SCHEME_COLORS[1:])
+    assert ends["constant (1/2, 1)"][0] == pytest.approx(0.9, abs=0.05)
+    assert ends["constant: √(1+h), as printed"][0] == pytest.approx(0.2, abs=0.05)
+    first = to_hex(figures_paper.SCHEME_COLORS[0])
+    curves_drawn = {line.get_linestyle(): line for line in axes.lines if to_hex(line.get_color()) == first
+                    and line.get_transform() == axes.transData}  # fmt: skip
+    assert np.array_equal(curves_drawn["-"].get_ydata(), true)
+    assert np.array_equal(curves_drawn["--"].get_xdata(), omega[omega > 4])
+    assert np.all(curves_drawn["--"].get_ydata() == 0.2)
+    (points,) = [line for line in axes.lines if line.get_marker() == "o"]
+    assert (list(points.get_xdata()), list(points.get_ydata())) == ([2.0, 20.0], [0.5, 0.7])
+    assert to_hex(points.get_markeredgecolor()) == color("dda")
+
+
+def budget_of(**parts: float) -> dict[str, Any]:
+    """Return a budget of constant curves: the first mode's parts as given, the contact mode at 20 %."""
+    dt = np.geomspace(1e-5, 1e-2, 20)
+    first = {part: np.full(20, value).tolist() for part, value in parts.items()}
+    contact = {part: np.full(20, 0.2).tolist() for part in parts}
+    return {
+        "scene": "s",
+        "steps": [1e-3, 2e-3],
+        "gg": 0.98,
+        "gg_rate": None,
+        "dt": dt.tolist(),
+        "modes": {"first axial": first, "contact": contact},
+        "limits": {"real roots": 4e-3, "wave transit": 3e-4},
+        "real roots at": 3.96,
+        "floor": 1.0521,
+    }
+
+
+def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() -> None:
+    budget = budget_of(total=0.05, algorithmic=0.012, kinetic=0.0015)
+    (axes,) = figures_paper.budget_figure([figures_paper.BudgetPanel("", budget)]).axes
+    wanted = {"first axial": 5.0, "contact": 20.0, "algorithmic part": 1.2, "kinetic part": 0.15}
+    orange, violet = color("dda"), to_hex(figures_paper.CONTACT_COLOR)
+    colors = dict.fromkeys(wanted, orange) | {"contact": violet}
+    assert names_at(axes) == {name: (pytest.approx(value, rel=1e-6), colors[name]) for name, value in wanted.items()}
+    drawn = {(own, round(float(y[0]), 9)) for own, x, y in lines_of(axes) if x.size == 20}
+    assert drawn == {(orange, 5.0), (violet, 20.0), (orange, 1.2), (orange, 0.15)}
+
+
+def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
+    budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
+    (axes,) = figures_paper.budget_figure([figures_paper.BudgetPanel("", budget)]).axes
+    assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
+    triangles = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "^"]
+    assert triangles == [1e-3, 2e-3]
+    said = {text.get_text(): text.get_position()[0] for text in axes.texts}
+    assert said["a/c"] == 3e-4 and said["ω₁dt = 3.96"] == 4e-3
+    assert rules_of(axes, to_hex(curves.GREY)) == ([], [4e-3, 3e-4])
+    assert "ω₁ = 1.052 × bar" in said
+
+
+# ---- error against cost -------------------------------------------------------------------------------------------
+
+
+def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_note() -> None:
+    lines = [
+        figures.Line("squares", np.array([1.0, 10.0]), np.array([0.5, 0.1]), "1 2"),
+        figures.Line("triangles", np.array([20.0, 2.0]), np.array([0.01, 0.4]), "8 3"),
+    ]
+    (axes,) = figures_work.work_figure(lines, "s", "error").axes
+    found = names_at(axes)
+    assert found["squares"] == (pytest.approx(0.1), color("squares"))
+    assert found["triangles"] == (pytest.approx(0.01), color("triangles"))
+    notes = {text.get_text(): text.xy for text in axes.texts if hasattr(text, "xy")}
+    assert notes == {"1": (1.0, 0.5), "2": (10.0, 0.1), "8": (20.0, 0.01), "3": (2.0, 0.4)}
+
+
+def test_two_columns_are_drawn_as_x_and_y_and_named_at_the_largest_x() -> None:
+    series = {"s dda": [(100.0, 2.0), (1.0, 50.0)], "s bar": [(2.0, 1.0), (30.0, 9.0)]}
+    (axes,) = figures_cost.columns_figure(("work", "error"), series).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("work", "error")
+    assert names_at(axes) == {
+        "s dda": (pytest.approx(2.0), color("s dda")),
+        "s bar": (pytest.approx(9.0), color("s bar")),
+    }
+    x, y = line_in(axes, color("s dda"))
+    assert (list(x), list(y)) == ([1.0, 100.0], [50.0, 2.0])
+
+
+def point(method: str, step: float, seconds: float, errors: dict[tuple[str, str], float]) -> Point:
+    scene = load_scene("figures-3-4").with_values({"time.step": step})
+    work = {"unknowns": 6, "steps": round(0.1 / step)}
+    row = Row("k", "s", scene.name, method, "completed", {}, work, {"setup": seconds / 4, "stepping": 3 * seconds / 4})
+    return Point(method, scene, row, errors)
+
+
+def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() -> None:
+    bar, whole = ("displacement", "bar"), ("displacement", "continuum")
+    found = [
+        point("dda", 1e-3, 0.2, {bar: 0.03, whole: 0.3}),
+        point("dda", 1e-2, 0.1, {bar: 0.04, whole: 0.5}),
+        point("bar", 1e-3, 0.05, {bar: 1e-11, whole: 0.2}),
+    ]
+    figure = figures_cost.work_figure(found)
+    titles = [axes.get_title(loc="left").split("the ")[-1].rstrip(")") for axes in figure.axes]
+    labels = [axes.get_xlabel() for axes in figure.axes]
+    assert titles == ["bar", "continuum"] * 2 and labels == ["Seconds"] * 2 + ["Unknowns × steps"] * 2
+    assert "everything" in figure.axes[1].get_title(loc="left")
+    shown = [{(line.get_xdata()[0], line.get_ydata()[0]): to_hex(line.get_markerfacecolor())
+              for line in axes.lines if line.get_marker() == "o"} for axes in figure.axes]  # fmt: skip
+    orange, black = color("dda"), color("bar")
+    assert shown[0] == {(0.2, 0.03): orange, (0.1, 0.04): orange, (0.05, 1e-11): "#ffffff"}  # hollow: below rounding
+    assert shown[1] == {(0.2, 0.3): orange, (0.1, 0.5): orange, (0.05, 0.2): black}
+    assert shown[3] == {(600.0, 0.3): orange, (60.0, 0.5): orange, (600.0, 0.2): black}
+    level = [line.get_ydata()[0] for line in figure.axes[1].lines if line.get_linestyle() == ":"]
+    assert level == [0.3]  # DDA at its finest step
+    assert {text.get_text(): to_hex(text.get_color()) for text in figure.texts} == {"dda": orange, "bar": black}
+    grey = [line for line in figure.axes[0].lines if to_hex(line.get_color()) == GREY]
+    assert [(list(line.get_xdata()), line.get_drawstyle()) for line in grey] == [([0.05], "steps-post")]
+
+
+# ---- stiff contacts and extremes ----------------------------------------------------------------------------------
+
+
+def test_a_map_shows_whole_correct_digits_and_leaves_blank_what_no_run_answers() -> None:
+    error = np.array([[1e-16, 0.9e-5], [np.nan, 2.0]])
+    figure = figures_stability.digit_maps([figures_stability.DigitMap("v", error)], ["a", "b"], ["c", "d"], "x", "y")
+    (axes,) = figure.axes
+    assert {text.get_position(): text.get_text() for text in axes.texts} == {(0, 0): "16", (1, 0): "5", (1, 1): "0"}
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["c", "d"]
+
+
+def test_a_hollow_mark_at_the_top_has_not_settled() -> None:
+    ratios = np.array([1.0, 10.0, 100.0])
+    lines = [
+        figures_stability.Settling("one", ratios, np.array([20.0, np.nan, 40.0])),
+        figures_stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
+    ]
+    (axes,) = figures_stability.settling_figure(lines, 1000.0).axes
+    assert names_at(axes) == {"one": (pytest.approx(40.0), color("one")), "two": (pytest.approx(100.0), color("two"))}
+    hollow = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines
+              if to_hex(line.get_markerfacecolor()) == "#ffffff" and len(line.get_xdata())]  # fmt: skip
+    assert hollow == [([10.0], [1000.0])]

@@ -1,0 +1,286 @@
+"""Every number on a scene's page and on the front page, from results made by hand: value, unit, column and words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import (
+    between,
+    kept_study,
+    line_in,
+    lines_of,
+    made_case,
+    made_group,
+    made_history,
+    made_row,
+    names_at,
+    rules_of,
+)
+
+from validation.report.chapters import front as chapters_front
+from validation.report.chapters import gates as chapters_gates
+from validation.report.chapters import ledger as chapters_ledger
+from validation.report.chapters import scene as chapters
+from validation.report.chapters import text as chapters_text
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import style_of
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+
+BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+    """Catch the figures that a chapter writes, by the names of their files."""
+    caught: dict[str, Figure] = {}
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.setdefault(path.name, figure))
+    return caught
+
+
+def stepped(step: float) -> Any:
+    return BASE.with_values({"time.step": step}, label=True)
+
+
+# ---- the table of damping, settling and peaks ---------------------------------------------------------------------
+
+MEASURED = {
+    "mode1.frequency": 344.56,
+    "mode1.numerical_frequency": 321.09,
+    "mode1.measured_frequency": 321.42,
+    "mode1.damping": 0.12345,
+    "mode1.measured_damping": 0.23456,
+    "mode1.spectral_radius": 0.87654,
+    "displacement.settling_step": 44.0,
+    "pressure.settling_step": 45.0,
+    "displacement.peak": -0.012347,  # m
+    "pressure.peak": 6.789e6,  # Pa
+    "pressure.minimum": -0.4321e6,  # Pa
+}
+SHOWN = {
+    ("ω₁ [rad/s]", "model"): "344.6",
+    ("ω₁ [rad/s]", "operator"): "321.1",
+    ("ω₁ [rad/s]", "history"): "321.4",
+    ("ξ₁ [%]", "operator"): "12.345",
+    ("ξ₁ [%]", "history"): "23.456",
+    ("|λ₁|", ""): "0.8765",
+    ("Settling step", "displ."): "44",
+    ("Settling step", "press."): "45",
+    ("First peak", "mm"): "−12.35",
+    ("First peak", "MPa"): "6.789",
+    ("Least press.", "MPa"): "−0.4321",
+}
+
+
+def test_the_damping_table_shows_every_metric_in_its_column_and_unit() -> None:
+    table = chapters.damping_table(made_group(made_case(BASE, {"dda": MEASURED}, label="dt = 1 s")))
+    shown = dict(zip([(c.group, c.title) for c in table.columns], table.rows[0], strict=True))
+    assert shown == {("", "Case"): "dt = 1 s", ("", "Solver"): "dda"} | SHOWN
+
+
+def test_a_least_pressure_within_rounding_of_the_load_is_nothing() -> None:
+    group = made_group(made_case(BASE, {"dda": {"pressure.minimum": -4e-3}, "fem": {"pressure.minimum": -6e-3}}))
+    assert [row[-1] for row in chapters.damping_table(group).rows] == ["0", "−6.000×10⁻⁹"]  # of 5 MPa, 1e-9 is 5e-3 Pa
+
+
+def test_the_reason_of_a_gate_carries_its_reference_and_its_uncertainty() -> None:
+    verdict = {"reason": "so", "reference_kind": "other code", "reference_uncertainty": 2.5e-4, "why": "it broke"}
+    assert chapters_gates.reason(verdict) == "so [other code ± 2.5×10⁻⁴] It broke."
+    assert (
+        chapters_gates.reason({"reason": "so", "reference_kind": "exact", "reference_uncertainty": 0.0}) == "so [exact]"
+    )
+
+
+# ---- the conclusion -----------------------------------------------------------------------------------------------
+
+
+def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() -> None:
+    ratios = {0.01: (0.30, 0.0081, 0.0067), 0.002: (0.16, 0.0363, 0.0403), 0.001: (0.08, 0.0897, 0.104)}
+    cases = [
+        made_case(
+            stepped(step),
+            {
+                "dda": {"mode1.damping": xi, "pressure.minimum": -1e6 * step},
+                "fem": {"pressure.minimum": -9e6},  # named after dda and the bar
+                "bar": {"pressure.minimum": -2e8 * step},
+            },
+        )
+        for step, (xi, _, _) in ratios.items()
+    ]
+    pairs = [between(stepped(step).name, "dda", "bar", displacement_l2=v, pressure_l2=p)
+             for step, (_, v, p) in ratios.items()]  # fmt: skip
+    said = chapters.conclusion(made_group(*cases, comparisons=tuple(pairs), verdicts=()))
+    assert said == (
+        "Against bar, dda differs by 0.81\u00a0% to 8.97\u00a0% in displacement and 0.67\u00a0% to 10.4\u00a0% in "
+        "contact pressure (relative L2); no gate judges this scene; the locked contact hides tension, down to "
+        "−0.0100 MPa in dda and −2.00 MPa in bar; the difference falls as the damping grows, from 8.97\u00a0% at "
+        "ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no merit."
+    )
+
+
+def test_outcomes_and_reasons_are_those_of_their_own_rows() -> None:
+    rows = {"dda": made_row("dda", {}, BASE.name, outcome=Outcome.OVERFLOW, notes=("at step 7",)), "bar": {}}
+    (callout,) = chapters.outcomes(made_group(made_case(BASE, rows, label="dt = 1 s")))
+    assert callout.text == f"dda at dt = 1 s: overflow. {Outcome.OVERFLOW.sentence} at step 7"
+
+
+# ---- figures of a page --------------------------------------------------------------------------------------------
+
+
+def test_a_figure_compares_cases_over_the_time_that_all_of_them_run(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """0.02 s and 0.1 s: both panels stop at 0.02 s, the last of its steps included."""
+    cases = []
+    for step, last in ((0.002, 10), (0.001, 100)):
+        histories = {name: made_history(step, -0.01 * scale * np.ones(last), 5e6 * scale * np.ones(last))
+                     for name, scale in (("dda", 1.1), ("bar", 1.0))}  # fmt: skip
+        metrics = {"dda": {"displacement.static": -0.02}, "bar": {"displacement.static": -0.01}}
+        cases.append(made_case(stepped(step), metrics, histories))
+    block = chapters._history_block(made_group(*cases), "displacement", tmp_path)
+    assert "The first 0.0200 s, the time that all cases run." in block.caption
+    (figure,) = drawn.values()
+    for axes, count in zip(figure.axes[:2], (10, 20), strict=True):
+        x, y = line_in(axes, to_hex(style_of("dda").color))
+        assert len(x) == count and x[-1] == pytest.approx(0.02) and np.allclose(y, -11)
+        assert rules_of(axes, "#bbbbbb") == ([pytest.approx(-10)], [])  # the reference's static value, in mm
+    assert names_at(figure.axes[1])["dda"][0] == pytest.approx(-11)
+
+
+def test_the_drift_of_corner_springs_is_drawn_in_millimetres(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    cases = []
+    for n, v in ((4, -0.02), (8, -0.025), (16, -0.03)):
+        scene = BASE.with_values({"fem.foundation": "corner", "fem.elements": n}, label=True)
+        cases.append(made_case(scene, {"dda": {"displacement.static": -0.01}, "fem": {"displacement.static": v}}))
+    group = made_group(*cases)
+    _, callout = chapters._drift_blocks(group, chapters.drift_values(group), tmp_path)
+    assert "changes by −5.00 mm with every halving" in callout.text
+    (axes,) = next(iter(drawn.values())).axes
+    fitted = [(list(x), list(y)) for own, x, y in lines_of(axes) if own == to_hex(style_of("fem").color)]
+    assert fitted == [([4, 8, 16], pytest.approx([-20, -25, -30]))] * 2  # the line and its marks
+    ends = {name: value for name, (value, _) in names_at(axes).items()}
+    assert ends == {"fem: −5.00 mm per doubling of n": pytest.approx(-30), "dda": pytest.approx(-10)}
+    assert axes.get_ylabel().endswith("[mm]")
+
+
+# ---- the ledger and the front page --------------------------------------------------------------------------------
+
+PAIRS = {  # part of the ledger -> solver, reference, displacement, pressure
+    "code": ("dda", "dda-textbook", 1.1e-13, 1.2e-13),
+    "mesh": ("fem", "bar", 2.1e-6, 2.2e-6),
+    "model form": ("dda", "bar", 0.031, 0.032),
+    "time": ("bar", "continuum", 0.41, 0.42),
+}
+OTHERS = (("dda", "continuum", 0.51, 0.52), ("dda", "fem", 0.61, 0.62), ("fem", "continuum", 0.71, 0.72))
+
+
+def ledger_group() -> Any:
+    every = [*PAIRS.values(), *OTHERS]
+    pairs = [between(BASE.name, a, b, displacement_l2=v, pressure_l2=p) for a, b, v, p in every]
+    solvers = ("dda", "dda-textbook", "fem", "bar", "continuum")
+    return made_group(made_case(BASE, {solver: {} for solver in solvers}, label="one"), comparisons=tuple(pairs))
+
+
+@pytest.mark.parametrize("part", PAIRS)
+def test_each_part_of_the_ledger_is_its_own_pair(part: str) -> None:
+    group = ledger_group()
+    assert chapters_ledger.entry(group, group.cases[0], part).values == PAIRS[part][2:]
+
+
+def test_the_ledger_reads_across_as_its_heads_say() -> None:
+    table = chapters_ledger.ledger_table([ledger_group()])
+    shown = dict(zip([(c.group, c.title) for c in table.columns], table.rows[0], strict=True))
+    assert shown == {
+        ("", "Scene"): "scene",
+        ("", "Case"): "one",
+        ("code: dda − textbook", "displ."): "<10⁻¹²",
+        ("code: dda − textbook", "pressure"): "<10⁻¹²",
+        ("mesh: fem − bar", "displ."): "2.1×10⁻⁶",
+        ("mesh: fem − bar", "pressure"): "2.2×10⁻⁶",
+        ("model form: dda − bar", "displ."): "3.1×10⁻²",
+        ("model form: dda − bar", "pressure"): "3.2×10⁻²",
+        ("time: bar − continuum", "displ."): "4.1×10⁻¹",
+        ("time: bar − continuum", "pressure"): "4.2×10⁻¹",
+    }
+    (line,) = chapters_ledger.ledger_lines([ledger_group()])
+    assert line.parts == {part: values[2:] for part, values in PAIRS.items()}
+
+
+def test_without_textbook_or_bar_the_ledger_says_where_its_numbers_come_from() -> None:
+    rows = {"dda": made_row("dda", {}, BASE.name, estimate=3e-14), "fem": {}}
+    pair = between(BASE.name, "dda", "fem", displacement_l2=0.61, pressure_l2=0.62)
+    group = made_group(made_case(BASE, rows), comparisons=(pair,))
+    code, form = (chapters_ledger.entry(group, group.cases[0], part) for part in ("code", "model form"))
+    table = chapters_ledger.ledger_table([group])
+    assert table.rows[0][2:4] == ("<10⁻¹² ¹",) * 2 and table.rows[0][6] == "6.1×10⁻¹ ³"
+    assert (table.notes[0], table.notes[2]) == (f"¹ {code.remark}", f"³ {form.remark}")
+    assert (code.values, form.values) == ((3e-14, 3e-14), (0.61, 0.62))
+    assert "own estimate" in code.remark and "against fem" in form.remark
+
+
+def test_the_headline_gives_displacement_pressure_code_and_mesh_each_its_own_number() -> None:
+    said = chapters_front.headline([ledger_group()], [{"verdict": "PASS"}, {"verdict": "FAIL"}])
+    assert said == (
+        "1 of 2 gates fails: under the same Newmark scheme DDA differs from the exact elastic bar by 3.1\u00a0% in "
+        "displacement and 3.2\u00a0% in contact pressure (relative L2); of the displacement's difference code and "
+        "rounding are at most 1.1×10⁻¹³ and the finite-element mesh is at most 2.1×10⁻⁶; the rest is model form, one "
+        "strain in the block against a wave."
+    )
+
+
+def test_the_cost_of_a_solver_is_summed_over_its_own_runs(tmp_path: Path) -> None:
+    first = {"unknowns": 6, "factorisations": 1, "solves": 40, "steps": 41}
+    second = {"unknowns": 9, "factorisations": 2, "solves": 100, "steps": 102}
+    costs = [("a", first, {"setup": 0.25, "stepping": 0.5}), ("b", second, {"setup": 1.0, "stepping": 2.0})]
+    results = Results(tmp_path)
+    cases = [(BASE, made_row("dda", {}, name, work=work, seconds=spent), None) for name, work, spent in costs]
+    manifest = kept_study(results, [*cases, (BASE, made_row("fem", {}, "c", seconds={"setup": 9.0}), None)])
+    table = chapters_front.cost_table(results, manifest)
+    assert [c.title for c in table.columns][1:] == [
+        "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds",
+    ]  # fmt: skip
+    assert table.rows == (("dda", "2", "9", "3", "140", "143", "3.75"), ("fem", "1", "0", "0", "0", "0", "9.00"))
+
+
+def test_verdicts_are_counted_in_the_columns_of_their_words(tmp_path: Path) -> None:
+    words = ["PASS"] * 3 + ["FAIL"] * 2 + ["NOT RUN"]
+    results = Results(tmp_path)
+    results.write_verdicts("s", [{"id": str(i), "study": "s", "scene": "a[b=1]", "verdict": word, "value": 1.0}
+                                 for i, word in enumerate(words)])  # fmt: skip
+    table = chapters_front.verdict_counts(results, ["s"])
+    shown = dict(zip([c.title for c in table.columns], table.rows[0], strict=True))
+    assert shown == {"Study": "s", "Scene": "all scenes", "PASS": "3", "FAIL": "2", "NOT RUN": "1"}
+    assert table.rows[1] == ("", "a", *table.rows[0][2:])
+
+
+# ---- data of a scene ----------------------------------------------------------------------------------------------
+
+
+def test_the_data_of_a_scene_are_those_of_the_scene_with_their_units() -> None:
+    changes = {
+        "block.side": 3.0, "block.density": 2500.0, "block.young": 2e9, "block.poisson": 0.25,
+        "contact.stiffness": 6e10, "load.pressure": 4e6, "time.step": 0.003, "time.steps": 70,
+        "time.alpha": 0.4, "time.delta": 0.7, "time.gg": 0.98, "fem.elements": 12, "fem.degree": 1,
+    }  # fmt: skip
+    scene = BASE.with_values(changes)
+    assert chapters_text.parameters(scene, set()) == (
+        "a = 3 m, ρ = 2500 kg/m³, E = 2×10⁹ Pa, μ = 0.25, plane stress, p = 6×10¹⁰ N/m, q = 4×10⁶ Pa, dt = 0.003 s, "
+        "70 steps, α = 0.4, δ = 0.7, gg = 0.98, zero initial acceleration, elements of degree 1, 12 a side, "
+        "distributed foundation."
+    )
+    assert "dt =" not in chapters_text.parameters(scene, {"time.step"})
+    other = scene.with_values({"block.hypothesis": "plane strain", "time.gg_rate": 20.0, "time.start": "consistent"})
+    line = chapters_text.parameters(other, set())
+    assert all(part in line for part in ("plane strain", "gg = 0.941765", "consistent initial acceleration"))
+
+
+def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:
+    base = BASE.with_values({"block.young": 2e9})
+    scenes = [base.with_values({"contact.stiffness": p, "load.pressure": q}, label=True)
+              for p, q in ((2e9, 5e6), (5e9, 2.5e6))]  # fmt: skip
+    labels = chapters_text.case_labels([scene.name for scene in scenes], scenes)
+    assert labels == ["p = 1E, q = 5 MPa", "p = 2.5E, q = 2.5 MPa"]
