@@ -18,7 +18,6 @@ from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.metrics import poles as pencil
 from validation.metrics.catalogue import pair, solo
-from validation.metrics.columns import Measurable
 from validation.metrics.measurable import Measurable
 from validation.runs import provenance
 from validation.runs.files import read_csv
