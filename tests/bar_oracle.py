@@ -1,4 +1,4 @@
-"""Random bars on a no-tension spring, and an integration of their delay equation that shares nothing with the exact one."""
+"""Random bars on a no-tension spring, and an independent integration of their delay equation."""
 
 from collections.abc import Callable
 
