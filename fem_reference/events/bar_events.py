@@ -228,9 +228,13 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
 
 
 def _lost(problem: BarProblem, end: float) -> int:
-    """Digits that cancel: one a round trip by the polynomials, and those of 1 / kappa by each of their degrees."""
-    trips = end / problem.travel / 2 + 2
-    return math.ceil(trips * (1 + max(0.0, -math.log10(problem.kappa))))
+    """Digits that cancel.
+
+    Measured over 100 round trips: up to 11 where the spring is stiff, and two for each decade of a soft
+    spring's 1 / kappa, by which integration divides; both are taken larger.
+    """
+    trips = end / problem.travel / 2
+    return math.ceil(10 + trips / 4 + 2.5 * max(0.0, -math.log10(problem.kappa)))
 
 
 def _switches(pieces: list[Piece], travel: Decimal) -> Iterator[Switch]:
