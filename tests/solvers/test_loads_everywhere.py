@@ -240,6 +240,13 @@ def test_the_rotation_of_the_middle_is_the_mean_over_the_elements_that_meet_ther
     assert assembled.observers["rotation"] @ D == pytest.approx(4e-3, rel=1e-12)
 
 
+@pytest.mark.parametrize(("right", "rectangle"), [(0.1 + 0.2, True), (0.3 + 1e-9, False)])
+def test_a_corner_that_is_off_by_rounding_leaves_a_rectangle(right: float, rectangle: bool) -> None:
+    assert right != 0.3
+    found = make(((0.0, 0.0), (0.3, 0.0), (right, 1.0), (0.0, 1.0))).rectangle
+    assert found == (0.3, 1.0) if rectangle else found is None
+
+
 @pytest.mark.parametrize("elements", [2, 3, 4, 5])
 def test_the_middle_of_triangles_is_read_in_its_own_triangle(elements: int) -> None:
     """Any nodal values, linear in each triangle: the middle's own triangle is found by its barycentric coordinates."""

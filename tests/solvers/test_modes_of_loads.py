@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oracles.bars import OTHER, PAPER
 from oracles.elements import make
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 import dda
 import fem_reference
@@ -20,7 +20,7 @@ from validation.runs.history import Array
 A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
 M = RHO * A * A
 SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
-RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3))}
+RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3)), "xy": ((0.0, 2e-3), (0.0, 1e-3))}
 
 
 def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
@@ -80,7 +80,9 @@ def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way
         found = dda.modes(case, SCHEME)
     else:
         found = dda.system_modes(dda.subdivided(case, 1, 1, 1e9), SCHEME)
-    agree(found, carried(*(upright(1, p) if way == "y" else sideways(p))))
+    parts = {"x": [sideways(p)], "y": [upright(1, p)], "xy": [sideways(p), upright(1, p)]}[way]
+    mass, stiffness = (block_diag(*(part[i] for part in parts)) for i in (0, 1))
+    agree(found, carried(mass, stiffness, np.concatenate([part[2] for part in parts])))
 
 
 @pytest.mark.parametrize("p", [1e9, 1e11])
@@ -99,6 +101,17 @@ def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
     for way, fem, block in (("y", 327.7, 344.561), ("x", 137.4, 226.5)):
         assert fem_reference.modes(problem(8, 1e9, way), SAME)[0].frequency == pytest.approx(fem, abs=0.5)
         assert dda.modes(model(1e9, way), SCHEME)[0].frequency == pytest.approx(block, abs=0.05)
+
+
+@pytest.mark.parametrize("p", [1e9, 1e11])
+def test_elements_that_are_moved_both_ways_have_the_modes_of_each(p: float) -> None:
+    """The shares of both ways are weighed by R' M K^-1 M R: those of one way keep their proportions."""
+    both, upwards = (fem_reference.modes(problem(2, p, way), SAME, count=40) for way in ("xy", "y"))
+    ratios = []
+    for mode in upwards[:2]:
+        (same,) = [m for m in both if m.share > 1e-6 and abs(m.frequency / mode.frequency - 1) < 1e-9]
+        ratios.append(same.share / mode.share)
+    assert 0.01 < ratios[0] < 0.99 and ratios[1] == pytest.approx(ratios[0], rel=1e-6)
 
 
 def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
