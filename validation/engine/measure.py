@@ -140,6 +140,7 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         static is not None,
         _reported(prepared.diagnostics, {}, failed) if linear and "stability" in asked else {},
         run.outcome,
+        _reported(prepared.switches, None, failed) if "switches" in asked else None,
         lambda: stability.limit(solver, case.scene),
     )
     return solo(seen, asked)
@@ -152,6 +153,8 @@ def _measures(case: Case, run: Run) -> set[str]:
         asked -= {"history", "modes", "energy"}
     if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
         asked -= {"stability"}
+    if "history" in asked and features.UNILATERAL in features.of(case.scene):
+        asked |= {"switches"}
     return asked if "history" in asked else asked - {"modes"}
 
 

@@ -78,6 +78,12 @@ class Scene(Section):
             )
         return self
 
+    @model_validator(mode="after")
+    def _check_impact(self) -> Self:
+        if self.block.velocity and self.contact.law == "locked":
+            raise ValueError(f'block: velocity goes with contact.law = "unilateral" only, got {self.block.velocity:g}')
+        return self
+
     def _swept(self) -> dict[str, list[Any]]:
         return {field: values for field, values in self.sweep.items() if field != "mode"}
 

@@ -70,6 +70,7 @@ class BlockSection(Section):
     top: Annotated[int, BeforeValidator(_count)] = 2
     density: Positive  # kg/m3
     young: Positive  # Pa
+    velocity: Real = 0.0  # m/s at t = 0, upwards; for unilateral contact only
     poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
     hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
     subdivide: tuple[Count, Count] | None = None  # sub-blocks along the base and upwards
@@ -130,10 +131,20 @@ class BlockSection(Section):
 
 
 class ContactSection(Section):
-    """Locked corner springs at the two ends of the base edge."""
+    """Corner springs at the two ends of the base edge: locked, or unilateral, which carry no tension."""
 
+    law: Literal["locked", "unilateral"] = "locked"
     stiffness: Positive  # p, N/m per corner spring
-    shear_stiffness: Positive | None = None  # N/m; p if absent
+    shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
+    gap: NonNegative = 0.0  # m, between block and springs at t = 0; for unilateral contact only
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.law == "locked" and self.gap:
+            raise ValueError(f'gap goes with law = "unilateral" only, got {self.gap:g}')
+        if self.law == "locked" and self.shear_stiffness == 0:
+            raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
+        return self
 
     @property
     def shear(self) -> float:

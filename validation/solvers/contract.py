@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.runs.modes import Mode
+from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -25,6 +25,7 @@ class Role(enum.StrEnum):
     REPEAT = "repeat"  # the answer of another solver by other arithmetic
     SECOND_CODE = "second code"  # the answer of another solver by another program
     REFERENCE = "reference"  # the same body under the same scheme, resolved or exact in space
+    LIMIT = "limit"  # what the judged method tends to as the time step goes to zero
     TRUTH = "truth"  # exact in space and time
     OTHER = "other"  # brought by a user
 
@@ -65,6 +66,10 @@ class Prepared:
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition number and residual of the step."""
         raise NotReported("no diagnostics are reported")
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the openings and closings of a unilateral contact after t = 0, in the order of time."""
+        raise NotReported("no switches are reported")
 
 
 class Solver:

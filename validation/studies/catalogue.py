@@ -27,6 +27,7 @@ STUDIES = {
     "stability-small": "validation.studies.stability:small",
     "stability": "validation.studies.stability:full",
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
+    "opening": "validation.studies.opening:OPENING",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 
