@@ -19,6 +19,7 @@ from validation.compare.reading import Foreign, Stepping, steppings
 from validation.compare.rectangle import rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
+from validation.scenes import features
 from validation.scenes.scene import Scene
 
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
@@ -78,6 +79,10 @@ def compare(scene: Scene, foreign: Foreign) -> Answer:
     InputError
         The scene has a sweep, no load, or the history cannot be one of it.
     """
+    if not features.linear(scene):
+        raise InputError(
+            f"{scene.name}: compare takes linear scenes only, got one with {', '.join(features.of(scene))}"
+        )
     if scene.sweep:
         raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
     if not np.any(foreign.displacement):

@@ -159,7 +159,7 @@ class DDA(Solver):
 
         return dda.COLUMNS
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block or its sub-blocks."""
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
@@ -191,6 +191,6 @@ class Textbook(DDA):
 
         return dda.textbook_applicable(model_of(scene), scheme_of(scene))
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block."""
         return Printed(scene, full)

@@ -177,7 +177,7 @@ class BlockEvents(Solver):
             return "the block is no upright rectangle on its lower edge"
         return None if scene.time.discount == 1 else "the exact motion has no kinetic damping, and gg is below 1"
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BlockMotion(scene, self.name)
 
@@ -200,6 +200,6 @@ class BarEvents(BlockEvents):
             return "lines do not move alike for Poisson's ratio other than 0"
         return super().applicable(scene)
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BarMotion(scene, self.name)

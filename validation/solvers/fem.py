@@ -153,6 +153,6 @@ class FiniteElements(Solver):
 
         return fem_reference.COLUMNS
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block."""
         return Mesh(scene, full)
