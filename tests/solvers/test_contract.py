@@ -80,7 +80,11 @@ def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear
 
 
 def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
-    assert by_role("judged") == ["dda"] and by_role("reference") == ["bar", "fem"] and by_role("truth") == ["continuum"]
+    assert (
+        by_role("judged") == ["dda"]
+        and by_role("reference") == ["bar", "fem"]
+        and by_role("truth") == ["bar-events", "continuum"]
+    )
     assert role("fem:full") == "repeat" and role("jointed") == "other"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.rank("jointed") < registry.rank("dda")
