@@ -15,7 +15,7 @@ from made_cases import between, kept_study, line_in, made_history, made_row
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from validation import cli, cli_tables, cli_verdicts, figures, load_scene
+from validation import cli, cli_tables, cli_verdicts, figures, load_scene, work_record
 from validation.chapters_curves import style_of
 from validation.claims import page
 from validation.gates import Gate, Status, Verdict, judge
@@ -190,6 +190,23 @@ def test_plot_draws_x_over_y_and_leaves_out_what_is_not_positive(
     assert (list(x), list(y)) == ([1, 10, 100], pytest.approx([0.3, 0.2, 0.1]))
     nothing = typed("plot", "made", "--y", "bar:pressure.l2", "--results", made.directory)
     assert nothing.returncode == 2 and "must be columns with positive numbers" in nothing.stderr
+
+
+@pytest.mark.parametrize(
+    ("error", "solves", "status"), [(1.015, 100, 0), (1.03, 100, 1), (1.0, 110, 0), (1.0, 120, 1), (0.5, 50, 0)]
+)
+def test_the_record_fails_on_two_per_cent_of_an_error_and_fifteen_of_a_count(
+    error: float, solves: int, status: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def entry(error: float, solves: int) -> dict[str, Any]:
+        return {"a fem": {"errors": {"displacement": 1e-3 * error}, "work": {"solves": solves}}}
+
+    monkeypatch.setattr("validation.engine.finish", lambda *a, **k: None)
+    monkeypatch.setattr(work_record, "measured", lambda *a: entry(error, solves))
+    monkeypatch.setattr(work_record, "load", lambda: {"cases": entry(1.0, 100)})
+    done = typed("record")
+    assert done.stdout == f"worst ratio to the record: errors {error:.3f}, work {solves / 100:.3f}\n"
+    assert done.returncode == status
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------
