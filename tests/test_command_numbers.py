@@ -41,6 +41,13 @@ def test_solve_prints_the_last_values_and_the_duration(scene_file: Path, tmp_pat
     assert history.time[-1] == pytest.approx(0.1) and history.displacement[-1] != history.displacement[0]
 
 
+def test_a_run_that_overflows_leaves_no_history_behind(scene_file: Path, tmp_path: Path) -> None:
+    values = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    options = [part for value in values for part in ("--set", value)]
+    done = typed("solve", scene_file, *options, "--csv", tmp_path / "h.csv")
+    assert done.returncode == 3 and not (tmp_path / "h.csv").exists()
+
+
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
