@@ -70,6 +70,21 @@ def test_damping_prints_the_first_modes_of_the_references(scene_file: Path) -> N
     assert [float(bar[1]), float(bar[2])] == pytest.approx([w, 100 * of_scheme(0.002 * w, 0.98)[0]], rel=1e-3)
 
 
+def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> None:
+    found = json.loads(typed("damping", scene_file, *OPTIONS, "--json").stdout)
+    w = frequencies()[0]
+    xi, radius, elongation = of_scheme(0.002 * w, 0.98)
+    own = of_scheme(0.002 * w, 1.0)[0]
+    assert (found["scene"], found["step"], found["gg"]) == ("small", 0.002, 0.98)
+    assert found["gg_rate"] == pytest.approx(-math.log(0.98) / 0.002)
+    first = {name: value for name, value in found["modes"][0].items() if name not in ("name", "least_root")}
+    assert first == pytest.approx({
+        "frequency": w, "damping": xi, "spectral_radius": radius, "omega_dt": 0.002 * w, "algorithmic": own,
+        "kinetic": xi - own, "period_elongation": elongation,
+    })  # fmt: skip
+    assert set(found["references"]) == {"fem", "bar"}
+
+
 def mode(**changes: Any) -> ModeDamping:
     values = {"name": "first axial", "frequency": 300.0, "damping": 0.05, "spectral_radius": 0.875, "omega_dt": 0.6,
               "algorithmic": 0.04, "kinetic": 0.01, "period_elongation": 0.1, "least_root": 0.1}  # fmt: skip

@@ -64,6 +64,8 @@ def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
     answer = softened("dda", 1 / 1.04)
     assert (answer.causes, answer.departure) == (["base-compliance"], None)
     assert "given a base that adds 2 % to the static displacement" in answer.sentence
+    # what is no fault is taken over into what is expected
+    assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -108,6 +110,44 @@ def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
     assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
     v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
     assert benign_springs(target(), v) is benign
+
+
+# ---- other faults -------------------------------------------------------------------------------------------------
+
+
+def judged(change: Any, **values: Any) -> Answer:
+    """Judge a history of DDA with other values against the scene at gg = 0.98, its columns changed."""
+    scene = SCENE.with_values({"time.gg": 0.98})
+    run = solve(scene.with_values({key.replace("__", "."): value for key, value in values.items()}), "dda")
+    return compare(scene, Foreign(run.time, *change(run.displacement, run.contact_pressure)))
+
+
+def test_a_pressure_in_kilopascals_is_a_slip_of_units_and_leaves_nothing_else() -> None:
+    answer = judged(lambda v, p: (v, -1e-3 * p))
+    assert answer.causes == ["sign", "unit"] and answer.misfit < 1e-6
+    assert answer.ranking[0]["gg"] == 0.98 and answer.ranking[0]["misfit"] < 1e-6
+
+
+def test_another_scheme_is_named_in_plain_data_as_it_is() -> None:
+    answer = judged(lambda v, p: (v, p), time__alpha=0.25, time__delta=0.5)
+    assert answer.causes == ["scheme"]
+    assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 0.98}
+
+
+@pytest.mark.parametrize(("late", "words"), [(1, "the rows come 1 step late"), (-1, "the rows come 1 step early")])
+def test_rows_that_are_shifted_by_a_step_are_said_so(late: int, words: str) -> None:
+    def shifted(values: np.ndarray) -> np.ndarray:
+        return np.append(0.0, values[:-1]) if late > 0 else np.append(values[1:], values[-1])
+
+    answer = judged(lambda v, p: (shifted(v), shifted(p)))
+    assert answer.causes == ["time-shift"] and words in answer.sentence
+
+
+def test_what_no_cause_explains_departs_by_no_known_cause() -> None:
+    wiggle = 0.06 * np.sin(2.1 * np.arange(30)) * (np.arange(30) > 9)
+    answer = judged(lambda v, p: (v * (1 + wiggle), None))
+    assert answer.departure is not None and answer.departure.step >= 10
+    assert answer.misfit > 0.02 and answer.sentence.startswith("Departs from step")
 
 
 # ---- words --------------------------------------------------------------------------------------------------------
