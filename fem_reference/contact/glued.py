@@ -70,10 +70,11 @@ class GluedBase:
         """Forces for given states and crossings: N / k + w = 0 and T + k_t phi s = 0."""
         points = len(states)
         kappa = self.shear_stiffness * phi
-        # Divided by its size each row is as good as any other for the pivots.
-        size = 1 + kappa * np.diag(self.C)[points:]
-        weight = np.concatenate([np.ones(points), kappa / size])
-        diagonal = np.concatenate([self.compliance, 1 / size])
+        # Divided by its size each row is as good as any other for the pivots; phi may be zero.
+        flexibility = np.diag(self.C)
+        size = np.concatenate([self.compliance + flexibility[:points], 1 + kappa * flexibility[points:]])
+        weight = np.concatenate([np.ones(points), kappa]) / size
+        diagonal = np.concatenate([self.compliance, np.ones(points)]) / size
         right = -weight * np.concatenate([self.free_gap, self.free_slip])
         matrix = weight[:, None] * self.C + np.diag(diagonal)
         chosen = np.concatenate([states, states])
