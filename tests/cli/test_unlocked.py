@@ -23,7 +23,7 @@ def history(tmp_path: Path) -> Path:
 
 
 def test_what_is_written_for_linear_scenes_refuses_it(history: Path) -> None:
-    for words in (["damping", "unlocked"], ["compare", "unlocked", history], ["solve", "unlocked", "--solver", "fem"]):
+    for words in (["damping", "unlocked"], ["compare", "unlocked", history], ["solve", "unlocked", "--solver", "bar"]):
         done = typed(*words, *ONE)
         assert done.returncode == 2, words
         assert done.stderr.count("\n") == 1 and "unilateral contact" in done.stderr, done.stderr
@@ -41,7 +41,7 @@ def test_no_solver_prepares_a_scene_as_if_a_feature_were_absent() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("stiffness = 1.0e9", "stiffness = 1.0e9\ngap = 0.01", 'gap goes with law = "unilateral" only, got 0.01'),
+        ("stiffness = 1.0e9", "stiffness = 1.0e9\ngap = 0.01", 'gap goes with law = "unilateral" only'),
         ("stiffness = 1.0e9", "stiffness = 1.0e9\nshear_stiffness = 0.0", "shear_stiffness must be greater than 0"),
         ("young = 1.0e9", "young = 1.0e9\nvelocity = -1.0", 'velocity goes with contact.law = "unilateral" only'),
         ("stiffness = 1.0e9", 'stiffness = 1.0e9\nlaw = "open"', "must be 'locked' or 'unilateral', got 'open'"),

@@ -27,6 +27,7 @@ FAULTS = {  # of the data by parts in 1e11 and less, which move every number by 
     "bar: load": ("bar_events", {"pressure": 1 + 4e-12}),
     "block: an open contact carries something": ("block_events", {}),
     "bar: an open contact carries something": ("bar_events", {}),
+    "block: springs 1 % stiff": ("block_events", {"stiffness": 1.01}),
 }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.history import PRESSURE, History
+from validation.runs.history import PRESSURE, Array, History
+from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 
@@ -38,6 +39,24 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
         (*notes, *result.notes, *tension),
         getattr(result, "estimate", None),
     )
+
+
+def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: float = 0.0) -> Run:
+    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name."""
+    history = History(result.time, {name: columns[name] for name in scene.run.columns})
+    counted = ("unknowns", "nonzeros", "factorisations", "solves")
+    work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
+    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
+    return Run(Outcome(result.outcome), history, work, seconds, result.notes)
+
+
+def flips(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
+    """Return the switches between the steps of contacts, 1 where closed and 0 where open, in the order of time."""
+    found = []
+    for corner, state in closed.items():
+        steps = np.flatnonzero(np.diff(state)) + 1
+        found += [Switch(float(time[n]), corner, bool(state[n] < 0.5)) for n in steps]
+    return tuple(sorted(found, key=lambda switch: switch.time))
 
 
 @contextmanager
