@@ -259,7 +259,7 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
     found: dict[str, Any] = {"window": steps * case.time.step}
     for name in ("fem", "continuum"):
         reference = get_solver(name)
-        if reason := reference.applicable(case):
+        if reason := reference.refusal(case):
             found[name] = {"not applicable": reason}
             continue
         try:

@@ -19,6 +19,7 @@ from validation.errors import InputError
 from validation.metrics.modes import operator_damping
 from validation.runs.history import Array
 from validation.runs.modes import Mode, contact_index
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
@@ -111,6 +112,9 @@ def single(scene: Scene) -> Scene:
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if not features.linear(scene):
+        has = ", ".join(features.of(scene))
+        raise InputError(f"{scene.name}: modes and damping ratios exist for linear scenes only, got one with {has}")
     return scene
 
 
@@ -153,7 +157,7 @@ def damping(scene: Scene, references: bool = False) -> Damping:
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     """Return frequency and damping of a reference's first axial mode; empty where it does not apply."""
     chosen = get_solver(solver)
-    if chosen.applicable(scene):
+    if chosen.refusal(scene):
         return {}
     mode = chosen.modes(scene)[0]
     xi = operator_damping(mode.eigenvalues)
