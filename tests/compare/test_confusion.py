@@ -55,7 +55,8 @@ def test_a_departure_is_where_a_fault_is(judged) -> None:
 
 def test_the_matrix_of_the_documentation_is_this_one(judged) -> None:
     page = confusion.PAGE.read_text()
-    assert confusion.page_with(confusion.matrix(judged), page) == page, "run python tests/confusion.py"
+    found = confusion.page_with(confusion.matrix(judged), page)
+    assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 
 def first(cause: str) -> tuple[int, confusion.Known]:

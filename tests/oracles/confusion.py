@@ -1,7 +1,8 @@
 """Fifty histories of known origin, what `compare` makes of them, and the confusion matrix of the documentation.
 
 The histories come from the program in `shi_dda`, which shares nothing with what judges them: seven digits each, some
-with noise, some on a base that yields. ``python tests/confusion.py`` writes the matrix to docs/compare.md.
+with noise, some on a base that yields. ``PYTHONPATH=.:tests python
+tests/oracles/confusion.py`` writes the matrix to docs/compare.md.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from validation.compare.diagnosis import Answer, compare
 from validation.compare.reading import Foreign
 
 PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
-BEGIN, END = "<!-- confusion matrix: made by tests/confusion.py -->\n", "<!-- end -->\n"
+BEGIN, END = "<!-- confusion matrix: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"
 SAME = "same"
 RIGID = {"base_young": 1e16, "fixed": 1e15}  # a base that moves by 1e-6 of the displacement
 PLAIN = Program(dt=0.002, steps=30, opens=False, updated=False, **RIGID)
