@@ -28,7 +28,7 @@ class Material:
     density: float  # rho [kg/m^3]
     young: float  # E [Pa]
     poisson: float  # mu [-]
-    hypothesis: Hypothesis = "plane stress"
+    hypothesis: Hypothesis = "plane stress"  # or "plane strain"
 
     def __post_init__(self) -> None:
         """Check the ranges."""

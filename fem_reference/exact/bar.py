@@ -49,18 +49,12 @@ class Bar:
         If a dimension, the density, the modulus or the stiffness is not positive and finite.
     """
 
-    height: float
-    """Length h of the bar [m]."""
-    width: float
-    """Width W [m], unit thickness."""
-    density: float
-    """Mass density rho [kg/m3]."""
-    young: float
-    """Axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]."""
-    base_stiffness: float
-    """Stiffness k = 2 p of the base spring [N/m]."""
-    pressure: float
-    """Pressure q on the top [Pa], downwards; the load is q W."""
+    height: float  # length h of the bar [m]
+    width: float  # width W [m], unit thickness
+    density: float  # mass density rho [kg/m3]
+    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
+    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
+    pressure: float  # pressure q on the top [Pa], downwards; the load is q W
 
     def __post_init__(self) -> None:
         for name in ("height", "width", "density", "young", "base_stiffness"):

@@ -49,12 +49,9 @@ BLOCK = 256
 class Reduced:
     """A history from a small space."""
 
-    history: Array
-    """Columns of every step, shape (columns, steps)."""
-    vectors: int
-    """Number of vectors of the space [-]."""
-    estimate: float
-    """Estimated error over the maximum value [-]."""
+    history: Array  # columns of every step, shape (columns, steps)
+    vectors: int  # number of vectors of the space [-]
+    estimate: float  # estimated error over the maximum value [-]
 
 
 def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
@@ -120,16 +117,11 @@ def _cancelled(modes: Modes, history: Array, duals: Array, scheme: Scheme) -> fl
 class Modes:
     """Modes of the reduced block, S = 1."""
 
-    inertia: Array
-    """tau [-], shape (modes,)."""
-    stiffness: Array
-    """kappa = 1 - tau, alpha dt^2 times the stiffness [-]."""
-    load: Array
-    """dt^2 times the load."""
-    observed: Array
-    """What each mode adds to each column, shape (columns, modes)."""
-    rounding: float
-    """Rounding of a history, over its maximum [-]."""
+    inertia: Array  # tau [-], shape (modes,)
+    stiffness: Array  # kappa = 1 - tau, alpha dt^2 times the stiffness [-]
+    load: Array  # dt^2 times the load
+    observed: Array  # what each mode adds to each column, shape (columns, modes)
+    rounding: float  # rounding of a history, over its maximum [-]
 
 
 def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> Modes:

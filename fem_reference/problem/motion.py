@@ -20,12 +20,9 @@ class Motion:
         For a record that is not one of increasing instants and finite numbers.
     """
 
-    time: tuple[float, ...]
-    """Instants [s], increasing."""
-    x: tuple[float, ...]
-    """Horizontal displacement at the instants [m]."""
-    y: tuple[float, ...]
-    """Vertical displacement at the instants [m]."""
+    time: tuple[float, ...]  # instants [s], increasing
+    x: tuple[float, ...]  # horizontal displacement at the instants [m]
+    y: tuple[float, ...]  # vertical displacement at the instants [m]
 
     def __post_init__(self) -> None:
         if not len(self.time) == len(self.x) == len(self.y) > 0:

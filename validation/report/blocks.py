@@ -40,6 +40,11 @@ class Column:
     group: str = ""
 
 
+def columns(kind: Literal["text", "decimal", "fill"], *titles: str, group: str = "") -> tuple[Column, ...]:
+    """Return columns of one kind."""
+    return tuple(Column(title, kind, group) for title in titles)
+
+
 @dataclass(frozen=True)
 class Table:
     """A table; a row of one cell spans all columns as a remark on the rows below it.

@@ -14,15 +14,7 @@ from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups, varied_fields
 from validation.report.chapters.gates import ORDER, gate_table
 from validation.report.chapters.ledger import METRICS
-from validation.report.chapters.text import (
-    AS_STATED,
-    cell,
-    parameters,
-    percent,
-    plain,
-    span,
-    word_notes,
-)
+from validation.report.chapters.text import AS_STATED, cell, parameters, percent, plain, span, word_notes
 from validation.report.figures import histories as figures
 from validation.report.figures.curves import COLUMNS, Panel
 from validation.runs.history import DISPLACEMENT, PRESSURE

@@ -40,7 +40,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
             "The ring's amplitude falls as 1/p while its decay per step, 8/(ω dt)², falls as well: the longest wait "
             "lies between, and beyond it a ring too small to see never ends. "
             + gate_count(group.verdicts).capitalize()
-            + ".",
+            + "."
         ),
     ]
 

@@ -34,10 +34,7 @@ def steps_of(evidence: Evidence, case: str) -> dict[str, float]:
 
 def counts(displacement: float, force: float) -> tuple[Band, ...]:
     """Return the bands of two printed step counts."""
-    return (
-        Band("displacement, steps", displacement, displacement),
-        Band("contact force, steps", force, force),
-    )
+    return (Band("displacement, steps", displacement, displacement), Band("contact force, steps", force, force))
 
 
 def equilibrium(e: Evidence) -> dict[str, float]:
@@ -305,10 +302,7 @@ CLAIMS = (
         "Kinetic damping depends on the discount of the initial velocity alone.",
         by_dda(DISCOUNTS),
         discount_alone,
-        (
-            Band("|lambda|^2 / gg - 1, largest of complex roots", 0, TINY),
-            Band("xi, greatest over least", 1, 1.05),
-        ),
+        (Band("|lambda|^2 / gg - 1, largest of complex roots", 0, TINY), Band("xi, greatest over least", 1, 1.05)),
         Finding.CONDITIONAL,
         "|lambda|^2 = gg holds per step; per second the same gg damps the more the smaller dt is, up to overdamping",
         "per step, and for complex roots",

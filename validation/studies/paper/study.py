@@ -10,6 +10,7 @@ import numpy as np
 
 from validation.engine.finished import Derived
 from validation.gates.gate import Gate
+from validation.studies.bands import about
 from validation.studies.declaration import Study
 from validation.studies.paper.claims import REGISTER
 from validation.studies.paper.register import CLAIMS as STATEMENTS
@@ -62,15 +63,8 @@ def gates() -> tuple[Gate, ...]:
 def numbers() -> Iterator[Gate]:
     """Yield the gates on numbers that an independent program gives."""
     for claim, number, value, half in NUMBERS:
-        yield Gate(
-            REGISTER,
-            (claim,),
-            number,
-            value - half,
-            value + half,
-            "independent program: whole number" if half == 0 else "independent program: half a unit of its last digit",
-            reference_uncertainty=half,
-        )
+        why = "independent program: whole number" if half == 0 else "independent program: half a unit of its last digit"
+        yield Gate(REGISTER, (claim,), number, *about(value, half), why, reference_uncertainty=half)
 
 
 @functools.cache
