@@ -14,6 +14,7 @@ difference would lose digits.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -69,12 +70,19 @@ class Unilateral:
         return w < -self.band[0]
 
 
+# Tangential displacement s of each contact in the coordinates of the block: of one contact its own, of two corners
+# the mean U and the difference d = s_N - s_M. In a long step a rigid motion of 1e9 m may hide a difference that is
+# elastic; so the forces are found in H = T_M + T_N and G = (T_N - T_M)/2, which belong to U and d.
+SLIDES = {1: ((1.0,),), 2: ((1.0, -0.5), (1.0, 0.5))}
+
+
 class Corners(NamedTuple):
     """State of the contacts, one entry each: two corners, or one that stands for both in a symmetric motion."""
 
     closed: tuple[bool, ...]
     gap: tuple[float, ...]  # w [m]
     stretch: tuple[float, ...]  # s - r of the closed ones [m]; 0 where open
+    reference: tuple[float, ...]  # r [m]; of an open one s itself
     normal: tuple[float, ...]  # N [N], on the block, away from the base
     shear: tuple[float, ...]  # T [N], on the block, along the base
 
@@ -82,11 +90,16 @@ class Corners(NamedTuple):
 def at_rest(law: Unilateral, contacts: int) -> Corners:
     """Return the corners at t = 0: without force, closed where they touch."""
     nothing = (0.0,) * contacts
-    return Corners((law.gap == 0,) * contacts, (law.gap,) * contacts, nothing, nothing, nothing)
+    return Corners((law.gap == 0,) * contacts, (law.gap,) * contacts, nothing, nothing, nothing, nothing)
+
+
+def slide_forces(shear: Sequence[float]) -> tuple[float, ...]:
+    """Return the forces that belong to the coordinates of `SLIDES`: T, or (H, G) of T_M and T_N."""
+    return (shear[0],) if len(shear) == 1 else (shear[0] + shear[1], (shear[1] - shear[0]) / 2)
 
 
 def slipped_share(law: Unilateral, before: float, N: float) -> tuple[float, float]:
-    """Return 1 - theta of a corner that closes in a step and its derivative by N [1/N].
+    """Return 1 - theta of a corner that closes in a step, and its derivative by N [1/N].
 
     With w_{n+1} = -N/p the share of the step's tangential displacement behind the crossing is
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.unilateral import Corners, Unilateral
+from dda.contact.unilateral import SLIDES, Corners, Unilateral, slide_forces
 from dda.one_block.unilateral_form import UnilateralForm
 from dda.one_block.unilateral_step import State, StepLength
 
@@ -76,19 +76,26 @@ class Ledger:
 
     def _forces(self, corners: Corners) -> Array:
         """Return multiplicity B' lambda."""
-        forces = np.array([*corners.normal, *corners.shear][: len(self.form.B)])
+        forces = np.array([*corners.normal, *slide_forces(corners.shear)][: len(self.form.B)])
         return self.form.multiplicity * (forces @ self.form.B)
 
     def _contacts(self, length: StepLength, before: State, after: State) -> tuple[float, float]:
         """Return the losses of the contacts that keep their state and of those that change it."""
         old, new = before.corners, after.corners
-        slid = self.slides @ (np.array(after.D) - np.array(before.D))
+        slid = self._slid(before, after)
         late = 1.0 if length.implicit else length.scheme.delta
         losses = [0.0, 0.0]
         for i, was in enumerate(old.closed):
             N = (1 - late) * old.normal[i] + late * new.normal[i]
             T = (1 - late) * old.shear[i] + late * new.shear[i]
-            work = N * (new.gap[i] - old.gap[i]) + (T * float(slid[i]) if len(slid) else 0.0)
+            work = N * (new.gap[i] - old.gap[i]) + T * float(slid[i])
             stored = self._spring(new, i) - self._spring(old, i)
             losses[was != new.closed[i]] -= stored + self.form.multiplicity * work
         return losses[0], losses[1]
+
+    def _slid(self, before: State, after: State) -> Array:
+        """Return the displacement of the contacts along the base [m]."""
+        if not len(self.slides):
+            return np.zeros(self.form.contacts)
+        slid: Array = np.array(SLIDES[self.form.contacts]) @ (self.slides @ (np.array(after.D) - np.array(before.D)))
+        return slid

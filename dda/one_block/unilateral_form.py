@@ -7,7 +7,7 @@ strains alone,
 
     K0 = A diag(E', lambda + 2 G, G, 0, 0, 0),
 
-and the tangential displacement of a corner is U -+ (a/2) ex.
+and the corners move along the base by U -+ (a/2) ex: the mean U and the difference a ex.
 
 What neither loads nor contact forces reach is dropped. In a symmetric motion nothing reaches U and s: both
 corners are then one contact of twice the stiffness, with the unknowns (ex, e2, w), ex only if it is reached.
@@ -43,7 +43,7 @@ class UnilateralForm:
     K: Array  # (n,) diagonal of the elastic stiffness
     F: Array  # (n,) constant load
     translation: Array  # (n, 2) x of a rigid translation by 1 m in x and in y
-    B: Array  # (c, n) or, if glued, (2c, n): gaps and then tangential displacements of the contacts [m]
+    B: Array  # (c, n) or, if glued, (2c, n): gaps, then slides in the coordinates of dda.contact.unilateral.SLIDES [m]
     contacts: int  # c, 1 or 2
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
@@ -111,7 +111,7 @@ def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, R: Arra
     T[2, 4:] = -1 / a, 1 / a
     B = np.zeros((4, 6))
     B[0, 4] = B[1, 5] = 1.0
-    B[2:, 0], B[2:, 3] = (-a / 2, a / 2), 1.0
+    B[2, 3], B[3, 0] = 1.0, a
     translation = np.zeros((6, 2))
     translation[3], translation[4:] = R[0], R[1]
     M = T.T @ form.M @ T

@@ -22,9 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.iteration import Free, Iteration, open_close
-from dda.contact.unilateral import Corners, Unilateral, at_rest
-from dda.one_block.unilateral_form import UnilateralForm
+from dda.contact.glued import Free
+from dda.contact.iteration import Iteration, open_close
+from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
+from dda.one_block.unilateral_form import UNKNOWNS, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
     acceleration_corrector,
@@ -37,6 +38,7 @@ from dda.scheme.newmark import (
 Array = NDArray[np.float64]
 Vector = list[float]
 IMPLICIT = "implicit contact"
+U_INDEX = UNKNOWNS.index("U")
 
 
 class State(NamedTuple):
@@ -94,7 +96,7 @@ class StepLength:
     factor: Factor  # of S0
     push: list[Vector]  # multiplicity B', rows over the unknowns
     pushed: list[Vector]  # weight h^2 S0^-1 multiplicity B': displacement of unit forces, rows over the unknowns
-    slides: list[Vector]  # rows of B of the tangential displacements
+    slides: list[Vector]  # rows of B along the base
     C: list[Vector]  # flexibility of the contacts [m/N]
     implicit: bool  # the contact force has its own weights
 
@@ -139,9 +141,10 @@ def advance(law: Unilateral, length: StepLength, state: State, limit: int) -> tu
     if found.corners is None:
         return None, found
     D1, P1, f1 = _accepted(length, (D, P, f), x, found.corners)
+    after = _referred(length, D1, state.corners, found.corners) if length.slides else found.corners
     if length.ratio != 1:
         P1, f1 = _scaled(P1, 1 / length.ratio), _scaled(f1, 1 / (length.ratio * length.ratio))
-    return State(D1, P1, f1, found.corners), found
+    return State(D1, P1, f1, after), found
 
 
 def _scaled(values: Vector, factor: float) -> Vector:
@@ -164,7 +167,7 @@ def _accepted(
     D1 = [d + xi for d, xi in zip(D, x, strict=True)]
     pressed = [0.0] * len(D)
     if any(corners.closed):
-        forces = [*corners.normal, *corners.shear] if length.slides else corners.normal
+        forces = [*corners.normal, *slide_forces(corners.shear)] if length.slides else corners.normal
         moved = (sum(g * y for g, y in zip(row, forces, strict=True)) for row in length.pushed)
         D1 = [d + by for d, by in zip(D1, moved, strict=True)]
         pressed = [h2 * sum(b * y for b, y in zip(row, forces, strict=True)) for row in length.push]
@@ -176,3 +179,24 @@ def _accepted(
     if length.implicit:
         P1 = [own + contact for own, contact in zip(P1, pressed, strict=True)]
     return D1, P1, f1
+
+
+def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) -> Corners:
+    """Return the corners with their references; where one stays closed, U in D is set from it.
+
+    The sum of increments that U was may hold the rounding of a much larger motion without forces.
+    """
+    local = [sum(b * d for b, d in zip(row, D, strict=True)) for row in length.slides]
+    stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
+    where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
+    if len(stays) == 2 and any(stays):
+        held = [
+            r + stretch - s
+            for r, stretch, s, kept in zip(before.reference, after.stretch, where, stays, strict=True)
+            if kept
+        ]
+        shift = sum(held) / len(held)
+        D[U_INDEX] += shift
+        where = [s + shift for s in where]
+    given = zip(stays, before.reference, where, after.stretch, strict=True)
+    return after._replace(reference=tuple(r if kept else s - stretch for kept, r, s, stretch in given))
