@@ -99,7 +99,9 @@ def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
 
 
 def test_central_differences_know_the_base_too():
-    check_locked(make(p=1e8, elements=4, degree=1), Scheme(0.0, 0.5, 1.0, 1e-4, "consistent"), Unilateral(), False)
+    # its weight presses the block from the first step on; a load on top would make the mesh ring ahead of its front
+    problem = replace(make(p=1e8, elements=4, degree=1), pressure=0.0, gravity=9.81)
+    check_locked(problem, Scheme(0.0, 0.5, 1.0, 1e-4, "consistent"), Unilateral(), False)
 
 
 def check_locked(problem, scheme, contact, full):
