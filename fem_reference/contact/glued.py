@@ -13,7 +13,7 @@ This is no linear complementarity problem: some steps have no consistent states,
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -23,7 +23,7 @@ from fem_reference.problem.problem import Array
 
 ENUMERATED = 8
 """Greatest number of points of which all sets of states are tried."""
-PASSES = 30
+PASSES = 60
 """Greatest number of corrections of the crossings for given states."""
 SETTLED = 1e-13
 """Change of phi at which the crossings are settled [-]."""
@@ -49,16 +49,20 @@ class GluedBase:
     """Points that were closed at the start of the step, shape (points,)."""
 
     def forces(self, states: Flags) -> Trial:
-        """Forces and gaps for given states, with the crossings that belong to them."""
+        """Forces and gaps for given states, with the crossings that belong to them: phi for phi(forces(phi))."""
         closing = states & ~self.closed
         phi = np.where(closing, 0.5, 1.0)
+        weight, last = 1.0, np.inf
         for _ in range(PASSES):
             trial = self._linear(states, phi)
-            following = np.where(closing, self._crossed(trial), 1.0)
-            if np.max(np.abs(following - phi), initial=0.0) <= SETTLED:
-                break
-            phi = following
-        return trial
+            change = np.where(closing, self._crossed(trial) - phi, 0.0)
+            size = float(np.max(np.abs(change), initial=0.0))
+            if size <= SETTLED:
+                return trial
+            # A crossing that is passed to and fro is approached by smaller corrections.
+            weight, last = weight / 2 if size >= last else weight, size
+            phi = phi + weight * change
+        return replace(trial, settled=False)
 
     def _crossed(self, trial: Trial) -> Array:
         """Share phi of the step for which each point has been closed."""
@@ -104,5 +108,5 @@ def _consistent(base: GluedBase) -> Iterator[tuple[Trial, Flags]]:
     for choice in product((False, True), repeat=len(base.closed)):
         states = np.array(choice)
         trial = base.forces(states)
-        if np.array_equal(corrected(trial, states), states):
+        if trial.settled and np.array_equal(corrected(trial, states), states):
             yield trial, states

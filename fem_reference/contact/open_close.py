@@ -36,6 +36,8 @@ class Trial:
     """Tangential force T of each point on the block [N], shape (points,)."""
     gap: Array
     """Gap w_f + C N of each point [m], shape (points,)."""
+    settled: bool = True
+    """Whether the forces are those of the states, which may themselves ask for an iteration."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def iterate(forces: Callable[[Flags], Trial], closed: Flags, limit: int) -> Cont
     for solves in range(1, limit + 1):
         trial = forces(closed)
         following = corrected(trial, closed)
-        if np.array_equal(following, closed):
+        if np.array_equal(following, closed) and trial.settled:
             return Contact(trial, closed, solves)
         closed = following
     return Contact(None, closed, limit, "the open-close iteration does not converge")

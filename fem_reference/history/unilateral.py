@@ -200,7 +200,7 @@ class CutStep:
     solves: int = 0
     """Solutions of the open-close iteration in all pieces, tried and accepted [-]."""
     cuts: int = 0
-    """Pieces that were tried without success [-]."""
+    """Pieces that were tried without success [-]; the next step is tried in one piece again."""
     pieces: list[float] = field(default_factory=list)
     """Lengths of the accepted pieces over the step [-]."""
     failure: str = ""
@@ -208,7 +208,7 @@ class CutStep:
 
 
 def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Unilateral) -> CutStep:
-    """One step; a piece without a contact is repeated shorter, from the state at its start.
+    """One step; a piece without a contact is repeated shorter, from the state at its start, as are those after it.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Uni
         result.pieces.append(trial)
         # What rounding leaves over is no piece.
         left = left - trial if left - trial > 1e-9 else 0.0
-        trial = left
+        trial = min(trial, left)
     result.state = state
     return result
 
