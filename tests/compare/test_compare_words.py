@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from faults import seams
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import line_in
@@ -237,7 +238,7 @@ def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noi
 
 
 def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("validation.compare.causes.opened", lambda target, found: [3, 4, 9])
+    seams.CAUSES_OPENED.put(monkeypatch, lambda target, found: [3, 4, 9])
     assert softened("dda", 1 / 1.04).opened == (3, 9)
 
 

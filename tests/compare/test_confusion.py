@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from faults import seams
 from oracles import confusion
 
 from dda.one_block.variants import Variant
-from validation.compare import causes, diagnosis
 from validation.compare.causes import CAUSES
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
@@ -68,20 +68,20 @@ def without(unwanted: Callable[[Variant], bool]) -> Callable[..., Callable[..., 
     return lambda sound: lambda base: [start for start in sound(base) if not unwanted(start[0])]
 
 
-# what is patched, with what, and the history that is then misjudged
+# the seam, what is made of it, and the history that is then misjudged
 FAULTS = {
-    "no shift is tried": (causes, "_further", without(lambda v: v.shift != 0), "time-shift"),
-    "gg is in both formulas": (causes, "_further", without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
-    "every cause is earned": (causes, "better", lambda sound: lambda *a, **k: True, "same"),
-    "no cause is earned": (causes, "better", lambda sound: lambda *a, **k: False, "start"),
-    "no sign is turned": (diagnosis, "_factors", lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
+    "no shift is tried": (seams.CAUSES_FURTHER, without(lambda v: v.shift != 0), "time-shift"),
+    "gg is in both formulas": (seams.CAUSES_FURTHER, without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
+    "every cause is earned": (seams.CAUSES_BETTER, lambda sound: lambda *a, **k: True, "same"),
+    "no cause is earned": (seams.CAUSES_BETTER, lambda sound: lambda *a, **k: False, "start"),
+    "no sign is turned": (seams.DIAGNOSIS_FACTORS, lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
 }
 
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    module, attribute, wrap, cause = FAULTS[name]
-    monkeypatch.setattr(module, attribute, wrap(getattr(module, attribute)))
+    seam, wrap, cause = FAULTS[name]
+    seam.wrap(monkeypatch, wrap)
     seed, one = first(cause) if cause != "same" else (3, list(confusion.known())[3])
     answer, _ = one.judged(seed)
     assert confusion.told(answer) != cause

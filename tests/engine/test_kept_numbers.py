@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from faults import seams
 from oracles.made_cases import made_history, made_row
 
 from validation.engine.finished import Finished
@@ -283,8 +284,8 @@ def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkey
 
     import scipy
 
-    monkeypatch.setattr(provenance, "_commit", lambda: "the commit")
-    monkeypatch.setattr(provenance, "_processor", lambda: "the processor")
+    seams.COMMIT.put(monkeypatch, lambda: "the commit")
+    seams.PROCESSOR.put(monkeypatch, lambda: "the processor")
     found = provenance.provenance()
     assert found["python"] == platform.python_version()
     assert (found["packages"]["numpy"], found["packages"]["scipy"]) == (np.__version__, scipy.__version__)

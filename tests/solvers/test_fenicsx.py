@@ -5,19 +5,15 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
-import fem_reference.mesh.mesh.elasticity
 import meshio
 import numpy as np
 import pytest
 from conftest import SCENE, cli
+from faults import seams
 from faults.fault import Fault, late, no_discount, times, with_scheme
 from faults.kill_matrix import Overlay
 from oracles.elements import INCLINED
 
-import dda.one_block.gap_form
-import fem_reference.history.solver
-import fem_reference.mesh.elasticity
-import fem_reference.scheme.newmark
 from validation import solve
 from validation.engine.case import Case
 from validation.engine.finished import Finished
@@ -234,7 +230,7 @@ def test_fenicsx_runs_without_a_home_and_from_any_path(
     path = tmp_path / "mit Blank und Ümläuten" / "worker.py"
     path.parent.mkdir()
     path.write_bytes(adapters_fenicsx.WORKER.read_bytes())
-    monkeypatch.setattr(adapters_fenicsx, "WORKER", path)
+    seams.FENICSX_WORKER.put(monkeypatch, path)
     monkeypatch.chdir(path.parent)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     for name, value in {"HOME": "/proc/none", "TMPDIR": "/proc/none", "LC_ALL": "POSIX", "PYTHONUTF8": "0"}.items():
@@ -255,20 +251,19 @@ WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is
     "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
 }
 OTHER_FAULTS = [
-    Fault("fem: gg missing in the predictor", ("fem:full",), fem_reference.scheme.newmark, "predictor", no_discount(1)),
-    Fault("fem: gg missing in the velocity", ("fem:full",), fem_reference.scheme.newmark, "velocity", no_discount(2)),
+    Fault("fem: gg missing in the predictor", ("fem:full",), seams.FEM_PREDICTOR, no_discount(1)),
+    Fault("fem: gg missing in the velocity", ("fem:full",), seams.FEM_VELOCITY, no_discount(2)),
     Fault(
         "fem: delta 1e-6 high",
         ("fem:full",),
-        fem_reference.scheme.newmark,
-        "velocity",
+        seams.FEM_VELOCITY,
         with_scheme(2, delta=lambda d: d * (1 + 1e-6)),
     ),
-    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.mesh.elasticity, "_carried", times(1 + 1e-6)),
-    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.mesh.elasticity, "mass", times(1 + 1e-6)),
-    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.mesh.elasticity, "load", times(1 + 2e-10)),
-    Fault("dda: load 2e-10 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-10)),
-    Fault("fem: one step late", ("fem:full",), fem_reference.history.solver, "run", late),
+    Fault("fem: foundation 1e-6 stiff", ("fem:full",), seams.FEM_FOUNDATION, times(1 + 1e-6)),
+    Fault("fem: mass 1e-6 heavy", ("fem:full",), seams.FEM_MASS, times(1 + 1e-6)),
+    Fault("fem: load 2e-10 high", ("fem:full",), seams.FEM_LOAD, times(1 + 2e-10)),
+    Fault("dda: load 2e-10 high", ("dda",), seams.DDA_LOAD, times(1 + 2e-10)),
+    Fault("fem: one step late", ("fem:full",), seams.FEM_RUN, late),
 ]
 GATES = TWO_CODES.gates()
 CASES = TWO_CODES.cases()
@@ -297,9 +292,7 @@ def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, fini
     for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
         path = faulty_worker(tmp_path, number, line, slip)
         solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
-        kills[name] = killed(
-            sound, Fault(name, solvers, adapters_fenicsx, "WORKER", lambda _, path=path: path), tmp_path
-        )
+        kills[name] = killed(sound, Fault(name, solvers, seams.FENICSX_WORKER, lambda _, path=path: path), tmp_path)
     for fault in OTHER_FAULTS:
         kills[fault.name] = killed(sound, fault, tmp_path)
     for name, found in kills.items():
@@ -317,7 +310,7 @@ def killed(sound: Finished, fault: Fault, directory: Path) -> set[str]:
         case for case in CASES if case.solver in fault.solvers and (EDGE in fault.name or FEW in case.scene.name)
     ]
     with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-        patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+        fault.seam.wrap(patch, fault.replacement)
         faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
     worker.close_all()
     return failed(Finished(sound.rows | faulty.rows, faulty.results))
