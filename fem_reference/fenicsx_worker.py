@@ -2,7 +2,8 @@
 
 It shares no line with the rest of this package: own nodes for the same mesh, own weak forms (UFL), own Newmark
 loop on PETSc matrices, factored once by PETSc's LU on one rank and by MUMPS on more. It reads one JSON object a
-line from standard input and answers each with one line of JSON; it ends where its input ends::
+line from standard input and answers each with one line of JSON that carries the request's "id"; it ends where its
+input ends::
 
     python3 fenicsx_worker.py < requests.jsonl
     mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
@@ -440,10 +441,10 @@ def run(request: Request) -> dict[str, Any]:
     }
 
 
-def answer(line: str) -> dict[str, Any]:
+def answer(request: Request) -> dict[str, Any]:
     """Run one request; what fails alike on every rank is an answer, anything else ends all ranks."""
     try:
-        return run(json.loads(line))
+        return run(request)
     except Inapplicable as error:
         return {"inapplicable": str(error)}
     except ValueError as error:
@@ -478,9 +479,10 @@ def main() -> None:
     """Answer request after request."""
     out = answers_only()
     while line := next_line():
-        found = answer(line)
+        request = json.loads(line)
+        found = answer(request)
         if COMM.rank == 0:
-            out.write(json.dumps(found) + "\n")
+            out.write(json.dumps({**found, "id": request.get("id")}) + "\n")
             out.flush()
         gc.collect()  # on every rank at the same place: matrices are freed together
 

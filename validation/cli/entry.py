@@ -9,14 +9,16 @@ import typer
 
 from validation.cli import compare, damping, report, run, verdicts, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
+from validation.cli.signals import caught, interruption
 from validation.errors import InputError
 
 COMMANDS = (run, report, damping, compare, verdicts, work)  # importing them declares their commands
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
+@caught()
 def main() -> None:
-    """Run the command line; bad input is one line and status 2, an interruption status 130."""
+    """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
     try:
         status = app(standalone_mode=False)
     except InputError as error:
@@ -32,7 +34,7 @@ def main() -> None:
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
         typer.echo("interrupted: finished rows are kept, the same command goes on from there", err=True)
         sys.stdout.flush()
-        os._exit(INTERRUPTED)  # not through the pool's own exit, which may wait for a worker that is gone
+        os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
     sys.exit(status or PASSED)
 
 
