@@ -136,7 +136,7 @@ def test_another_scheme_is_named_in_plain_data_as_it_is() -> None:
     assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 0.98}
 
 
-@pytest.mark.parametrize(("late", "words"), [(1, "the rows come 1 step late"), (-1, "the rows come 1 step early")])
+@pytest.mark.parametrize(("late", "words"), [(1, "the rows are 1 step late"), (-1, "the rows are 1 step early")])
 def test_rows_that_are_shifted_by_a_step_are_said_so(late: int, words: str) -> None:
     def shifted(values: np.ndarray) -> np.ndarray:
         return np.append(0.0, values[:-1]) if late > 0 else np.append(values[1:], values[-1])
