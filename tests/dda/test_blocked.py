@@ -85,9 +85,9 @@ def test_work_grows_with_the_logarithm(monkeypatch):
 @pytest.mark.parametrize(
     ("scheme", "reason"),
     [
-        (Scheme(0.0, 0.5, 1.0, 1.0), "the scheme grows"),
-        (Scheme(0.25, 0.4, 1.0, 1e-3), "the scheme grows"),
-        (Scheme(0.5, 1.0, 1.0, 1e-30), "w dt leaves 1e-15 to 1e+15"),
+        (Scheme(0.0, 0.5, 1.0, 1.0), "a mode grows"),
+        (Scheme(0.25, 0.4, 1.0, 1e-3), "a mode grows"),
+        (Scheme(0.5, 1.0, 1.0, 1e-30), "w dt is outside 1e-15 to 1e+15"),
     ],
 )
 def test_what_cannot_be_blocked_is_stepped_and_says_so(scheme, reason):

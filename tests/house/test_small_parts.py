@@ -247,9 +247,9 @@ def test_the_bar_takes_a_centred_pressure_alone(tmp_path: Path, changes: dict[st
         return problem_of(scene_of(**{f"load__{name}": value for name, value in load.items()}))
 
     assert applicable(problem()) is None
-    assert "centred pressure alone" in (applicable(problem(**changes)) or "")
+    assert "centred pressure only" in (applicable(problem(**changes)) or "")
     (tmp_path / "r.csv").write_text("time,y\n0,0\n1,1\n")
-    assert "centred pressure alone" in (applicable(problem(base_motion=str(tmp_path / "r.csv"))) or "")
+    assert "centred pressure only" in (applicable(problem(base_motion=str(tmp_path / "r.csv"))) or "")
 
 
 # ---- the scene reaches the solvers --------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What damping a scene really runs: total, algorithmic and kinetic, mode by mode.
+"""The damping that a scene really has: total, algorithmic and kinetic, mode by mode.
 
 The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`) are evaluated at the frequencies
 of the DDA block. The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that
@@ -76,7 +76,7 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
 
 
 def mode_names(modes: Sequence[Mode]) -> list[str]:
-    """Name modes: the first axial one, the contact mode (see `history.contact_index`), the rest numbered."""
+    """Name modes: the first axial one, the contact mode (see `runs.modes.contact_index`), the others by number."""
     contact = contact_index(modes)
     return [FIRST if i == 0 else CONTACT if i == contact else f"mode {i + 1}" for i in range(len(modes))]
 
@@ -124,7 +124,7 @@ def dda_modes(scene: Scene) -> tuple[Mode, ...]:
 
 
 def damping(scene: Scene, references: bool = False) -> Damping:
-    """Return what damping a scene really runs, per mode.
+    """Return the damping that a scene really has, mode by mode.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
 
 
 def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
-    """Return one plain sentence on what a scene runs."""
+    """Return one sentence on the damping that a scene has."""
     first, rest = modes[0], [mode for mode in modes if mode.name == CONTACT]
     text = f"At dt = {scene.time.step:g} s the first axial mode ({first.frequency:.4g} rad/s) {runs(first)}"
     return f"{text}{''.join(f'; the contact mode {runs(mode)}' for mode in rest)}."
@@ -176,9 +176,9 @@ def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
 
 def runs(mode: ModeDamping) -> str:
     """Say in words how a mode is damped."""
-    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of itself per step"
+    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of its amplitude per step"
     if mode.spectral_radius > 1 + 1e-12:
-        return f"grows by {mode.spectral_radius:.4g} per step"
+        return f"grows by a factor of {mode.spectral_radius:.4g} per step"
     if mode.flips:
         return f"flips sign every step and {keeps} (w dt = {mode.omega_dt:.3g})"
     if mode.damping is None:

@@ -32,7 +32,7 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = PASSED
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        typer.echo("interrupted: finished rows are kept, the same command goes on from there", err=True)
+        typer.echo("interrupted: finished rows are kept; run the same command again to continue", err=True)
         sys.stdout.flush()
         os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
     sys.exit(status or PASSED)
