@@ -71,6 +71,15 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
     return Groups(config, log)
 
 
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip what needs FEniCSx by name where there is none, which is asked when the first such test is reached."""
+    if item.get_closest_marker("fenicsx"):
+        from validation.solvers.fenicsx import NEEDED, interpreter
+
+        if interpreter() is None:
+            pytest.skip(f"fenicsx is NOT RUN: {NEEDED}")
+
+
 def beside(finished_cases: Path, directory: Path) -> Results:
     """Return a results directory of its own studies and verdicts, whose finished cases are those of all tests."""
     (finished_cases / "histories").mkdir(parents=True, exist_ok=True)
