@@ -8,7 +8,7 @@ from pathlib import Path
 from validation.errors import InputError
 from validation.report.blocks import Block, FigureBlock, PageBreak
 from validation.report.chapters.registry import chapter_of
-from validation.report.typesetting import _png, write_document
+from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
 
 
@@ -39,19 +39,12 @@ def build(results: Results, out: Path) -> Path:
 
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters import front as chapters_front
+    from validation.report.chapters.front import front_matter, provenance
 
-    chapters = [
-        block
-        for study in studies
-        for block in (PageBreak(), *chapter_of(study)(results, results.manifest(study), figures))
-    ]
-    return [
-        *chapters_front.front_matter(results, studies, figures),
-        *chapters,
-        PageBreak(),
-        *chapters_front.provenance(results, studies),
-    ]
+    blocks = front_matter(results, studies, figures)
+    for study in studies:
+        blocks += [PageBreak(), *chapter_of(study)(results, results.manifest(study), figures)]
+    return [*blocks, PageBreak(), *provenance(results, studies)]
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
@@ -70,5 +63,9 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     except OSError as error:
         raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
     blocks = chapter_of(study)(results, results.manifest(study), out)
-    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
-    return [path for svg in drawn for path in (svg, _png(svg))]
+    paths: list[Path] = []
+    for block in blocks:
+        if isinstance(block, FigureBlock):
+            svg = out / block.file
+            paths += [svg, png_of(svg)]
+    return paths
