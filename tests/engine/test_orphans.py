@@ -7,17 +7,15 @@ import signal
 import subprocess
 import sys
 import time
-import uuid
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from conftest import SCENE
+from oracles.processes import AFTER, MARK, left, marked, new_mark
 
 from validation.runs.results import Results
 
-AFTER = 2.0  # s
-MARK = "DDA_VALIDATE_TEST_MARK"
 SWEEP = '"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
 SOLVERS = """
 import atexit, os, signal, subprocess, sys, threading, time
@@ -61,28 +59,10 @@ needs_proc = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason=
 pytestmark = needs_proc
 
 
-def living(mark: str) -> list[str]:
-    """Return the command lines of the processes that carry a mark in their environment."""
-    found = []
-    for place in Path("/proc").glob("[0-9]*"):
-        try:
-            if mark.encode() in (place / "environ").read_bytes():
-                found.append((place / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace"))
-        except OSError:
-            continue
-    return found
-
-
 @pytest.fixture
 def mark() -> Iterator[str]:
-    name = uuid.uuid4().hex
-    yield name
-    for place in Path("/proc").glob("[0-9]*"):  # whatever a red test has left
-        try:
-            if name.encode() in (place / "environ").read_bytes():
-                os.kill(int(place.name), signal.SIGKILL)
-        except OSError:
-            continue
+    with new_mark() as name:
+        yield name
 
 
 def begin(directory: Path, mark: str, solvers: str, *options: str) -> subprocess.Popen[str]:
@@ -107,19 +87,11 @@ def wait_for(mark: str, words: str, process: subprocess.Popen[str]) -> None:
     """Wait until a process with these words in its command line has been there for a moment."""
     deadline = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < deadline:
-        if any(words in line for line in living(mark)):
+        if any(words in line for line in marked(mark).values()):
             time.sleep(1.0)
             return
         time.sleep(0.05)
-    raise AssertionError(f"no process with {words!r}: {living(mark)}")
-
-
-def gone(mark: str) -> list[str]:
-    """Return what is still there after the time that it has."""
-    deadline = time.monotonic() + AFTER
-    while (left := living(mark)) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    return left
+    raise AssertionError(f"no process with {words!r}: {marked(mark)}")
 
 
 SIGNALS = [signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGKILL]
@@ -135,7 +107,7 @@ def test_nothing_outlives_the_parent(
         wait_for(mark, words, process)
         process.send_signal(number)
         _, said = process.communicate(timeout=30)
-    assert gone(mark) == []
+    assert left(mark) == []
     assert "Traceback" not in said
     assert process.returncode == (-9 if number == signal.SIGKILL else 128 + number)
     if number != signal.SIGKILL:
@@ -148,7 +120,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
         wait_for(mark, "user_worker", process)
         process.send_signal(number)
         _, said = process.communicate(timeout=30)
-    assert gone(mark) == [] and "Traceback" not in said
+    assert left(mark) == [] and "Traceback" not in said
     assert len(Results(tmp_path / "r").rows()) == 1, "the finished row of dda is kept"
 
 
@@ -156,7 +128,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2") as process:
         process.communicate(timeout=60)
-    assert gone(mark) == []
+    assert left(mark) == []
     assert {str(row.outcome) for row in Results(tmp_path / "r").rows().values()} == {"completed"}
 
 
@@ -166,7 +138,7 @@ def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
         for _ in range(3):
             process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=30)
-    assert gone(mark) == [] and "Traceback" not in said and process.returncode == 130
+    assert left(mark) == [] and "Traceback" not in said and process.returncode == 130
 
 
 def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path, mark: str) -> None:
@@ -182,4 +154,4 @@ def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path, mark: str) -> No
             process.communicate(timeout=30)
     finally:
         signal.signal(signal.SIGHUP, before)
-    assert gone(mark) == []
+    assert left(mark) == []
