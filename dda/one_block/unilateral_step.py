@@ -190,11 +190,8 @@ def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) ->
     stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
     where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
     if len(stays) == 2 and any(stays):
-        held = [
-            r + stretch - s
-            for r, stretch, s, kept in zip(before.reference, after.stretch, where, stays, strict=True)
-            if kept
-        ]
+        glued = zip(before.reference, after.stretch, where, stays, strict=True)
+        held = [r + stretch - s for r, stretch, s, kept in glued if kept]
         shift = sum(held) / len(held)
         D[U_INDEX] += shift
         where = [s + shift for s in where]
