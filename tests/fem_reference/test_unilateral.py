@@ -311,6 +311,49 @@ def test_glued_springs_gain_no_energy_either(p):
     assert np.diff(total).max() <= 1e-12 * run.columns["strain_energy"].max()
 
 
+def test_the_energies_of_a_base_that_stays_closed_add_up_to_nothing():
+    # average acceleration keeps the energy, which begins at zero
+    problem = replace(make(elements=3, p=1e8, poisson=0.2, shear=3e7, degree=1), traction=1e5, gravity=9.81)
+    run = solve_unilateral(problem, replace(AVERAGE, step=2e-3), 60, GLUED)
+    assert np.all(run.columns["open_share"][:4] == 0)
+    energies = np.array([run.columns[name][:4] for name in ENERGIES])
+    assert np.all(np.abs(energies[:, -1]) > 1e-4 * np.abs(energies).max())
+    assert np.abs(energies.sum(axis=0)).max() <= 1e-12 * np.abs(energies).max()
+
+
+def test_columns_are_those_of_the_points():
+    problem = make(elements=4, eccentricity=0.3, poisson=0.2)
+    run = solve_unilateral(problem, CONSTANT, 250, every_point=True)
+    share = np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 24
+    assert run.gap.shape == run.normal.shape == (250, 9)
+    expected = {
+        "contact_pressure": run.normal.sum(axis=1) / 2,
+        "open_share": (run.gap > 0) @ share,
+        "largest_gap": np.maximum(run.gap.max(axis=1), 0),
+        "largest_penetration": np.maximum(-run.gap.min(axis=1), 0),
+        "spring_energy": (run.normal**2) @ (1 / (2e9 * share)) / 2,
+    }
+    for name, column in expected.items():
+        assert np.allclose(run.columns[name], column, rtol=1e-12, atol=0), name
+    assert 0 < np.median(run.columns["open_share"]) < 1
+    bare = solve_unilateral(problem, CONSTANT, 2)
+    assert bare.gap is None and bare.normal is None
+
+
+def test_shear_springs_balance_a_traction_in_the_mean():
+    """Sideways momentum is the time integral of the traction and of the base's shear."""
+    problem = replace(make(elements=3, degree=1, p=1e9, shear=4e8), traction=4e5)
+    scheme = replace(CONSTANT, step=1e-3)
+    stepper = ContactStepper(build(problem), scheme, "glued")
+    run, state, impulse = solve_unilateral(problem, scheme, 40, GLUED), stepper.start(), 0.0
+    for shear in run.columns["base_shear"]:
+        state, _ = stepper.advance(state)
+        impulse += scheme.step * (4e5 + shear) * 2.0
+    sideways = 1 - stepper.model.upwards
+    assert sideways @ (stepper.model.M @ state.motion.V) == pytest.approx(impulse, rel=1e-9)
+    assert run.columns["base_shear"].min() < -2e5
+
+
 def test_bad_requests_are_refused_by_name():
     for field, value in [("gap", -1e-3), ("velocity", np.inf), ("shear", "rough"), ("limit", 0), ("cut", 1.0)]:
         with pytest.raises(ValueError, match=f"^{field}: "):
