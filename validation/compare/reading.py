@@ -96,7 +96,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
     found = reader(text, path, columns)
