@@ -61,7 +61,7 @@ class Oracle:
         (x1, y1), (x2, y2) = self._ends(model.top)
         e, length = mpf(model.eccentricity), mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
         part = length - 2 * abs(e)
-        u, v = mp_reference.displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
+        _, v = mp_reference.displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
         whole, _ = mp_reference.displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
         F = [-mpf(model.pressure) * part * b + mpf(model.traction) * length * c for b, c in zip(v, whole, strict=True)]
         F[1] -= self.M[0, 0] * mpf(model.gravity)
