@@ -15,12 +15,21 @@ pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
 
 
 @pytest.fixture(scope="module")
-def judged():
-    return confusion.judge_all()
+def fifty():
+    return confusion.judge()
 
 
-def test_there_are_fifty_and_every_cause_is_among_them(judged) -> None:
-    assert len(judged) == 50
+@pytest.fixture(scope="module", params=["one of each cause", pytest.param("fifty", marks=pytest.mark.long)])
+def judged(request: pytest.FixtureRequest):
+    return request.getfixturevalue("fifty") if request.param == "fifty" else confusion.judge(first=True)
+
+
+@pytest.mark.long
+def test_there_are_fifty(fifty) -> None:
+    assert len(fifty) == 50
+
+
+def test_every_cause_is_among_them(judged) -> None:
     # weight and load are no slips of a code; the example of ntdda and the program of another make have weight
     assert {one.cause for one, _, _ in judged} == {confusion.SAME, *CAUSES} - {"own-weight", "load-factor"}
 
@@ -53,9 +62,10 @@ def test_a_departure_is_where_a_fault_is(judged) -> None:
             assert 1 <= answer.departure.step <= 3, i  # every fault here is there from the start
 
 
-def test_the_matrix_of_the_documentation_is_this_one(judged) -> None:
+@pytest.mark.long
+def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
     page = confusion.PAGE.read_text()
-    found = confusion.page_with(confusion.matrix(judged), page)
+    found = confusion.page_with(confusion.matrix(fifty), page)
     assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 
