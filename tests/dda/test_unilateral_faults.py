@@ -94,11 +94,11 @@ def old_reference(monkeypatch):
 
 
 def dead_band(monkeypatch):
-    monkeypatch.setattr(Unilateral, "stays_closed", lambda law, N: N >= -law.stiffness * 1e-6)
+    monkeypatch.setattr(Unilateral, "stays_closed", lambda law, N: -law.stiffness * 1e-6 <= N)
 
 
 def damped_again(monkeypatch):
-    """gg stands in a shorter step as in a whole one."""
+    """Gg stands in a shorter step as in a whole one."""
     real = step.replace
     monkeypatch.setattr(step, "replace", lambda scheme, gg, **given: real(scheme, gg=scheme.gg, **given))
 

@@ -62,7 +62,7 @@ def complementarity(model, result):
 
 
 def momentum(model, scheme, result):
-    """m dV = dt [(1 - delta) R_n + delta R_{n+1}] + (gg - 1) m V, both directions."""
+    """M dV = dt [(1 - delta) R_n + delta R_{n+1}] + (gg - 1) m V, both directions."""
     mass = model.block.material.density * model.block.section.area
     x, y = model.block.corners[[model.top, (model.top + 1) % 4]].T
     part = 1 - 2 * abs(model.eccentricity) / np.hypot(x[1] - x[0], y[1] - y[0])
