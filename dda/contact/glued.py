@@ -50,7 +50,8 @@ def glued(law: Unilateral, before: Corners, free: Free, closed: tuple[bool, ...]
     tried = system.solve(beta)
     for _ in range(CROSSING_STEPS if closing else 0):
         shares = [slipped_share(law, before.gap[shut[k]], float(tried.normal[k])) for k in closing]
-        J = np.eye(len(closing)) - np.array([rate * tried.slope[k, closing] for k, (_, rate) in zip(closing, shares, strict=True)])
+        rates = np.array([rate for _, rate in shares])
+        J = np.eye(len(closing)) - rates[:, None] * tried.slope[np.ix_(closing, closing)]
         change = np.linalg.solve(J, np.array([share for share, _ in shares]) - beta[closing])
         beta[closing] = np.clip(beta[closing] + change, 0.0, 1.0)
         tried = system.solve(beta)

@@ -245,7 +245,7 @@ class Stepping:
 def _result(
     stepping: Stepping, rows: Sequence[Row], columns: Sequence[str], seconds: tuple[float, float]
 ) -> UnilateralResult:
-    form, model, steps = stepping.form, stepping.model, len(rows)
+    form, steps = stepping.form, len(rows)
     corners = [row.state.corners for row in rows]
     normal, gap, shear, stretch = (
         _per_corner([getattr(c, name) for c in corners]) for name in ("normal", "gap", "shear", "stretch")
@@ -254,7 +254,7 @@ def _result(
         shear[0], stretch[0] = -shear[0] + 0.0, -stretch[0] + 0.0
     closed = _per_corner([c.closed for c in corners]).astype(bool)
     velocity = _centroid_velocity(stepping, rows)
-    kept = np.array([row.energies for row in rows]).reshape(steps, -1)
+    kept = np.array([row.energies for row in rows]).reshape(steps, len(ENERGIES) if stepping.ledger else 0)
     return UnilateralResult(
         time=step_times(stepping.scheme, steps),
         columns=_columns(stepping, rows, normal, columns),
@@ -280,28 +280,30 @@ def _result(
         horizontal_velocity=velocity[0],
         step_solves=np.array([row.solves for row in rows], dtype=int),
         step_cuts=np.array([row.cuts for row in rows], dtype=int),
-        energies=dict(zip(ENERGIES, kept.T, strict=True)) if steps and model and stepping.ledger else None,
+        energies=dict(zip(ENERGIES, kept.T, strict=True)) if stepping.ledger else None,
     )
 
 
 def _per_corner(values: Sequence[Sequence[float]]) -> Array:
     """Return one row for M and one for N; a contact that stands for both gives both."""
-    array = np.array(values, dtype=float).reshape(len(values), -1).T
-    return np.array([array[0], array[-1]]) if len(values) else np.zeros((2, 0))
+    if not len(values):
+        return np.zeros((2, 0))
+    array = np.array(values, dtype=float).T
+    return np.array([array[0], array[-1]])
 
 
 def _centroid_velocity(stepping: Stepping, rows: Sequence[Row]) -> Array:
     """Return the horizontal and vertical velocity of the centroid, momentum over mass, (2, steps) [m/s]."""
     form, block = stepping.form, stepping.model.block
     mass = block.material.density * block.section.area
-    P = np.array([row.state.P for row in rows]).reshape(len(rows), -1)
+    P = np.array([row.state.P for row in rows]).reshape(len(rows), len(form.unknowns))
     velocity: Array = form.translation.T @ P.T / (mass * stepping.scheme.step)
     return velocity
 
 
 def _columns(stepping: Stepping, rows: Sequence[Row], normal: Array, names: Sequence[str]) -> dict[str, Array]:
     form, model = stepping.form, stepping.model
-    moved = np.array([row.state.D for row in rows]).reshape(len(rows), -1) - form.start
+    moved = np.array([row.state.D for row in rows]).reshape(len(rows), len(form.unknowns)) - form.start
     a = base_directions(model.block, model.base)[2]
     pressure = (normal[0] + normal[1]) / a
     return {name: pressure if name == "contact_pressure" else moved @ form.observers[name] + 0.0 for name in names}
