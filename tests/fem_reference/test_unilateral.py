@@ -354,6 +354,13 @@ def test_shear_springs_balance_a_traction_in_the_mean():
     assert run.columns["base_shear"].min() < -2e5
 
 
+def test_a_mesh_too_coarse_for_a_stiff_base_is_named():
+    # h kappa = 2 p / (n E) of a square with mu = 0
+    for p, words in ((1e10, "too coarse for the base spring: h kappa is 2.5, at most 1 shows its ramp"), (3.9e9, None)):
+        notes = solve_unilateral(make(elements=8, p=p), replace(CONSTANT, step=0.1), 1).notes
+        assert notes == (("one column of elements",) if words is None else ("one column of elements", words))
+
+
 def test_bad_requests_are_refused_by_name():
     for field, value in [("gap", -1e-3), ("velocity", np.inf), ("shear", "rough"), ("limit", 0), ("cut", 1.0)]:
         with pytest.raises(ValueError, match=f"^{field}: "):
