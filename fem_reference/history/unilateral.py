@@ -152,7 +152,7 @@ def solve_unilateral(
         nonzeros=stepper.work.nonzeros,
         factorisations=stepper.work.factorisations,
         solves=stepper.work.solves,
-        notes=(*_saving(model), *front(problem, scheme.step)),
+        notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
         normal=np.array([row.normal for row in rows]).reshape(kept) if every_point else None,
@@ -162,6 +162,19 @@ def solve_unilateral(
 
 def _saving(model: ContactModel) -> tuple[str, ...]:
     return ("one column of elements",) if model.kind == "column" else ()
+
+
+def _ramp(problem: Problem) -> tuple[str, ...]:
+    """Say where the elements are longer than the way 1/kappa of a wave in which the base's pressure changes.
+
+    A wave of modulus lam + 2 G meets springs of 2 p / a for each length of the base: kappa = 2 p / (a (lam + 2 G)).
+    """
+    if problem.mesh is not None:
+        return ()
+    spring = 2 * problem.stiffness / problem.base_length
+    kappa = spring / (problem.lame + 2 * problem.shear_modulus)
+    passed = kappa * float(np.ptp(problem.outline[:, 1])) / problem.elements
+    return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
 
 
 @dataclass(frozen=True)
