@@ -122,7 +122,7 @@ def test_the_tables_of_alarms_hold_their_numbers_in_their_columns() -> None:
     values = {"dda.minimum": -1.234e6, "dda.time": 0.0567, "dda.duration": 0.0089}
     pulled = Alarm(TENSION, "s", "", values | {"bar.minimum": -2e5, "bar.time": 0.01, "bar.duration": 0.002}).record()
     table = tension_table([pulled], labels)
-    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "pulls for [ms]"]
+    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "tension for [ms]"]
     assert table.rows == (("dt = 1 s", "dda", "−1.23", "56.7", "8.9"), ("", "bar", "−0.200", "10", "2"))
     rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-1, 1))]
     assert [row[1:] for row in ringing_table(rings, labels).rows] == [

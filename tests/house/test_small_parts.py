@@ -71,7 +71,7 @@ def test_a_run_keeps_every_count_second_and_note_of_a_solver_under_its_name(scen
 def test_tension_is_reported_at_its_worst_instant() -> None:
     time = 0.5 * np.arange(1, 6)
     history = History(time, {"contact_pressure": np.array([1.0, -2.0, 5.0, -7.5e3, -3.0])})
-    assert pulls(history) == ("the locked contact pulls: -7500 Pa at t = 2 s",)
+    assert pulls(history) == ("the locked contact carries tension: -7500 Pa at t = 2 s",)
     assert pulls(History(time, {"contact_pressure": np.array([0.0, 1.0, 2.0, 3.0, 0.0])})) == ()
     assert pulls(History(time, {"displacement": -time})) == ()
     assert pulls(History(time, {"contact_pressure": np.array([1.0, -2.0, np.nan, 0.0, 0.0])})) == ()

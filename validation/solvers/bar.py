@@ -58,7 +58,7 @@ class NewmarkBar(Prepared):
 
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: the bar has no matrix and modes without end."""
-        raise NotReported("bar: an exact bar has no matrix, and its frequencies have no largest one")
+        raise NotReported("bar: the exact bar has no matrix and no largest frequency")
 
 
 class ExactBar(Solver):

@@ -76,7 +76,7 @@ def pulls(history: History) -> tuple[str, ...]:
     if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
         return ()
     least = int(np.argmin(pressure))
-    return (f"the locked contact pulls: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
+    return (f"the locked contact carries tension: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
 
 
 def check_columns(scene: Scene, known: tuple[str, ...]) -> None:

@@ -135,4 +135,4 @@ class PreciseFiniteElements(FiniteElements):
 def _too_large(unknowns: int) -> str | None:
     if unknowns <= MOST_UNKNOWNS:
         return None
-    return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"
+    return f"{unknowns} unknowns in sixty-digit arithmetic would take minutes; at most {MOST_UNKNOWNS} are served"
