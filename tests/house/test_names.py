@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from conftest import TOGETHER
 from faults.seams import Seam
 
 from validation.solvers.registry import BUILT_IN
@@ -49,6 +50,12 @@ def test_the_contracts_of_imports_are_kept() -> None:
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     done = subprocess.run([command, "--no-cache"], capture_output=True, text=True, cwd=ROOT, env=environment)
     assert done.returncode == 0, done.stdout
+
+
+def test_modules_whose_tests_share_a_fixture_stay_on_one_worker() -> None:
+    texts = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py")}
+    sharing = {name for name, text in texts.items() if 'scope="' + 'module"' in text}
+    assert sharing <= set(TOGETHER) <= set(texts)
 
 
 # ---- seams ----------------------------------------------------------------------------------------------------------
