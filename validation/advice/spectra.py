@@ -17,7 +17,6 @@ import numpy as np
 from dda.scheme import spectral
 from validation.errors import InputError
 from validation.metrics.modes import operator_damping
-from validation.runs.history import Array
 from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -204,16 +203,3 @@ def parts(mode: ModeDamping) -> str:
     if abs(mode.algorithmic) <= small:
         return "all of it kinetic"
     return f"{percent(mode.algorithmic)} algorithmic and {percent(mode.kinetic)} kinetic"
-
-
-# ---- the scheme's closed forms over arrays ------------------------------------------------------------------------
-
-
-def ratios(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
-    """Return xi over Omega = w dt, for parameters that may vary with it; NaN where a root is not positive."""
-    return spectral.damping_ratio(omega, alpha, delta, gg)
-
-
-def radii(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
-    """Return max |lambda| over Omega = w dt, for parameters that may vary with it."""
-    return spectral.spectral_radius(omega, alpha, delta, gg)

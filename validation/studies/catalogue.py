@@ -54,7 +54,9 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     check_words(scene, source)
-    own = [Gate(case.name, s.pair, s.metric, *s.band, s.reason) for case in scene.expand() for s in case.gate]
+    own: list[Gate] = []
+    for case in scene.expand():
+        own += [Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate]
     return Study(
         scene.name,
         scene.title or scene.name,

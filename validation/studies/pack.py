@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import re
 from collections.abc import Iterable
@@ -96,7 +97,7 @@ def write_pack(directory: Path) -> Written:
     wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
     for name, solver in wanted:
         write_csv(_history(cases[name], solver), directory / "histories" / history_file(name, solver))
-    bands = [*(own_band(scene, metric) for scene in cases.values() for metric in OWN), *map(band, gates)]
+    bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
     _write(directory / "bands.csv", _as_csv(bands))
     _write(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
     _write(directory / "README.md", README)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -58,7 +59,7 @@ class Group:
     @property
     def solvers(self) -> list[str]:
         """All solvers of the cases, in the order of the study."""
-        return list(dict.fromkeys(solver for case in self.cases for solver in case.rows))
+        return list(dict.fromkeys(itertools.chain(*(case.rows for case in self.cases))))
 
     @property
     def slug(self) -> str:

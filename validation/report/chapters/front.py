@@ -25,10 +25,11 @@ LEDGER_FIGURE = "error-ledger.svg"
 def front_matter(results: Results, studies: Sequence[str], directory: Path) -> list[Block]:
     """Return conclusion, failures, verdict counts and the error ledger of the studies of scenes."""
     named: list[Group] = []
+    verdicts: list[VerdictRecord] = []
     for study in studies:
+        verdicts += results.verdicts(study)
         named += [] if study in CHAPTERS else groups(results, results.manifest(study))
     found = with_entries(named)
-    verdicts = [v for study in studies for v in results.verdicts(study)]
     blocks: list[Block] = [
         Paragraph(headline(found, verdicts), "lead"),
         *_failures(verdicts),

@@ -70,8 +70,11 @@ def _absence(case: Case, solver: str) -> str:
 
 def with_entries(groups: Sequence[Group]) -> list[Group]:
     """Return the groups with the cases that some part of the ledger applies to."""
-    kept = [replace(group, cases=tuple(case for case in group.cases if _has_entry(group, case))) for group in groups]
-    return [group for group in kept if group.cases]
+    kept = []
+    for group in groups:
+        cases = tuple(case for case in group.cases if _has_entry(group, case))
+        kept += [replace(group, cases=cases)] if cases else []
+    return kept
 
 
 def _has_entry(group: Group, case: Case) -> bool:

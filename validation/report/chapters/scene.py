@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups, varied_fields
-from validation.report.chapters.gates import ORDER, gate_table
+from validation.report.chapters.gates import gate_table
 from validation.report.chapters.ledger import METRICS
 from validation.report.chapters.text import AS_STATED, cell, parameters, percent, plain, span, word_notes
 from validation.report.figures import histories
@@ -93,7 +94,7 @@ def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list
 
 def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
     """Return how many gates pass, fail or did not run, as part of a sentence."""
-    count = {word: sum(v["verdict"] == word for v in verdicts) for word in ORDER}
+    count = Counter(v["verdict"] for v in verdicts)
     if not verdicts:
         return "no gate judges this scene"
     if count["PASS"] == len(verdicts):

@@ -46,7 +46,8 @@ def work_figure(found: Sequence[Point]) -> Figure:
 
 def _differs(found: Sequence[Point], quantity: str) -> bool:
     """Whether some run has an error in a quantity that is more than rounding."""
-    return any(p.errors.get((quantity, reference), 0.0) > NOTHING for p in found for reference in REFERENCES)
+    pairs = itertools.product(found, REFERENCES)
+    return any(point.errors.get((quantity, reference), 0.0) > NOTHING for point, reference in pairs)
 
 
 def _panel(axes: Axes, found: Sequence[Point], quantity: str, cost: str, reference: str) -> None:

@@ -159,7 +159,8 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     as the largest magnitude in each fortieth of the time, on a logarithmic axis.
     """
     columns = _columns(len(panels))
-    room = max(21.0, *(4.0 + LETTER * len(name) for panel in panels for name in panel.histories), 0.0)
+    letters = [max(map(len, panel.histories), default=0) for panel in panels]
+    room = max(21.0, 4.0 + LETTER * max(letters, default=0))
     with house_style():
         figure, bands = small_multiples(panels, columns, Margins(right=room), [(24.0, 2.5), (15.0, 13.0)])
         for some, (above, below) in bands:
@@ -220,7 +221,9 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str) -> None:
 
 def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str) -> None:
     curves = [differences(panel, column) for panel in panels]
-    values = np.concatenate([y for lines in curves for _, y in lines.values()] or [np.ones(1)])
+    values = np.array([1.0]) if not any(curves) else np.zeros(0)
+    for lines in curves:
+        values = np.concatenate([values, *(y for _, y in lines.values())])
     values = values[(values > FLOOR) & np.isfinite(values)]
     low, high = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
     low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** min(2, math.ceil(math.log10(high) + 0.05))
@@ -277,9 +280,10 @@ class LedgerLine:
 
 def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
     """Draw the parts of the error side by side, one line per case: displacement filled, contact pressure open."""
-    parts = list(dict.fromkeys(part for line in lines for part in line.parts))
+    parts: dict[str, None] = {}
     values: list[float] = []
     for line in lines:
+        parts |= dict.fromkeys(line.parts)
         for pair in line.parts.values():
             values += [value for value in pair if value]
     low, high = min(values, default=1e-16), max(values, default=1.0)

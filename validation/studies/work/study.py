@@ -130,15 +130,18 @@ def order_in_time(name: str) -> Derived:
     def compute(finished: Finished) -> Mapping[str, Value]:
         exact = _columns(finished, reference, "dda", REFERENCE)
         found = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
-        steps = [case.time.step for case in levels]
-        return _orders(steps, [{q: relative_l2(x[q], exact[q]) for q in QUANTITIES} for x in found])
+        return _orders([case.time.step for case in levels], found, [exact] * len(levels))
 
     needs = ((reference, "dda"), *((case.name, "dda") for case in levels))
     return Derived(name, "order", needs, compute)
 
 
-def _orders(sizes: list[float], errors: list[dict[str, Value]]) -> Mapping[str, Value]:
-    return {f"order.{q}": order(sizes, [_number(e[q]) for e in errors]) for q in QUANTITIES}
+def _orders(sizes: list[float], found: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Mapping[str, Value]:
+    orders: dict[str, Value] = {}
+    for q in QUANTITIES:
+        errors = [_number(relative_l2(a[q], b[q])) for a, b in zip(found, exact, strict=True)]
+        orders[f"order.{q}"] = order(sizes, errors)
+    return orders
 
 
 def _number(value: Value) -> float:
@@ -150,14 +153,11 @@ def order_in_mesh(name: str) -> Derived:
     levels = named(name).expand()
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        errors = []
-        for case in levels:
-            found, exact = _columns(finished, case.name, "fem"), _columns(finished, case.name, "bar")
-            errors.append({q: relative_l2(found[q], exact[q]) for q in QUANTITIES})
-        return _orders([1 / n for n in MESHES], errors)
+        found, exact = ([_columns(finished, case.name, solver) for case in levels] for solver in ("fem", "bar"))
+        return _orders([1 / n for n in MESHES], found, exact)
 
-    needs = tuple((case.name, solver) for case in levels for solver in ("fem", "bar"))
-    return Derived(name, "order", needs, compute)
+    needs = itertools.product((case.name for case in levels), ("fem", "bar"))
+    return Derived(name, "order", tuple(needs), compute)
 
 
 def grid_convergence() -> Derived:
@@ -188,12 +188,11 @@ def derived() -> tuple[Derived, ...]:
 @functools.cache
 def study_cases() -> tuple[tuple[str, str], ...]:
     """Return the (case, solver) pairs whose errors and work the record keeps."""
-    return tuple(
-        (case.name, solver)
-        for scene in (*refined_together(), *refined_meshes())
-        for case in scene.expand()
-        for solver in case.run.solvers
-    )
+    found: list[tuple[str, str]] = []
+    for scene in (*refined_together(), *refined_meshes()):
+        for case in scene.expand():
+            found += [(case.name, solver) for solver in case.run.solvers]
+    return tuple(found)
 
 
 # ---- gates ----------------------------------------------------------------------------------------------------------
