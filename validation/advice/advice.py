@@ -253,7 +253,7 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
             found[name] = {"not applicable": reason}
             continue
         try:
-            other = reference.solve(case).history
+            other = solve(case, name).history
         except InputError as error:
             found[name] = {"not applicable": str(error)}
             continue

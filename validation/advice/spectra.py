@@ -20,6 +20,8 @@ from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers import memory
+from validation.solvers.contract import Solver
 from validation.solvers.registry import get_solver
 
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
@@ -119,7 +121,20 @@ def single(scene: Scene) -> Scene:
 
 def dda_modes(scene: Scene) -> tuple[Mode, ...]:
     """Return the modes of the DDA block that the load reaches, the first axial one first."""
-    return get_solver("dda").modes(single(scene))
+    return checked("dda", single(scene)).modes(scene)
+
+
+def checked(solver: str, scene: Scene) -> Solver:
+    """Return a solver whose model of the scene fits into memory; no step is taken for its modes.
+
+    Raises
+    ------
+    InputError
+        It does not fit.
+    """
+    chosen = get_solver(solver)
+    memory.check(scene.with_values({"time.steps": 1}), chosen)
+    return chosen
 
 
 def damping(scene: Scene, references: bool = False) -> Damping:
@@ -135,7 +150,7 @@ def damping(scene: Scene, references: bool = False) -> Damping:
     Raises
     ------
     InputError
-        The scene has a sweep.
+        The scene has a sweep, or a model of it does not fit into memory.
 
     Examples
     --------
@@ -158,7 +173,7 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     chosen = get_solver(solver)
     if chosen.refusal(scene):
         return {}
-    mode = chosen.modes(scene)[0]
+    mode = checked(solver, scene).modes(scene)[0]
     xi = operator_damping(mode.eigenvalues)
     return {"frequency": mode.frequency, "damping": xi if isinstance(xi, float) else None}
 

@@ -12,13 +12,15 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.regular import regular
 
 OURS = ("time", DISPLACEMENT, PRESSURE)
 NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, speed
 LEAST_ROWS = 4
 LARGEST = 1e100  # the squares of larger numbers overflow
 SAME_STEP = 1e-3  # relative; times are often printed with four digits
-MOST_STEPS = 1_000_000
+MOST_STEPS = 10_000  # every explanation that is tried steps through all of them: a minute or two, and 200 MB
+LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +94,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         The file cannot be read, or is no such history.
     """
     try:
+        regular(path, LARGEST_FILE)
         text = path.read_bytes().decode("utf-8-sig").replace("\0", "")
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
@@ -109,10 +112,11 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
 
 def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
     """Return our columns of a table."""
-    lines = [line.strip() for line in re.sub(r"[#%].*", "", text).splitlines()]
-    rows = [_cells(line) for line in lines if line]
-    if not rows:
+    lines = [line for line in map(str.strip, re.sub(r"[#%].*", "", text).splitlines()) if line]
+    if not lines:
         raise InputError(f"{path}: must hold a history, got an empty file")
+    _bounded(len(lines), path)
+    rows = [_cells(line) for line in lines]
     header = None if _numbers(rows[0]) else rows.pop(0)
     names = header or [str(i + 1) for i in range(len(rows[0]) if rows else 0)]
     values = []
@@ -169,7 +173,9 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     name = columns.get(DISPLACEMENT, next(iter(points)))
     if name not in points:
         raise InputError(f"{path}: no measured point {name!r}; it has {', '.join(points)}")
-    rows = [_numbers(line.split()) for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
+    lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
+    _bounded(len(lines), path)
+    rows = [_numbers(line.split()) for line in lines]
     kept = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
     if not kept or len(kept) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
@@ -184,6 +190,12 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
         moved = summed
     return {"time": time, DISPLACEMENT: moved} | ({"dt": dt} if every else {})
+
+
+def _bounded(rows: int, path: Path) -> None:
+    """Refuse a history that would take hours to judge."""
+    if rows > MOST_STEPS + 2:  # a header and the row at t = 0
+        raise InputError(f"{path}: must hold at most {MOST_STEPS} rows, got {rows}; cut it, or keep every tenth row")
 
 
 def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
@@ -242,6 +254,11 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     ----------
     step
         The scene's time step [s].
+
+    Raises
+    ------
+    InputError
+        The rows are not uniform and lie too many steps apart.
     """
     gaps = np.diff(np.concatenate([[0.0], foreign.time]))
     every = np.arange(len(gaps))
@@ -263,10 +280,15 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
 def _multiples(gaps: Array, step: float) -> list[Stepping]:
     """Return the reading that rows show some of the scene's steps, if the times allow it."""
     ends = np.cumsum(gaps) / step
-    counts = np.rint(ends).astype(int)
-    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(counts, prepend=0)) < SAME_STEP * (1 + gaps / step))
-    if not near or counts[0] < 1 or counts[-1] > MOST_STEPS or np.any(np.diff(counts) < 1):
+    whole = np.rint(ends)
+    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(whole, prepend=0.0)) < SAME_STEP * (1 + gaps / step))
+    if not near or whole[0] < 1 or np.any(np.diff(whole) < 1):
         return []
+    if whole[-1] > MOST_STEPS:
+        if np.ptp(gaps) <= SAME_STEP * gaps[0]:
+            return []  # the program's own steps, longer than the scene's
+        raise InputError(f"time: must end within {MOST_STEPS} steps of {step:g} s, got step {whole[-1]:.0f}")
+    counts = whole.astype(int)
     every = np.diff(counts, prepend=0)
     kind = (
         f"one row every {every[0]} steps"

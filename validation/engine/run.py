@@ -26,6 +26,7 @@ from validation.runs.records import (
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
+from validation.solvers import memory
 
 Progress = Callable[[int, int, str], None]
 
@@ -82,8 +83,9 @@ def finish(
     """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
     keyed = [(case, case.key()) for case in cases]
     known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
-    # What was not installed then may be installed now, and what raised may have wanted memory.
+    # What was not installed then may be installed now, and what raised or was refused may have wanted memory.
     known = {key: row for key, row in known.items() if row.outcome not in (Outcome.NOT_RUN, Outcome.RAISED)}
+    known = {key: row for key, row in known.items() if not memory.refused(row.notes)}
     for case, key in keyed:
         if not case.make_solver().cached:
             known.pop(key, None)

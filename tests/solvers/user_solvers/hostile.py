@@ -1,6 +1,7 @@
 """Users' solvers that do whatever a program can do wrong; each is a row with a name and costs no other row."""
 
 import atexit
+import fcntl
 import gc
 import os
 import resource
@@ -65,15 +66,12 @@ def prints_without_end(scene):
 
 
 def _answers():
-    """Return the descriptor of the pipe that answers go through: the pipe that is not 0, 1 or 2, and can be written."""
-    import fcntl
-
+    """Return the descriptor of the pipe that answers go through: the one beside 0, 1 and 2 that can be written."""
     for name in os.listdir("/proc/self/fd"):
-        number = int(name)
         try:
-            if number > 2 and os.readlink(f"/proc/self/fd/{name}").startswith("pipe:"):
-                if fcntl.fcntl(number, fcntl.F_GETFL) & os.O_WRONLY:
-                    return number
+            pipe = os.readlink(f"/proc/self/fd/{name}").startswith("pipe:")
+            if pipe and int(name) > 2 and fcntl.fcntl(int(name), fcntl.F_GETFL) & os.O_WRONLY:
+                return int(name)
         except OSError:
             continue
     raise LookupError("no pipe")
