@@ -71,25 +71,30 @@ class _System:
     def __init__(self, law: Unilateral, before: Corners, free: Free, shut: list[int]) -> None:
         self.law, self.before, self.free, self.shut = law, before, free, shut
 
-    def _rows(self, active: list[int]) -> tuple[Array, Array]:
-        """Return the unknown forces as rows over (w, slides), and T of the active contacts from the last of them."""
-        n, m = len(self.before.closed), len(self.shut)
-        rows = np.zeros((m + len(active), len(self.free.C)))
+    def _rows(self, active: list[int], soft: Array) -> tuple[Array, Array]:
+        """Return the unknown forces as rows over (w, slides), and T of the active contacts from the last of them.
+
+        H and G keep apart the rigid and the elastic flexibility, but mix unequal softnesses: beyond the rigid
+        flexibility these decide, and the corners' own forces keep the digits.
+        """
+        n, m, C = len(self.before.closed), len(self.shut), self.free.C
+        rows = np.zeros((m + len(active), len(C)))
         rows[range(m), self.shut] = 1.0
-        if len(active) == 2:  # H and G
+        if len(active) == 2 and (soft[0] == soft[1] or max(soft) <= C[n][n]):
             rows[m:, n:] = np.eye(2)
             return rows, np.array([[0.5, -1.0], [0.5, 1.0]])
-        for k in active:
-            rows[m:, n:] = SLIDES[n][self.shut[k]]
+        for row, k in enumerate(active, start=m):
+            rows[row, n:] = SLIDES[n][self.shut[k]]
         return rows, np.eye(len(active))
 
     def _matrix(self, beta: Array, active: list[int]) -> tuple[Array, Array, Array, Array]:
         """Return the matrix, its scale (symmetric: a stiff direction keeps its digits), the rows and W."""
         m = len(self.shut)
-        rows, W = self._rows(active)
+        soft = 1 / (self.law.shear * beta[active])
+        rows, W = self._rows(active, soft)
         A = rows @ np.array(self.free.C) @ rows.T
         A[range(m), range(m)] += self.law.compliance
-        A[m:, m:] += (W.T / (self.law.shear * beta[active])) @ W
+        A[m:, m:] += (W.T * soft) @ W
         scale = 1 / np.sqrt(np.diag(A))
         return A * scale * scale[:, None], scale, rows, W
 
