@@ -16,7 +16,7 @@ alone into the displacement, with weight 1/2 for alpha, and into the momentum, w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -99,6 +99,7 @@ class StepLength:
     slides: list[Vector]  # rows of B along the base
     C: list[Vector]  # flexibility of the contacts [m/N]
     implicit: bool  # the contact force has its own weights
+    gains: dict[tuple[int, ...], list[Vector]] = field(default_factory=dict)  # of contacts that stay closed
 
     @classmethod
     def of(cls, form: UnilateralForm, scheme: Scheme, ratio: float, rule: str) -> StepLength:
@@ -155,7 +156,7 @@ def _free(length: StepLength, D: Vector, x: Vector) -> Free:
     """Return what the step does to the contacts without their forces; the gaps are the last unknowns."""
     gaps = len(length.C) - len(length.slides)
     slide = [sum(b * xi for b, xi in zip(row, x, strict=True)) for row in length.slides]
-    return Free([d + xi for d, xi in zip(D[-gaps:], x[-gaps:], strict=True)], slide, length.C)
+    return Free([d + xi for d, xi in zip(D[-gaps:], x[-gaps:], strict=True)], slide, length.C, length.gains)
 
 
 def _accepted(

@@ -44,6 +44,14 @@ def test_complementarity_momentum_and_energy_hold_to_rounding(seed, scheme):
     assert seed % 3 != 1 or len(result.notes) > 1  # symmetric scenes keep one contact
 
 
+@pytest.mark.parametrize("p", [1e14, 1e18, 1e22, np.inf])
+@pytest.mark.parametrize("seed", [3, 5, 11])
+def test_a_stiff_normal_spring_beside_glued_shear_keeps_the_invariants(seed, p):
+    model = random_model(seed, glued=True)
+    result = checked(replace(model, contact=replace(model.contact, stiffness=p)), Scheme(0.5, 1.0, 1.0, DT), 200)
+    assert np.max(np.diff(sums(result)[0])) <= 1e-13 * np.max(np.abs(list(result.energies.values())))
+
+
 def test_the_random_scenes_open_and_close():
     results = [run(random_model(seed)) for seed in SEEDS]
     switches = [np.count_nonzero(np.diff(r.closed_m)) + np.count_nonzero(np.diff(r.closed_n)) for r in results]
@@ -191,8 +199,8 @@ def test_a_dropped_block_falls_freely_until_the_gap_closes(p):
 
 @pytest.mark.parametrize(("gg", "delta"), [(1.0, 0.5), (0.97, 1.0)])
 def test_an_explicit_scheme_keeps_the_invariants(gg, delta):
-    for seed in range(6):
-        checked(random_model(seed), Scheme(0.0, delta, gg, 1e-6), 2000)
+    for seed in (3, 7, 11):
+        checked(random_model(seed), Scheme(0.0, delta, gg, 2e-6), 1000)
 
 
 def test_gg_in_flight_is_a_drag_by_the_closed_formula():
