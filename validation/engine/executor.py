@@ -8,11 +8,10 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as
 from contextlib import contextmanager
 
 from validation.engine.case import Case
-from validation.engine.measure import execute
+from validation.engine.measure import execute, failed_row, said
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
-from validation.runs.run import Outcome
 
 
 def executed(
@@ -27,8 +26,11 @@ def executed(
     with _pool(executor, min(jobs, len(pending))) as pool:
         futures = {pool.submit(execute, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
-            if isinstance(future.exception(), BrokenExecutor):
-                lost.append(futures[future])
+            error, key = future.exception(), futures[future]
+            if isinstance(error, BrokenExecutor):
+                lost.append(key)
+            elif error is not None:  # on its way there or back: what a worker runs never raises
+                yield failed_row(pending[key], key, study.name, said(error)), None
             else:
                 yield future.result()
     for key in lost:
@@ -42,7 +44,7 @@ def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
             return pool.submit(execute, case, key, study.name).result()
         except BrokenExecutor:
             note = "worker killed (out of memory or a signal)"
-            return Row(key, study.name, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
+            return failed_row(case, key, study.name, note), None
 
 
 @contextmanager
