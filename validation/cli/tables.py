@@ -116,7 +116,7 @@ def print_changes(found: list[Change]) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from validation.gates.changes import ABSENT, band_said, same_band
+    from validation.gates.changes import band_said
     from validation.gates.gate import said
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -125,7 +125,7 @@ def print_changes(found: list[Change]) -> None:
     colours = {"worse": "bold red", "better": "green"}
     for c in found:
         values = [f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after))]
-        if c.before != ABSENT and c.after != ABSENT and not same_band(c.band_before, c.band_after):
+        if c.rebanded:
             bands = (band_said(band) for band in (c.band_before, c.band_after))
             values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]
         kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"

@@ -34,6 +34,11 @@ class Change:
     band_after: Edges | None = None
 
     @property
+    def rebanded(self) -> bool:
+        """Whether the gate is there in both runs, with another band."""
+        return ABSENT not in (self.before, self.after) and not same_band(self.band_before, self.band_after)
+
+    @property
     def widened(self) -> bool:
         """Whether the band lets pass what it did not before."""
         if self.band_before is None or self.band_after is None:
@@ -62,7 +67,7 @@ class Change:
             return "gone"
         if self.before != self.after:
             return "better"
-        return "value" if same_band(self.band_before, self.band_after) else "band"
+        return "band" if self.rebanded else "value"
 
 
 def read_verdicts(source: Path | str) -> list[Judged]:
@@ -114,10 +119,16 @@ def _band(v: Record | None) -> Edges | None:
     return None if v is None else (v["band"][0], v["band"][1])
 
 
-def against(baseline: Iterable[Record], records: Sequence[Record], studies: Iterable[str]) -> list[Change]:
-    """Return what changed since a baseline in the studies that were run, those without a gate left included."""
-    names = set(studies)
-    return changes([v for v in baseline if v["study"] in names], records)
+def against(
+    baseline: Path | str | Iterable[Record], records: Sequence[Record], studies: Iterable[str] | None = None
+) -> list[Change]:
+    """Return what changed since a baseline in the studies that were run (those of the records unless they are given).
+
+    A study that was run and has no gate left has lost all of the baseline's.
+    """
+    before = read_verdicts(baseline) if isinstance(baseline, Path | str) else baseline
+    names = {v["study"] for v in records} if studies is None else set(studies)
+    return changes([v for v in before if v["study"] in names], records)
 
 
 def counted(records: Iterable[VerdictRecord]) -> str:
@@ -136,7 +147,7 @@ def markdown(records: Sequence[VerdictRecord], since: Sequence[Change] | None = 
     if since is not None:
         rows = [_row_of_change(c) for c in since]
         lines += ["### Since the baseline", ""]
-        lines += _table(("change", "gate", "verdict", "value", "band"), rows) if rows else ["Nothing changed.", ""]
+        lines += _table(("change", "gate", "verdict", "value"), rows) if rows else ["Nothing changed.", ""]
     return "\n".join(lines)
 
 
@@ -152,8 +163,10 @@ def _row(v: VerdictRecord) -> list[str]:
 
 
 def _row_of_change(c: Change) -> list[str]:
-    band = _step(band_said(c.band_before), band_said(c.band_after))
-    return [c.kind, _code(c.id), _step(c.before, c.after), _step(c.value_before, c.value_after), band]
+    value = _step(c.value_before, c.value_after)
+    if c.rebanded:
+        value += f"; band {band_said(c.band_before)} → {band_said(c.band_after)}"
+    return [c.kind, _code(c.id), _step(c.before, c.after), value]
 
 
 def band_said(band: Edges | None) -> str:

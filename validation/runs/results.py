@@ -167,8 +167,8 @@ class Results:
             raise InputError(f"{self.directory / name}: holds the study {found['study']!r}; {ADVICE}")
         return found
 
-    def whole(self, study: str) -> Manifest:
-        """Return a study's manifest where all that it lists is here.
+    def whole(self, study: str, histories: bool = False) -> Manifest:
+        """Return a study's manifest where every row that it lists is here, and where asked every history.
 
         Raises
         ------
@@ -178,7 +178,8 @@ class Results:
         manifest, rows = self.manifest(study), self.rows()
         for case in manifest.get("cases", []):
             row = rows.get(case["key"])
-            if row is None or (row.outcome in KEPT and not self._history_file(row.key).exists()):
+            gone = row is not None and row.outcome in KEPT and not self._history_file(row.key).exists()
+            if row is None or (histories and gone):
                 lost = "row" if row is None else "history"
                 raise InputError(
                     f"{self.directory}: the {lost} of {case['scene']} {case['solver']} is lost; run {study} again"

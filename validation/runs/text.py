@@ -5,8 +5,9 @@ from __future__ import annotations
 
 def printable(text: str) -> str:
     """Return a text whose control characters and lone surrogates are written as escapes, line breaks as blanks."""
-    return "".join(map(_shown, " ".join(text.split())))
+    return shown(" ".join(text.split()))
 
 
-def _shown(character: str) -> str:
-    return character if character.isprintable() else character.encode("unicode_escape").decode()
+def shown(text: str) -> str:
+    """Return a text whose control characters and lone surrogates are written as escapes."""
+    return "".join(c if c.isprintable() or c == "\u00a0" else c.encode("unicode_escape").decode() for c in text)
