@@ -7,6 +7,12 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+PAGE = 150  # characters of a line where the output is no terminal
 
 
 def prepare() -> None:
@@ -33,3 +39,14 @@ def silence() -> None:
     """Send the rest of the output nowhere."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def console() -> Console:
+    """Return a console of the library rich that leaves a reader who has gone to `heard`."""
+    from rich.console import Console
+
+    class Plain(Console):
+        def on_broken_pipe(self) -> None:  # rich would end the process
+            raise
+
+    return Plain(width=None if sys.stdout.isatty() else PAGE)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from validation.advice.alarms import DISCOUNT
+from validation.cli.output import console
 from validation.gates.gate import Verdict, said
 from validation.runs.records import Judged, VerdictRecord
 from validation.runs.results import Results
@@ -49,13 +48,13 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             f"[{colours[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
         )
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    console.print(table)
+    printer = console()
+    printer.print(table)
     for v in verdicts:
         if v.status != "PASS":
-            console.print(printable(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}"), markup=False)
+            printer.print(printable(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}"), markup=False)
     words = [str(v.status) for v in verdicts]
-    console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+    printer.print(", ".join(f"{words.count(w)} {w}" for w in colours))
 
 
 def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
@@ -111,13 +110,7 @@ def printable_lines(text: str) -> str:
 
 def print_changes(found: list[Change]) -> None:
     """Print one table: change, study, gate, verdict and value before and after."""
-    from rich import box
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
-
     from validation.gates.changes import band_said
-    from validation.gates.gate import said
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("change", "study", "gate", "before", "after"):
@@ -130,9 +123,9 @@ def print_changes(found: list[Change]) -> None:
             values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]
         kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"
         table.add_row(kind, *map(escape, (c.study, c.id, *values)))
-    console = Console(width=None if sys.stdout.isatty() else 150)
+    printer = console()
     if found:
-        console.print(table)
+        printer.print(table)
     kinds = [c.kind for c in found]
     words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
-    console.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)
+    printer.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)

@@ -49,7 +49,7 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 
 def said(error: BaseException) -> str:
     """Return an error as a note: its type and its text in characters that every file and terminal takes."""
-    return printable(f"{type(error).__name__}: {error}").removesuffix(": ")
+    return printable(f"{type(error).__name__}: {error}").removesuffix(":")
 
 
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
