@@ -143,7 +143,7 @@ def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> N
 
 
 def test_a_baselines_other_studies_are_not_lost_gates(tmp_path: Path) -> None:
-    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 1.0, "other")]))
+    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 0.5, "other")]))
     assert [(c.kind, c.id) for c in against(tmp_path / "old.json", NEW[:3])] == [("worse", "a"), ("value", "b")]
 
 

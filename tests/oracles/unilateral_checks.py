@@ -102,6 +102,4 @@ def checked(model, scheme, steps=400):
 
 def run(model, alpha=0.5, delta=1.0, gg=1.0, dt=DT, start="zero", steps=400, **options):
     """Run with the scheme's numbers."""
-    return solve_unilateral(
-        model, Scheme(alpha, delta, gg, dt, start), steps, options=UnilateralOptions(**options)
-    )
+    return solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), steps, options=UnilateralOptions(**options))

@@ -255,8 +255,9 @@ def test_the_cost_of_a_solver_is_summed_over_its_own_runs(tmp_path: Path) -> Non
 def test_verdicts_are_counted_in_the_columns_of_their_words(tmp_path: Path) -> None:
     words = ["PASS"] * 3 + ["FAIL"] * 2 + ["NOT RUN"]
     results = Results(tmp_path)
-    results.write_verdicts("s", [{"id": str(i), "study": "s", "scene": "a[b=1]", "verdict": word, "value": 1.0}
-                                 for i, word in enumerate(words)])  # fmt: skip
+    rest = {"pair": ["dda"], "metric": "m", "reason": "r", "why": "", "reference_kind": "exact", "alarms": []}
+    rest |= {"study": "s", "scene": "a[b=1]", "value": 1.0, "band": [0.0, 1.0], "reference_uncertainty": 0.0}
+    results.write_verdicts("s", [rest | {"id": str(i), "verdict": word} for i, word in enumerate(words)])
     table = chapters_front.verdict_counts(results, ["s"])
     shown = dict(zip([c.title for c in table.columns], table.rows[0], strict=True))
     assert shown == {"Study": "s", "Scene": "all scenes", "PASS": "3", "FAIL": "2", "NOT RUN": "1"}

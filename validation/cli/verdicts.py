@@ -22,11 +22,13 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
+    from validation.cli.output import heard
     from validation.cli.tables import print_changes
     from validation.gates.changes import changes, read_verdicts
 
     found = changes(read_verdicts(before), read_verdicts(after))
-    print_changes(found)
+    with heard():
+        print_changes(found)
     raise typer.Exit(GATE_FAILED if any(change.worse for change in found) else PASSED)
 
 

@@ -22,7 +22,7 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
     kept = Results(results)
     if study not in kept.studies():
         raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
-    return table(kept, kept.manifest(study))
+    return table(kept, kept.whole(study))
 
 
 @app.command()
@@ -102,10 +102,11 @@ def record(
         work_record.update(finished, study_cases(), reason)
         typer.echo(f"wrote {work_record.PATH}")
         return
-    found = work_record.ratios(work_record.measured(finished, study_cases()), then)
-    if not found:
-        raise InputError(f"{work_record.PATH}: holds no case of the study work-precision; nothing was compared")
+    try:
+        found = work_record.compare(finished, study_cases(), then)
+    except ValueError as error:
+        raise InputError(f"{work_record.PATH}: {error}") from None
     said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
     typer.echo(f"worst ratio to the record: {said}")
-    if any(value > 1 + work_record.SLACK[part] for part, value in found.items()):
+    if not all(value <= 1 + work_record.SLACK[part] for part, value in found.items()):
         raise typer.Exit(GATE_FAILED)

@@ -11,11 +11,10 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as
 from contextlib import contextmanager
 
 from validation.engine.case import Case
-from validation.engine.measure import execute
+from validation.engine.measure import execute, failed_row, said
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
-from validation.runs.run import Outcome
 from validation.solvers.guard import DEATH_SIGNAL, control
 
 LOOK = 0.25  # s between two looks whether the parent lives
@@ -33,8 +32,11 @@ def executed(
     with _pool(executor, min(jobs, len(pending))) as pool:
         futures = {pool.submit(_named, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
-            if isinstance(future.exception(), BrokenExecutor):
-                lost.append(futures[future])
+            error, key = future.exception(), futures[future]
+            if isinstance(error, BrokenExecutor):
+                lost.append(key)
+            elif error is not None:  # on its way there or back: what a worker runs never raises
+                yield failed_row(pending[key], key, study.name, said(error)), None
             else:
                 yield future.result()
     for key in lost:
@@ -46,11 +48,7 @@ def _named(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     try:
         return execute(case, key, study)
     except Exception as error:
-        return _raised(case, key, study, f"{type(error).__name__}: {error}")
-
-
-def _raised(case: Case, key: str, study: str, note: str) -> tuple[Row, None]:
-    return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
+        return failed_row(case, key, study, said(error)), None
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
@@ -59,7 +57,8 @@ def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
         try:
             return pool.submit(_named, case, key, study.name).result()
         except BrokenExecutor:
-            return _raised(case, key, study.name, "worker killed (out of memory or a signal)")
+            note = "worker killed (out of memory or a signal)"
+            return failed_row(case, key, study.name, note), None
 
 
 @contextmanager
