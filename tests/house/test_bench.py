@@ -44,6 +44,7 @@ def test_the_committed_table_holds_what_was_asked_for():
     assert all(int(ratio) >= int(asked) for ratio, asked in lines)
 
 
+@pytest.mark.long
 def test_each_part_of_the_bench_runs():
     code = (
         "import bench, bench_subblocks as b; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import meshio
 import numpy as np
 import pytest
-from conftest import SCENE, cli
+from conftest import SCENE, typed
 from faults import seams
 from faults.fault import Fault, late, no_discount, times, with_scheme
 from faults.kill_matrix import Overlay
@@ -49,7 +49,7 @@ def error(scene: Scene, solver: str = "fenicsx") -> float:
 
 def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(VARIABLE, "/no/such/python")
-    alone = cli("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
+    alone = typed("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
     assert alone.returncode == 2
     assert alone.stderr.startswith(
         "error: NOT RUN: needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda"
@@ -57,9 +57,9 @@ def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.Monkey
     assert "/no/such/python, which DDA_VALIDATE_FENICSX_PYTHON names, has none" in alone.stderr
     gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
     scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
-    run = cli("run", scene_file, cwd=tmp_path)
+    run = typed("run", scene_file, cwd=tmp_path)
     assert run.returncode == 0 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
-    assert cli("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
+    assert typed("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
 
 
 def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,7 +97,7 @@ def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
 
 
 def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
-    done = cli("solve", scene_file, "--solver", "dda", "--ranks", 2)
+    done = typed("solve", scene_file, "--solver", "dda", "--ranks", 2)
     assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
 
 

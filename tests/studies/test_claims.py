@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import cli
+from conftest import typed
 from faults import seams
 from faults.fault import soft_springs, with_scheme
 
@@ -123,5 +123,5 @@ def test_the_page_in_docs_holds_no_digits_of_rounding() -> None:
 
 
 def test_the_command_needs_results(tmp_path: Path) -> None:
-    done = cli("claims", "--results", tmp_path)
+    done = typed("claims", "--results", tmp_path)
     assert done.returncode == 2 and "run paper" in done.stderr
