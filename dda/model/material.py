@@ -61,7 +61,7 @@ class Material:
 
     @property
     def free_modulus(self) -> float:
-        """4 G (lambda + G) / (lambda + 2 G) [Pa]: stress over strain when the other direct stress is nil.
+        """4 G (lambda + G) / (lambda + 2 G) [Pa]: stress over strain when the other direct stress is zero.
 
         E in plane stress, E / (1 - mu^2) in plane strain.
         """

@@ -126,7 +126,7 @@ class Bar:
         Raises
         ------
         ValueError
-            If the scheme is not stable for every frequency, or `steps` or `columns` cannot be served.
+            If the scheme is not stable for every frequency, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
         reason = bar_scheme.applicable(scheme)
@@ -160,7 +160,7 @@ class Bar:
         Raises
         ------
         ValueError
-            If gg is zero, or `steps` or `columns` cannot be served.
+            If gg is zero, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
         if scheme.gg == 0:
@@ -192,7 +192,7 @@ class Bar:
 def applicable(problem: Problem) -> str | None:
     """Why the bar is not exact for a problem, in words; None if it is."""
     if not problem.vertical or problem.gravity != 0 or problem.motion is not None:
-        return "the bar is written for a centred pressure alone"
+        return "the bar carries a centred pressure only"
     if problem.rectangle is None:
         return "the block is not an upright rectangle loaded opposite its base"
     if problem.poisson != 0:

@@ -30,7 +30,7 @@ from fem_reference.problem.problem import Array, Problem
 
 CORNER_WARNING = (
     "corner point springs have no fine-mesh limit: the displacement drifts with the logarithm of the "
-    'element size; the cure is foundation = "distributed" or "patch"'
+    'element size; use foundation = "distributed" or "patch"'
 )
 
 

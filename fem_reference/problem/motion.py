@@ -28,7 +28,7 @@ class Motion:
         if not len(self.time) == len(self.x) == len(self.y) > 0:
             raise ValueError(f"motion: must give x and y for every instant, got {len(self.time)} instants")
         if not np.all(np.isfinite([self.time, self.x, self.y])) or np.any(np.diff(self.time) <= 0):
-            raise ValueError("motion: must hold finite numbers at increasing instants, got others")
+            raise ValueError("motion: must hold finite numbers at increasing instants, got other values")
 
     def __call__(self, instants: Array) -> Array:
         """Displacement (x, y) at some instants, shape (count, 2) [m]."""

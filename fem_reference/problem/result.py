@@ -1,4 +1,4 @@
-"""What a solver of this package hands back."""
+"""What a solver of this package returns."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Mode:
 
 
 def check_request(steps: int, columns: tuple[str, ...]) -> None:
-    """Refuse a number of steps or a column that cannot be served.
+    """Raise for a number of steps or a column that is not available.
 
     Raises
     ------

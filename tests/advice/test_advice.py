@@ -94,7 +94,7 @@ def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: st
     assert crossings <= len(advice.solutions), advice.sentence
     if not advice.reachable and advice.greatest is not None:
         assert "No" in advice.sentence and (target > advice.greatest or target < advice.least)
-        word = "greatest" if target > advice.greatest else "least"
+        word = "largest" if target > advice.greatest else "smallest"
         assert word in advice.sentence
 
 

@@ -138,7 +138,7 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
         os.killpg(process.pid, signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said.strip() == "interrupted: finished rows are kept, the same command goes on from there"
+    assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
 def test_help_has_an_example_everywhere() -> None:

@@ -252,7 +252,7 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     done = cli(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--report", tmp_path / "a.pdf")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
-        "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); what"
+        "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); the"
     )
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF-")
     slipped = cli(*arguments, "--json")

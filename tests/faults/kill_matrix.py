@@ -87,7 +87,7 @@ def killed(
         needed = {need for gate in some for need in study.needs(gate)}
         reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-            patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+            fault.seam.wrap(patch, fault.replacement)
             faulty = finish(reached, study, results)
         yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bar_oracle import Delayed, random_problem
+from oracles.bar_oracle import Delayed, random_problem
 
 from fem_reference import Bar, Scheme
 from fem_reference.events.bar_events import BarMotion, solve

@@ -89,7 +89,8 @@ def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file: Pat
     done = cli("run", scene_file, *options, "--baseline", base)
     assert done.returncode == 0 and "no gate differs" in done.stdout and "Nothing changed." in summary.read_text()
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1.0]\nreason = "wide"\n')
-    assert cli("run", scene_file, *options, "--baseline", base).returncode == 0
+    done = cli("run", scene_file, *options, "--baseline", base)
+    assert done.returncode == 1 and "1 worse" in done.stdout, "a band that lets pass more is no better gate"
     good = tmp_path / "good.json"
     good.write_bytes((tmp_path / "r/verdicts.json").read_bytes())
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "tight again"\n')

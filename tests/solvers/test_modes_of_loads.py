@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults import seams
 from oracles.bars import OTHER, PAPER
 from oracles.elements import make
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 import dda
 import fem_reference
@@ -20,7 +21,7 @@ from validation.runs.history import Array
 A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
 M = RHO * A * A
 SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
-RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3))}
+RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3)), "xy": ((0.0, 2e-3), (0.0, 1e-3))}
 
 
 def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
@@ -80,7 +81,9 @@ def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way
         found = dda.modes(case, SCHEME)
     else:
         found = dda.system_modes(dda.subdivided(case, 1, 1, 1e9), SCHEME)
-    agree(found, carried(*(upright(1, p) if way == "y" else sideways(p))))
+    parts = {"x": [sideways(p)], "y": [upright(1, p)], "xy": [sideways(p), upright(1, p)]}[way]
+    mass, stiffness = (block_diag(*(part[i] for part in parts)) for i in (0, 1))
+    agree(found, carried(mass, stiffness, np.concatenate([part[2] for part in parts])))
 
 
 @pytest.mark.parametrize("p", [1e9, 1e11])
@@ -99,6 +102,17 @@ def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
     for way, fem, block in (("y", 327.7, 344.561), ("x", 137.4, 226.5)):
         assert fem_reference.modes(problem(8, 1e9, way), SAME)[0].frequency == pytest.approx(fem, abs=0.5)
         assert dda.modes(model(1e9, way), SCHEME)[0].frequency == pytest.approx(block, abs=0.05)
+
+
+@pytest.mark.parametrize("p", [1e9, 1e11])
+def test_elements_that_are_moved_both_ways_have_the_modes_of_each(p: float) -> None:
+    """The shares of both ways are weighed by R' M K^-1 M R: those of one way keep their proportions."""
+    both, upwards = (fem_reference.modes(problem(2, p, way), SAME, count=40) for way in ("xy", "y"))
+    ratios = []
+    for mode in upwards[:2]:
+        (same,) = [m for m in both if m.share > 1e-6 and abs(m.frequency / mode.frequency - 1) < 1e-9]
+        ratios.append(same.share / mode.share)
+    assert 0.01 < ratios[0] < 0.99 and ratios[1] == pytest.approx(ratios[0], rel=1e-6)
 
 
 def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
@@ -125,7 +139,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
 
     Blocks w x h with joints of 2 g; the ends of n blocks spoil it by pi^2 / n^2 at most.
     """
-    monkeypatch.setattr("dda.system.solution._DENSE", dense)
+    seams.SYSTEM_DENSE.put(monkeypatch, dense)
     n, width, h, g = 60, 0.5, 0.1, 3e9
     block = dda.Block.rectangle(width, n * h, dda.Material(RHO, E, 0.0))
     system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(g), 5e6), 1, n, g)
@@ -136,7 +150,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("dense", [1, 10**6])
 @pytest.mark.parametrize("full", [False, True])
 def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense: int, full: bool) -> None:
-    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", dense)
+    seams.FEM_DENSE.put(monkeypatch, dense)
     case = make(poisson=0.3, elements=6, degree=1)
     equations = build(case, full)
     exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
@@ -225,16 +239,19 @@ def test_residuals_are_those_of_the_solution(monkeypatch: pytest.MonkeyPatch) ->
     case = dda.TwoBlockModel(block, dda.Contact(P), 5e6)
     assert dda.diagnostics(case, SCHEME).scaled_residual <= 1e-15
     assert diagnostics(make(elements=4), SAME).scaled_residual <= 1e-15
-    solve, factor = np.linalg.solve, fem_reference.scheme.newmark.Work.factor
+    solve = np.linalg.solve
     with monkeypatch.context() as patch:
         patch.setattr(np.linalg, "solve", lambda a, b: solve(a, b) * (1 + 1e-6))
         # S x - b is 1e-6 b; the scale is |S| |x| + |b|, some ten times |b|
         assert 1e-8 < dda.diagnostics(case, SCHEME).scaled_residual <= 5e-7
-    with monkeypatch.context() as patch:
 
-        def slack(work, matrix):  # type: ignore[no-untyped-def]
+    def slack(factor):  # type: ignore[no-untyped-def]
+        def factored(work, matrix):  # type: ignore[no-untyped-def]
             sound = factor(work, matrix)
             return lambda right: sound(right) * (1 + 1e-6)
 
-        patch.setattr("fem_reference.scheme.diagnostics.Work.factor", slack)
+        return factored
+
+    with monkeypatch.context() as patch:
+        seams.FEM_FACTOR.wrap(patch, slack)
         assert 1e-9 < diagnostics(make(elements=4), SAME).scaled_residual <= 5e-7

@@ -41,7 +41,7 @@ GAIN = 3.0  # a mode's amplitude over its static share, at most: 1 at rest, more
 
 @dataclass(frozen=True)
 class Solution:
-    """One answer, with what it brings along."""
+    """One solution: the settings, and the damping and settling that follow from them."""
 
     value: float  # dt [s], gg [1] or delta [1]
     damping: float  # xi of the first axial mode there [1]
@@ -59,7 +59,7 @@ class Solution:
 
 @dataclass(frozen=True)
 class Advice:
-    """The answer: solutions with increasing value, what can be reached at all, and one plain sentence."""
+    """The answer: all solutions in increasing order, the attainable range, and one sentence."""
 
     scene: str
     solve_for: str
@@ -178,7 +178,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
 
 
 def _everywhere(search: Search, target: float) -> bool:
-    """Whether xi is the target whatever the value (average acceleration without discount has none at any dt)."""
+    """Whether every value gives the target (average acceleration without discount has xi = 0 at any dt)."""
     ends = search.ends()
     return bool(ends) and all(abs(search.at(s) - target) < 1e-15 for s in ends)
 
@@ -249,11 +249,11 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
     found: dict[str, Any] = {"window": steps * case.time.step}
     for name in ("fem", "continuum"):
         reference = get_solver(name)
-        if reason := reference.applicable(case):
+        if reason := reference.refusal(case):
             found[name] = {"not applicable": reason}
             continue
         try:
-            other = reference.solve(case).history
+            other = solve(case, name).history
         except InputError as error:
             found[name] = {"not applicable": str(error)}
             continue
@@ -266,14 +266,14 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
 
 
 def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[Solution], reach: Reach) -> str:
-    """Return the answer in one plain sentence that can be acted on."""
+    """Return the answer in one sentence: what to set, and what follows from it."""
     if not solutions:
         return _unreachable(scene, solve_for, target, reach)
     first = solutions[0]
     answers = " or ".join(_answer(solve_for, s) for s in solutions)
     text = f"Set {answers}: the first axial mode of the DDA block is then damped at {percent(target)} of critical"
     if len(solutions) > 1:
-        text += " by each of them"
+        text += " in each case"
     settles = [f"{s.settling_steps} steps ({s.settling_seconds:.4g} s)" for s in solutions if s.settling_steps]
     if settles:
         text += f" and the displacement settles within {' or '.join(settles)}"
@@ -301,7 +301,7 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        return f"; this gg belongs to dt = {solution.step:g} s, at another dt keep the rate c"
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c"
     return ""
 
 
@@ -313,7 +313,5 @@ def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> s
     unit = " s" if solve_for == "dt" else ""
     name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
     if target > greatest:
-        return (
-            f"{wanted}: the greatest that can be reached is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
-        )
-    return f"{wanted}: the least that can be reached is {percent(least)}, at {name} = {least_at:.6g}{unit}."
+        return f"{wanted}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
+    return f"{wanted}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

@@ -1,4 +1,4 @@
-"""The damping budget of a scene: what damping its modes get over dt, and where the limits lie.
+"""The damping budget of a scene: the damping of its modes over dt, and where the limits lie.
 
 The curves are computed when a study runs and kept in its manifest, so that the report draws them without a solver.
 """

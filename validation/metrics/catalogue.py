@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.metrics import columns, growth, modes, pairs
+from validation.metrics import columns, contact, growth, modes, pairs
 from validation.metrics.measurable import Measurable
 from validation.metrics.pairs import Pairing, relative_l2, relative_max
 from validation.metrics.values import QUANTITIES, UNITS, finite
@@ -17,6 +17,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 
 HISTORY, STATIC, MODES, DIAGNOSTICS, REFERENCE = "history", "static", "modes", "diagnostics", "reference"
+SWITCHES = "switches"
 LINEAR = frozenset({STATIC, MODES, DIAGNOSTICS})  # what a solver can report of a linear scene only
 
 
@@ -27,7 +28,7 @@ class Metric:
     id: str
     unit: str  # "1" for a ratio
     says: str
-    needs: frozenset[str]  # among history, static, modes, diagnostics, reference
+    needs: frozenset[str]  # among history, static, modes, diagnostics, switches, reference
     function: Callable[[Any], Value]
     measure: str = "history"  # the part of a study's `measures` that asks for it
 
@@ -92,16 +93,29 @@ def _of_stability() -> Iterator[Metric]:
         ("omega", "largest_omega", "largest w dt"),
     ):
         yield Metric(f"stability.{name}", "1", says, asked, partial(growth.diagnosed, key=key), "stability")
-    rate = "factor a step by which an unstable run grew"
+    rate = "growth factor per step of an unstable run"
     yield Metric("stability.growth", "1", rate, frozenset({HISTORY}), growth.growth_of_run, "stability")
-    largest = "largest w dt that is stepped without growth"
+    largest = "largest w dt without growth (stability limit)"
     yield Metric("stability.limit", "1", largest, asked, growth.limit, "limit")
     change = "largest relative change of a mode's energy over the run"
     yield Metric("energy.drift", "1", change, frozenset({HISTORY, STATIC, MODES}), growth.drift, "energy")
 
 
+def _of_switches() -> Iterator[Metric]:
+    asked = frozenset({SWITCHES})
+    yield Metric("switches.count", "1", "openings and closings after t = 0", asked, contact.count, "switches")
+    for part, opens in (("first_opening", True), ("first_closing", False)):
+        says = f"time of the {part.replace('_', ' ')} after t = 0"
+        yield Metric(f"switches.{part}", "s", says, asked, partial(contact.first, opens=opens), "switches")
+
+
 KIND = Metric(
-    "stability.kind", "word", "what the step makes of a run", frozenset({DIAGNOSTICS}), growth.kind_of_run, "stability"
+    "stability.kind",
+    "word",
+    "stability of the run: stable, marginal, unstable or overflow",
+    frozenset({DIAGNOSTICS}),
+    growth.kind_of_run,
+    "stability",
 )  # a word, which no gate can bound
 
 
@@ -117,7 +131,7 @@ def _of_pairs() -> Iterator[Metric]:
     yield Metric("worst.max", "1", "the larger of displacement.max and pressure.max", both, pairs.worst)
 
 
-SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability())}
+SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability(), *_of_switches())}
 PAIRS = {metric.id: metric for metric in _of_pairs()}
 CATALOGUE = SOLO | PAIRS
 METRICS = tuple(CATALOGUE)  # the ids

@@ -11,7 +11,7 @@ import numpy as np
 from validation.metrics.poles import Pole, poles
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.history import DISPLACEMENT, Array, History
-from validation.runs.modes import Mode
+from validation.runs.modes import Mode, Switch
 from validation.runs.row import Value
 from validation.runs.run import Outcome
 
@@ -27,6 +27,7 @@ class Measurable:
     static_reported: bool = True  # otherwise `static` is another solver's, and settling is measured from that
     diagnostics: Mapping[str, float] = field(default_factory=dict)
     outcome: Outcome = Outcome.COMPLETED
+    switches: tuple[Switch, ...] | None = None  # of a unilateral contact
     limit: Callable[[], Value] | None = None  # finds the largest w dt without growth
 
     def column(self, name: str) -> Array | None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
 from validation.report.blocks import Block, FigureBlock, PageBreak
 from validation.report.chapters.registry import chapter_of
+from validation.report.names import Readable, escaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
+from validation.runs.text import printable
 
 
 def ordered_studies(results: Results) -> list[str]:
@@ -34,6 +37,7 @@ def build(results: Results, out: Path) -> Path:
     InputError
         There are no results, or the file cannot be written.
     """
+    results = Readable(results)
     studies = ordered_studies(results)
     return write_document(out, lambda root: _all_blocks(results, studies, root))
 
@@ -41,10 +45,31 @@ def build(results: Results, out: Path) -> Path:
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
     from validation.report.chapters.front import front_matter, provenance
 
-    blocks = front_matter(results, studies, figures)
+    chapters: list[Block] = []
     for study in studies:
-        blocks += [PageBreak(), *chapter_of(study)(results, results.manifest(study), figures)]
-    return [*blocks, PageBreak(), *provenance(results, studies)]
+        chapters += [PageBreak(), *_chapter(results, study, figures)]
+    with _told(results, "the first and the last page"):
+        return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
+
+
+def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
+    manifest = results.whole(study, histories=True)
+    with _told(results, f"the chapter of {study}"):
+        return chapter_of(study)(results, manifest, figures)
+
+
+@contextmanager
+def _told(results: Results, what: str) -> Iterator[None]:
+    """Name what cannot be written from results that are damaged in a way of which no check has told."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        said = printable(f"{type(error).__name__}: {error}")
+        raise InputError(
+            f"{results.directory}: {what} cannot be written from these results ({said}); run the studies again"
+        ) from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
@@ -55,6 +80,7 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     InputError
         The directory has no such study, or cannot be made.
     """
+    results, study = Readable(results), escaped(study)
     if study not in results.studies():
         known = ", ".join(results.studies()) or "none"
         raise InputError(f"study: must be one of those in {results.directory} ({known}), got {study!r}")
@@ -62,10 +88,6 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
-    blocks = chapter_of(study)(results, results.manifest(study), out)
-    paths: list[Path] = []
-    for block in blocks:
-        if isinstance(block, FigureBlock):
-            svg = out / block.file
-            paths += [svg, png_of(svg)]
-    return paths
+    blocks = _chapter(results, study, out)
+    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
+    return [path for svg in drawn for path in (svg, png_of(svg))]

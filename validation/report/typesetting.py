@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import typst
 
 from validation.errors import InputError
 from validation.report.blocks import Block
+from validation.report.names import unescaped
 from validation.runs.files import write_atomically
 
 TEMPLATE = Path(__file__).with_name("report.typ")
@@ -42,11 +44,23 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation on the two-block model",
-        "blocks": [{"block": type(block).__name__} | asdict(block) for block in blocks],
+        "blocks": [{"block": type(block).__name__} | _shown(asdict(block)) for block in blocks],
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
-    pdf = typst.compile(str(root / "report.typ"), root=str(root), format="pdf", ignore_system_fonts=True)
+    try:
+        pdf = typst.compile(str(root / "report.typ"), root=str(root), format="pdf", ignore_system_fonts=True)
+    except typst.TypstError as error:
+        raise InputError(f"the report cannot be set: {' '.join(str(error).split())}") from error
     return bytes(pdf)
+
+
+def _shown(data: Any) -> Any:
+    """Return the data of a block with every text in characters that can be set, dollars without their backslash."""
+    if isinstance(data, str):
+        return unescaped(data)
+    if isinstance(data, Mapping):
+        return {key: _shown(value) for key, value in data.items()}
+    return [_shown(value) for value in data] if isinstance(data, list | tuple) else data
 
 
 def png_of(svg: Path) -> Path:

@@ -1,4 +1,4 @@
-"""Modes of a discrete model and of its one-step operator."""
+"""Modes of a discrete model and of its one-step operator, and switches of a contact."""
 
 from __future__ import annotations
 
@@ -40,3 +40,12 @@ def contact_index(modes: Sequence[Mode]) -> int | None:
     if len(modes) < 2 or modes[0].contact_share is None:
         return None
     return 1 + int(np.argmax([abs(mode.contact_share or 0.0) for mode in modes[1:]]))
+
+
+@dataclass(frozen=True)
+class Switch:
+    """One opening or closing of a contact."""
+
+    time: float  # s
+    corner: str
+    opens: bool  # else it closes

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.runs.modes import Mode
+from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -25,6 +25,7 @@ class Role(enum.StrEnum):
     REPEAT = "repeat"  # the answer of another solver by other arithmetic
     SECOND_CODE = "second code"  # the answer of another solver by another program
     REFERENCE = "reference"  # the same body under the same scheme, resolved or exact in space
+    LIMIT = "limit"  # what the judged method tends to as the time step goes to zero
     TRUTH = "truth"  # exact in space and time
     OTHER = "other"  # brought by a user
 
@@ -66,6 +67,10 @@ class Prepared:
         """Return spectral radius, condition number and residual of the step."""
         raise NotReported("no diagnostics are reported")
 
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the openings and closings of a unilateral contact after t = 0, in the order of time."""
+        raise NotReported("no switches are reported")
+
 
 class Solver:
     """Base of all solvers; a new one is this checklist.
@@ -79,7 +84,7 @@ class Solver:
     5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
        with those of higher rank) and its look in figures.
     6. `applicable(scene)`: None, or the reason in words why it cannot run this scene, apart from features.
-    7. `prepare(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
+    7. `build(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
        A solver of one function overrides `solve(scene, full, fields)` instead.
     8. `columns()`: the columns that it has; a scene's further columns are not asked of it.
@@ -114,8 +119,12 @@ class Solver:
 
     def refusal(self, scene: Scene) -> str | None:
         """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
-        unknown = [name for name in features.of(scene) if name not in self.handles]
+        unknown = self.unhandled(scene)
         return f"it does not handle {', '.join(unknown)}" if unknown else self.applicable(scene)
+
+    def unhandled(self, scene: Scene) -> list[str]:
+        """Return the features of a scene that the solver does not handle."""
+        return [name for name in features.of(scene) if name not in self.handles]
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
@@ -126,9 +135,21 @@ class Solver:
         return {}
 
     def prepare(self, scene: Scene, full: bool = False) -> Prepared:
-        """Build the scene's model once; `full` switches the numerical savings off."""
+        """Build the scene's model once; `full` switches the numerical savings off.
+
+        Raises
+        ------
+        InputError
+            The scene has a feature that the solver does not handle: nothing is asked of it as if that were absent.
+        """
+        if unknown := self.unhandled(scene):
+            raise InputError(f"{scene.name}: solver {self.name} does not handle {', '.join(unknown)}")
+        return self.build(scene, full)
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Build the model of a scene whose features the solver handles; what a solver of models overrides."""
         if type(self).solve is Solver.solve:
-            raise NotImplementedError(f"{type(self).__name__} must define prepare or solve")
+            raise NotImplementedError(f"{type(self).__name__} must define build or solve")
         return PreparedByFunction(self, scene, full)
 
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:

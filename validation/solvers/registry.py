@@ -21,6 +21,8 @@ BUILT_IN = {
     "fenicsx": "validation.solvers.fenicsx:FEniCSx",
     "bar": "validation.solvers.bar:ExactBar",
     "continuum": "validation.solvers.bar:Continuum",
+    "block-events": "validation.solvers.events:BlockEvents",
+    "bar-events": "validation.solvers.events:BarEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
     "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
     "bar-60": "validation.solvers.sixty_digits.adapters:PreciseBar",

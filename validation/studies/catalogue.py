@@ -24,6 +24,7 @@ STUDIES = {
     "stability-small": "validation.studies.stability:small",
     "stability": "validation.studies.stability:full",
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
+    "opening": "validation.studies.opening:OPENING",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
@@ -95,8 +96,20 @@ def check_words(scene: Scene, source: str) -> None:
     for column in scene.run.columns:
         if column not in served:
             raise InputError(f"{source}: run.columns: must be among {', '.join(served)}, got {column!r}")
+    _check_repeats(scene, source)
     for number, section in enumerate(scene.gate):
         _check_gate(section, scene.run.solvers, f"{source}: gate.{number}")
+
+
+def _check_repeats(scene: Scene, source: str) -> None:
+    met = set()
+    for number, section in enumerate(scene.gate):
+        if (section.pair, section.metric) in met:
+            raise InputError(
+                f"{source}: gate.{number}: must not repeat pair and metric of another gate, got "
+                f"{', '.join(section.pair)} and {section.metric}"
+            )
+        met.add((section.pair, section.metric))
 
 
 def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> None:
@@ -117,19 +130,31 @@ def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None
     Raises
     ------
     InputError
-        A name is neither, or values are set on a study.
+        A name is neither, values are set on a study, or two of them go by one name.
     """
-    studies = []
-    for target in STUDIES if list(targets) == ["all"] else targets:
-        if target in STUDIES and not assignments:
-            studies.append(get_study(target))
-        elif target in STUDIES:
-            raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
-        elif target in scene_names() or target.endswith(".toml"):
-            studies.append(scene_study(target, assignments))
-        else:
+    studies: dict[str, tuple[str, Study]] = {}
+    for target in STUDIES if list(targets) == ["all"] else dict.fromkeys(targets):
+        study = _resolved(target, assignments)
+        if study.name in studies:
             raise InputError(
-                f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
-                f"({', '.join(scene_names())}) or a scene file ending in .toml"
+                f"{target}: must not have the name of {studies[study.name][0]}, whose verdicts it would replace; "
+                "rename the file, or run it into another directory with --results"
             )
-    return studies
+        studies[study.name] = target, study
+    return [study for _, study in studies.values()]
+
+
+def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
+    if target in STUDIES and not assignments:
+        return get_study(target)
+    if target in STUDIES:
+        raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
+    if target not in scene_names() and not target.endswith(".toml"):
+        raise InputError(
+            f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
+            f"({', '.join(scene_names())}) or a scene file ending in .toml"
+        )
+    study = scene_study(target, assignments)
+    if study.name.casefold() in STUDIES and target not in scene_names():
+        raise InputError(f"{target}: must not have the name of the study {study.name}, whose results it would replace")
+    return study

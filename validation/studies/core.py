@@ -169,7 +169,7 @@ def model_form() -> Iterator[Gate]:
             half = decimals(percent)
             edges = (percent - half) / 100, (percent + half) / 100
             yield Gate(scene.name, ("dda", "bar"), f"{quantity}.l2", *edges, why, OTHER, half / 100, until=0.2)
-    why = "the locked contact pulls: independent program, half a unit of its last digit"
+    why = "the locked contact carries tension: independent program, half a unit of its last digit"
     for name, solver, value, half in TENSION:
         yield printed(name, (solver,), "pressure.minimum", value, half, why)
 

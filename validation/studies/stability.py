@@ -12,6 +12,7 @@ from typing import Any
 
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.declaration import Study
 
@@ -32,6 +33,9 @@ FACTORS: dict[str, dict[str, Sequence[Any]]] = {
 }
 PAIRS = (("dda", "dda-60"), ("dda-textbook", "dda-60"), ("bar", "bar-60"), ("fem", "fem-60"))
 MEASURES = ("history", "stability")
+# Explicit schemes run far beyond their limits; in the matrix's corners fem and the printed recursion, out of the range
+# in which they promise digits, grow by rounding before they grow by the scheme.
+ENDS = (Outcome.OVERFLOW, Outcome.MISPREDICTED)
 LIMIT = {"zero": 1e-11, "consistent": 1e-9}  # what dda promises, over the maximum
 FEM_LIMIT, FEM_RANGE = 1e-9, (1e-3, 1e12)  # what fem promises, and the p/E for which it does
 BAR_LIMIT = 1e-9
@@ -140,17 +144,25 @@ PURPOSE = (
 )
 
 
-def study(name: str, title: str, scenes: Sequence[Scene], long: bool) -> Study:
+def study(name: str, title: str, scenes: Sequence[Scene], long: bool, expects: tuple[Outcome, ...]) -> Study:
     """Return a study of some scenes of extremes."""
     return Study(
-        name, title, PURPOSE, scenes, gates=lambda: tuple(gates(scenes)), measures=MEASURES, pairs=PAIRS, long=long
+        name=name,
+        title=title,
+        purpose=PURPOSE,
+        scenes=scenes,
+        gates=lambda: tuple(gates(scenes)),
+        measures=MEASURES,
+        pairs=PAIRS,
+        expects=expects,
+        long=long,
     )
 
 
 def full() -> Study:
     """Return the whole study."""
     scenes = [*matrix(), *factors(list(FACTORS))]
-    return study("stability", "Stiff and extreme: nothing lost, everything named", scenes, True)
+    return study("stability", "Stiff and extreme: nothing lost, everything named", scenes, True, ENDS)
 
 
 def small() -> Study:
@@ -158,4 +170,4 @@ def small() -> Study:
     sweep = {"contact.stiffness": [1.0, 1e21, 1e24], "time.step": [1e-9, 1e-3, 1e3]}
     corners = ((0.5, 1.0, "zero"), (0.25, 0.5, "consistent"), (0.0, 0.5, "zero"))
     scenes = [*(scheme_scene(*corner, sweep) for corner in corners), *factors(["pressure"])]
-    return study("stability-small", "Stiff and extreme, the corners", scenes, False)
+    return study("stability-small", "Stiff and extreme, the corners", scenes, False, ENDS[:1])

@@ -97,7 +97,7 @@ def tension_table(alarms: Alarms, labels: Labels) -> Table:
             label = ""
     titles = (
         *columns("text", "Case", "Solver"),
-        *columns("decimal", "Least pressure [MPa]", "at [ms]", "pulls for [ms]"),
+        *columns("decimal", "Least pressure [MPa]", "at [ms]", "tension for [ms]"),
     )
     return Table(titles, tuple(rows), "Alarm, hidden tension: the locked contact pulls where a real one opens.")
 

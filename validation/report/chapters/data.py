@@ -40,7 +40,7 @@ class Case:
     def reference(self) -> str | None:
         """The solver that pictures take differences from."""
         # The same Newmark scheme first: pictures show model and code.
-        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH)]
+        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH), *by_role(Role.LIMIT)]
         return next((name for name in known if name in self.histories), None)
 
 

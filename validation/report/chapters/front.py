@@ -149,5 +149,5 @@ def cost_table(results: Results, manifest: Manifest) -> Table:
         counts = (len(own), most, work["factorisations"], work["solves"], work["steps"])
         lines.append((solver, *map(str, counts), plain(seconds, 3)))
     titles = columns("decimal", "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
-    caption = "What the answers cost; kept runs count with the seconds that they took."
+    caption = "Cost of the results; cached runs count with their original run time."
     return Table((Column("Solver"), *titles), tuple(lines), caption)

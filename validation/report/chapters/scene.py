@@ -23,7 +23,10 @@ from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.row import Value
 from validation.runs.run import Outcome
+from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 MOST_PANELS = 10
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
@@ -51,7 +54,7 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
     blocks += [_history_block(group, column, directory) for column in _columns(group)]
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    if any(_finished(case) for case in group.cases):
+    if any(_finished(case) for case in group.cases) and features.linear(group.cases[0].scene):
         blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
     blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
     if group.verdicts:
@@ -74,7 +77,7 @@ def conclusion(group: Group) -> str:
 
 
 def _agreement(group: Group) -> str:
-    for reference in ("bar", "fem"):
+    for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT)):
         said = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
             if values := _pair_values(group, "dda", reference, metric):

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from fem_reference.exact.bar_model import BarProblem
+from fem_reference.events.bar_model import BarProblem
 
 
 def random_problem(seed: int) -> BarProblem:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from fem_reference.exact.block_model import BlockProblem
+from fem_reference.events.block_model import BlockProblem
 
 
 def random_problem(seed: int) -> BlockProblem:

@@ -1,0 +1,175 @@
+"""The paper's block unlocked: exact motions against an independent program's numbers, and DDA against exact motions."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import pair
+from validation.runs.row import Value
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.declaration import Study
+
+NAME, SCENE = "opening", "unlocked"
+KINDS = ("block", "bar")
+INSTANTS = (3, 6, 9)  # wave transits a / c
+# p/E -> block, bar: displacement [m] and contact pressure [Pa] at these instants, as an independent program printed
+# them (modes in 40 digits, and polynomials times exponentials in 80, each confirmed by an event-driven integrator).
+KNOWN = {
+    0.1: (
+        ((-0.04033057058886, 3514046.36162), (-0.10229735564167, 9315343.22438), (-0.094205442534319, 8945681.08903)),
+        ((-0.040434436128232, 3296799.53964), (-0.10289879033026, 9552769.44911), (-0.095775969499755, 8469680.76381)),
+    ),
+    1.0: (
+        ((-0.019624767959151, 13384420.7848), (0.00031590245481852, 0.0), (-0.019792101285884, 12124063.0636)),
+        ((-0.020823334904607, 9816843.61111), (0.00098044250944556, 0.0), (-0.02038367296426, 12103775.169)),
+    ),
+    10.0: (
+        ((-0.0048476533988349, 0.0), (-0.0088697687782978, 18266488.6556), (-0.0010994013033985, 0.0)),
+        ((-0.0069999546000701, 1e7), (-0.010989504433439, 9999983.32155), (-0.0010677245716886, 3.5e-6)),
+    ),
+    100.0: (
+        ((-0.003068644722673, 23168703.7452), (-0.0093443226036173, 0.0), (-0.0028873908199839, 37093254.2842)),
+        ((-0.0052, 1e7), (-0.0101, 1e7), (-0.0046, 0.0)),
+    ),
+}
+SWITCHES = {  # p/E -> first opening and first closing after t = 0 of block and bar [s]; None where there is none
+    0.1: ((None, 0.0032525750597312), (None, None)),
+    1.0: ((0.016134552097502, 0.0032525750597312), (0.017964507628979, 0.021939461028721)),
+    10.0: ((0.0047189535282337, 0.0032525750597312), (0.016553410872793, 0.017011534630142)),
+    100.0: ((0.0036444191050135, 0.0032525750597312), (0.016443850139919, 0.016489662515654)),
+}
+SHORT = 6  # digits from which on a number of this program is rounded; one with fewer is exact
+PRINTED = "an independent program; band: half a unit of its last digit, and 1e-12 of the value for rounding"
+
+
+def cases() -> dict[float, Scene]:
+    """Return the cases of the scene by p/E."""
+    return {case.contact.stiffness / case.block.young: case for case in load_scene(SCENE).expand()}
+
+
+REFINED = {  # scene -> order of DDA in the step, through openings and landings
+    "unlocked-constant": 1.0,
+    "unlocked-average": 2.0,
+    "unlocked-average-zero": 1.0,
+}
+NEXT = 0.1  # of an order: what the next order adds over four halvings, seen as the drift of the local orders
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    return (*sampled(), *(refined(name) for name in REFINED))
+
+
+def refined(name: str) -> Derived:
+    """Return the row of the order of DDA in a scene whose step is refined."""
+    steps = load_scene(name).expand()
+    needs = tuple((case.name, solver) for case in steps for solver in ("dda", "block-events"))
+    return Derived(name, "order", needs, functools.partial(order, steps))
+
+
+def order(steps: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the order in dt, with its sign, fitted to the displacement's error against the exact motion."""
+    errors = []
+    for case in steps:
+        histories = [finished.history(case.name, solver) for solver in ("dda", "block-events")]
+        if histories[0] is None or histories[1] is None:
+            return {}
+        error = pair("displacement.l2", histories[0], histories[1])
+        errors.append(error if isinstance(error, float) else math.nan)
+    slope = np.polyfit(np.log([case.time.step for case in steps]), np.log(errors), 1)[0]
+    return {"displacement": float(slope)}
+
+
+def sampled() -> tuple[Derived, ...]:
+    """Return a row of samples for every case and both exact motions."""
+    return tuple(
+        Derived(case.name, f"{kind} samples", ((case.name, f"{kind}-events"),), functools.partial(samples, case, kind))
+        for case in cases().values()
+        for kind in KINDS
+    )
+
+
+def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
+    """Return displacement and contact pressure at the instants."""
+    history = finished.history(case.name, f"{kind}-events")
+    if history is None:
+        return {}
+    found: dict[str, Value] = {}
+    for n in INSTANTS:
+        found[f"displacement.{n}"] = float(history.displacement[n - 1])
+        found[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
+    return found
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*value_gates(), *switch_gates(), *order_gates())
+
+
+def value_gates() -> Iterator[Gate]:
+    """Yield the gates on displacement and contact pressure at the instants."""
+    for ratio, case in cases().items():
+        for kind, rows in zip(KINDS, KNOWN[ratio], strict=True):
+            for n, (displacement, pressure) in zip(INSTANTS, rows, strict=True):
+                yield _near(case, kind, f"displacement.{n}", displacement, 0.0)
+                yield _near(case, kind, f"pressure.{n}", pressure, front(case))
+
+
+def order_gates() -> Iterator[Gate]:
+    """Yield the gates on the order of DDA through openings and landings."""
+    for name, value in REFINED.items():
+        reason = f"order {value:g} of the scheme in smooth motion, kept through switches; {NEXT:g} for the next order"
+        yield Gate(name, ("order",), "displacement", value - NEXT, value + NEXT, reason)
+
+
+def _near(case: Scene, kind: str, metric: str, value: float, least: float) -> Gate:
+    half = half_unit(value) + 1e-12 * abs(value) + least
+    reason = PRINTED + (", and the ulp of the instant at a front" if least else "")
+    return Gate(
+        case.name, (f"{kind} samples",), metric, value - half, value + half, reason, "other code", half_unit(value)
+    )
+
+
+def half_unit(value: float) -> float:
+    """Return half a unit of the last digit of a number as it is printed, 0 for one that is exact."""
+    mantissa, _, exponent = repr(value).partition("e")
+    digits = mantissa.partition(".")[2].rstrip("0")
+    rounded = len(mantissa.replace(".", "").strip("-0")) >= SHORT or bool(exponent)
+    return 0.5 * 10.0 ** (int(exponent or 0) - len(digits)) if digits and rounded else 0.0
+
+
+def front(case: Scene) -> float:
+    """Return the pressure that a front can bring in a few ulps of the last instant [Pa].
+
+    The contact pressure changes by at most 2 q in a time 1 / kappa, kappa = 2 p / (a rho c) [1/s].
+    """
+    b = case.block
+    kappa = 2 * case.contact.stiffness / (b.base_length * math.sqrt(b.young * b.density))
+    return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
+
+
+def switch_gates() -> Iterator[Gate]:
+    """Yield the gates on the first opening and closing."""
+    for ratio, case in cases().items():
+        for kind, times in zip(KINDS, SWITCHES[ratio], strict=True):
+            for part, value in zip(("first_opening", "first_closing"), times, strict=True):
+                if value is not None and value < case.time.duration:
+                    half = half_unit(value) + 1e-12 * value
+                    edges = value - half, value + half
+                    yield Gate(case.name, (f"{kind}-events",), f"switches.{part}", *edges, PRINTED, "other code")
+
+
+OPENING = Study(
+    NAME,
+    "Contact that opens: exact motions of the block and of the bar",
+    "The same block on springs that carry no tension: when it leaves the ground, when it lands, and what it carries.",
+    [SCENE, *REFINED],
+    gates=gates,
+    derived=derived,
+)
