@@ -15,7 +15,7 @@ import pytest
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
-from validation.report.blocks import Callout, Column, FigureBlock, Heading, Math, PageBreak, Paragraph, Table
+from validation.report.blocks import Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.book import build, figures, ordered_studies
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import front as chapters_front
@@ -441,7 +441,6 @@ def test_every_kind_of_block_is_set(tmp_path):
     blocks = [
         Heading("One"),
         Paragraph("text", "lead"),
-        Math("a^2 / b"),
         Callout("careful", "warn"),
         PageBreak(),
         Table((Column("x", "decimal"), Column("id", "id")), (("1.5", "a:b[c=d]"),)),

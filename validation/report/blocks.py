@@ -81,16 +81,9 @@ class Callout:
 
 
 @dataclass(frozen=True)
-class Math:
-    """A displayed formula in typst's mathematics."""
-
-    source: str
-
-
-@dataclass(frozen=True)
 class PageBreak:
     """The rest starts on a new page (nothing happens at the top of a page)."""
 
 
-Block = Heading | Paragraph | Table | FigureBlock | Callout | Math | PageBreak
+Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak
 Chapter = Callable[[Results, Manifest, Path], list[Block]]

@@ -164,7 +164,7 @@ def _columns(group: Group) -> list[str]:
 
 def _history_block(group: Group, column: str, directory: Path) -> FigureBlock:
     shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
-    window = shared_window(shown)
+    window = min(_ends(shown), default=0.0)  # cases of one figure are compared over the same time
     panels = [_panel(case, column, window) for case in shown]
     name = COLUMNS.get(column, (column,))[0]
     less = "" if len(shown) == len(group.cases) else f" ({len(shown)} of {len(group.cases)} cases)"
@@ -182,11 +182,6 @@ def _ends(cases: Sequence[Case]) -> list[float]:
     for case in cases:
         ends += [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
     return ends
-
-
-def shared_window(cases: Sequence[Case]) -> float:
-    """Return the time that all cases of a sweep run [s]: cases of one figure are compared over the same time."""
-    return min(_ends(cases), default=0.0)
 
 
 def _history_caption(panels: Sequence[Panel]) -> str:

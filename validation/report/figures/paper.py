@@ -164,16 +164,12 @@ def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
     return figure
 
 
-def _values(listed: Sequence[float | None]) -> Array:
-    return np.array([math.nan if value is None else value for value in listed])
-
-
 def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
     """Lines of a panel: label -> values, colour, width, dashes; parts only where there is kinetic damping."""
     found: dict[str, BudgetLine] = {}
     colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
     for name, curves in budget["modes"].items():
-        total, own, kinetic = (_values(curves[part]) for part in ("total", "algorithmic", "kinetic"))
+        total, own, kinetic = (np.array(curves[part], dtype=float) for part in ("total", "algorithmic", "kinetic"))
         found[name] = (total, colors[name], 1.3, "-")
         if name == "first axial" and min(np.nanmax(part, initial=0.0) for part in (own, kinetic)) > LEAST_RATIO:
             found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
