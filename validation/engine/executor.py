@@ -24,7 +24,7 @@ def executed(
         return
     lost = []
     with _pool(executor, min(jobs, len(pending))) as pool:
-        futures = {pool.submit(execute, case, key, study.name): key for key, case in pending.items()}
+        futures = {pool.submit(_checked, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
             error, key = future.exception(), futures[future]
             if isinstance(error, BrokenExecutor):
@@ -35,6 +35,13 @@ def executed(
                 yield future.result()
     for key in lost:
         yield _alone(pending[key], key, study)
+
+
+def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
+    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers."""
+    if case.key() != key:
+        return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
+    return execute(case, key, study)
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:

@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, FigureBlock, PageBreak
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
 from validation.report.chapters.registry import chapter_of
-from validation.report.names import Readable, escaped
+from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import _png, write_document
 from validation.runs.results import Results
 from validation.runs.text import printable
@@ -45,11 +45,7 @@ def build(results: Results, out: Path) -> Path:
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
     from validation.report.chapters import front as chapters_front
 
-    chapters = [
-        block
-        for study in studies
-        for block in (PageBreak(), *_chapter(results, study, figures))
-    ]
+    chapters = [block for study in studies for block in (PageBreak(), *_chapter_or_why(results, study, figures))]
     with _told(results, "the first and the last page"):
         front, back = (part(results, studies, figures) for part in (chapters_front.front_matter, _provenance))
     return [*front, *chapters, PageBreak(), *back]
@@ -63,8 +59,20 @@ def _provenance(results: Results, studies: Sequence[str], figures: Path) -> list
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
     manifest = results.whole(study, histories=True)
-    with _told(results, f"the chapter of {study}"):
+    with _told(results, f"the chapter of {unescaped(study)}"):
         return chapter_of(study)(results, manifest, figures)
+
+
+def _chapter_or_why(results: Results, study: str, figures: Path) -> list[Block]:
+    """Return a study's chapter; one that cannot be drawn says so, and does not cost the others."""
+    try:
+        return _chapter(results, study, figures)
+    except _Undrawn as error:
+        return [Heading(study), Callout(f"{error}.", "fail")]
+
+
+class _Undrawn(InputError):
+    """A part of the report that its results give no numbers for."""
 
 
 @contextmanager
@@ -76,9 +84,7 @@ def _told(results: Results, what: str) -> Iterator[None]:
         raise
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         said = printable(f"{type(error).__name__}: {error}")
-        raise InputError(
-            f"{results.directory}: {what} cannot be written from these results ({said}); run the studies again"
-        ) from error
+        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({said})") from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
