@@ -2,7 +2,9 @@
 
 import json
 import shutil
+import threading
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -57,8 +59,8 @@ def test_the_manifest_says_which_versions_made_the_rows(
     monkeypatch.setattr(origin, "_here", lambda: then | {"commit": "now", "packages": {"numpy": "2.1.0"}})
     assert ran(scene, results) == ["bar"]
     found = results.manifest("test")["provenance"]
-    assert found["commit"] == "then (1 rows); now (1 rows)"
-    assert found["packages"] == {"numpy": "2.0.0 (1 rows); 2.1.0 (1 rows)"}
+    assert found["commit"] == "then (1 row); now (1 row)"
+    assert found["packages"] == {"numpy": "2.0.0 (1 row); 2.1.0 (1 row)"}
     assert found["python"] == "3.11"
 
 
@@ -164,6 +166,17 @@ def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome: Outcome, s
     results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
     rows = finish([case], study(scene), results).rows
     assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
+
+
+def test_a_worker_with_other_sources_makes_no_rows(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, keys = threading.get_ident(), Case.key
+    monkeypatch.setattr(Case, "key", lambda case: keys(case) if threading.get_ident() == here else "another")
+    with ThreadPoolExecutor(2) as pool:
+        rows = finish([Case(scene, "dda"), Case(scene, "bar")], study(scene), Results(tmp_path), executor=pool).rows
+    assert {row.outcome for row in rows.values()} == {Outcome.RAISED}
+    assert {row.notes for row in rows.values()} == {("the worker holds other sources, versions or files",)}
 
 
 # ---- records --------------------------------------------------------------------------------------------------------

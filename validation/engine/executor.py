@@ -26,11 +26,11 @@ def executed(
     """Run the pending cases, in this process where one worker or one case is all there is."""
     if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
-            yield _named(case, key, study.name)
+            yield _checked(case, key, study.name)
         return
     lost = []
     with _pool(executor, min(jobs, len(pending))) as pool:
-        futures = {pool.submit(_named, case, key, study.name): key for key, case in pending.items()}
+        futures = {pool.submit(_checked, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
             error, key = future.exception(), futures[future]
             if isinstance(error, BrokenExecutor):
@@ -43,9 +43,14 @@ def executed(
         yield _alone(pending[key], key, study)
 
 
-def _named(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case; what fails outside the solver, memory included, is a named outcome as well."""
+def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
+    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers.
+
+    What fails outside the solver, memory included, is a named outcome as well.
+    """
     try:
+        if case.key() != key:
+            return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
         return execute(case, key, study)
     except Exception as error:
         return failed_row(case, key, study, said(error)), None
@@ -55,7 +60,7 @@ def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with _pool(None, 1) as pool:
         try:
-            return pool.submit(_named, case, key, study.name).result()
+            return pool.submit(_checked, case, key, study.name).result()
         except BrokenExecutor:
             note = "worker killed (out of memory or a signal)"
             return failed_row(case, key, study.name, note), None

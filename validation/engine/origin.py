@@ -44,4 +44,6 @@ def _counted(values: list[Any]) -> Any:
     met: dict[str, int] = {}
     for value in values:
         met[str(value)] = met.get(str(value), 0) + 1
-    return values[0] if len(met) == 1 else "; ".join(f"{said} ({count} rows)" for said, count in met.items())
+    if len(met) == 1:
+        return values[0]
+    return "; ".join(f"{said} ({count} row{'s' * (count > 1)})" for said, count in met.items())

@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, FigureBlock, PageBreak
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
 from validation.report.chapters.registry import chapter_of
-from validation.report.names import Readable, escaped
+from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
 from validation.runs.text import printable
@@ -47,15 +47,27 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
 
     chapters: list[Block] = []
     for study in studies:
-        chapters += [PageBreak(), *_chapter(results, study, figures)]
+        chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
     with _told(results, "the first and the last page"):
         return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
     manifest = results.whole(study, histories=True)
-    with _told(results, f"the chapter of {study}"):
+    with _told(results, f"the chapter of {unescaped(study)}"):
         return chapter_of(study)(results, manifest, figures)
+
+
+def _chapter_or_why(results: Results, study: str, figures: Path) -> list[Block]:
+    """Return a study's chapter; one that cannot be drawn says so, and does not cost the others."""
+    try:
+        return _chapter(results, study, figures)
+    except _Undrawn as error:
+        return [Heading(study), Callout(f"{error}.", "fail")]
+
+
+class _Undrawn(InputError):
+    """A part of the report that its results give no numbers for."""
 
 
 @contextmanager
@@ -67,9 +79,7 @@ def _told(results: Results, what: str) -> Iterator[None]:
         raise
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         said = printable(f"{type(error).__name__}: {error}")
-        raise InputError(
-            f"{results.directory}: {what} cannot be written from these results ({said}); run the studies again"
-        ) from error
+        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({said})") from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
