@@ -20,6 +20,7 @@ from dda.one_block import gap_form, solution
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
+from fem_reference.events import bar_events, block_events
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -116,6 +117,10 @@ BAR_TRACE = Seam(modal, modal.trace)
 BAR_SPECTRUM = Seam(modal, modal.spectrum)
 BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
 BAR_PAIR = Seam(modal, modal._pair)
+
+# The exact motions with contact that opens
+EVENTS_BLOCK = Seam(block_events, block_events.solve)
+EVENTS_BAR = Seam(bar_events, bar_events.solve)
 
 # The suite itself
 CAUSES_FURTHER = Seam(causes, causes._further)
