@@ -33,20 +33,13 @@ SETTLED = 1e-13
 class GluedBase:
     """The base in one step: gaps and slips are (w, s) = (free_gap, free_slip) + C (N, T)."""
 
-    C: Array
-    """Gaps, then slips, of unit normal, then tangential, forces [m/N], shape (2 points, 2 points)."""
-    compliance: Array
-    """1 / k of each point [m/N], shape (points,)."""
-    shear_stiffness: Array
-    """k_t of each point [N/m], shape (points,)."""
-    free_gap: Array
-    """Gaps without forces at the end of the step [m], shape (points,)."""
-    free_slip: Array
-    """Slips without forces beyond the references at the start of the step, s - r0 [m], shape (points,)."""
-    gap: Array
-    """Gaps at the start of the step [m], shape (points,)."""
-    closed: Flags
-    """Points that were closed at the start of the step, shape (points,)."""
+    C: Array  # gaps, then slips, of unit normal, then tangential, forces [m/N], shape (2 points, 2 points)
+    compliance: Array  # 1 / k of each point [m/N], shape (points,)
+    shear_stiffness: Array  # k_t of each point [N/m], shape (points,)
+    free_gap: Array  # gaps without forces at the end of the step [m], shape (points,)
+    free_slip: Array  # slips without forces beyond the references at the start of the step, s - r0 [m], shape (points,)
+    gap: Array  # gaps at the start of the step [m], shape (points,)
+    closed: Flags  # points that were closed at the start of the step, shape (points,)
 
     def forces(self, states: Flags) -> Trial:
         """Forces and gaps for given states, with the crossings that belong to them: phi for phi(forces(phi))."""

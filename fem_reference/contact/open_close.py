@@ -30,28 +30,20 @@ Flags = NDArray[np.bool_]
 class Trial:
     """Forces and gaps of the base's points for given states."""
 
-    normal: Array
-    """Normal force N of each point on the block [N], zero where open, shape (points,)."""
-    shear: Array
-    """Tangential force T of each point on the block [N], shape (points,)."""
-    gap: Array
-    """Gap w_f + C N of each point [m], shape (points,)."""
-    settled: bool = True
-    """Whether the forces are those of the states, which may themselves ask for an iteration."""
+    normal: Array  # normal force N of each point on the block [N], zero where open, shape (points,)
+    shear: Array  # tangential force T of each point on the block [N], shape (points,)
+    gap: Array  # gap w_f + C N of each point [m], shape (points,)
+    settled: bool = True  # whether the forces are those of the states, which may themselves ask for an iteration
 
 
 @dataclass(frozen=True)
 class Contact:
     """Converged contact of a step, or why there is none."""
 
-    trial: Trial | None
-    """Forces and gaps; None where no states are consistent, or not only one set of them is known to be."""
-    closed: Flags
-    """Closed points, shape (points,)."""
-    solves: int
-    """Solutions for the forces of given states [-]; a fallback counts as one."""
-    failure: str = ""
-    """Why `trial` is None, in words."""
+    trial: Trial | None  # forces and gaps; None where no states are consistent, or more than one set may be
+    closed: Flags  # closed points, shape (points,)
+    solves: int  # solutions for the forces of given states [-]; a fallback counts as one
+    failure: str = ""  # why `trial` is None, in words
 
 
 def corrected(trial: Trial, closed: Flags) -> Flags:

@@ -29,28 +29,17 @@ SAME_PLACE = 1e-9
 class ContactModel:
     """M D'' + K D = F + normal' N + tangential' T, with the forces N, T of the base's points on the block."""
 
-    M: csr_array
-    """Consistent mass matrix [kg], shape (unknowns, unknowns)."""
-    K: csr_array
-    """Elastic stiffness without the springs of the base [N/m]."""
-    F: Array
-    """Constant load [N], shape (unknowns,)."""
-    normal: csr_array
-    """Rows that give the normal displacement of each point, into the block [-], shape (points, unknowns)."""
-    tangential: csr_array
-    """Rows that give the displacement of each point along the base [-], shape (points, unknowns)."""
-    share: Array
-    """Share of the base that belongs to each point [-], shape (points,); its sum is one."""
-    stiffness: Array
-    """Normal stiffness of each point, 2 p times its share [N/m]."""
-    shear_stiffness: Array
-    """Tangential stiffness of each point, 2 p_s times its share [N/m]."""
-    upwards: Array
-    """Unknowns of a unit translation upwards [-], shape (unknowns,)."""
-    observers: dict[str, Array]
-    """Rows that give v, u and the rotation at the centroid, shape (unknowns,)."""
-    kind: str
-    """``"whole"`` or ``"column"``."""
+    M: csr_array  # consistent mass matrix [kg], shape (unknowns, unknowns)
+    K: csr_array  # elastic stiffness without the springs of the base [N/m]
+    F: Array  # constant load [N], shape (unknowns,)
+    normal: csr_array  # rows that give the normal displacement of each point, into the block [-], (points, unknowns)
+    tangential: csr_array  # rows that give the displacement of each point along the base [-], shape (points, unknowns)
+    share: Array  # share of the base that belongs to each point [-], shape (points,); its sum is one
+    stiffness: Array  # normal stiffness of each point, 2 p times its share [N/m]
+    shear_stiffness: Array  # tangential stiffness of each point, 2 p_s times its share [N/m]
+    upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
+    observers: dict[str, Array]  # rows that give v, u and the rotation at the centroid, shape (unknowns,)
+    kind: str  # ``"whole"`` or ``"column"``
 
 
 def build(problem: Problem, full: bool = False) -> ContactModel:

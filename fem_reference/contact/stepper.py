@@ -34,20 +34,13 @@ KEPT = 8
 class ContactState:
     """Motion and contact at the end of a step."""
 
-    motion: State
-    """Displacement [m], velocity [m/s] and acceleration [m/s2] of the unknowns."""
-    gap: Array
-    """Gap w of each point [m], negative where pressed, shape (points,)."""
-    slip: Array
-    """Displacement s of each point along the base [m]."""
-    reference: Array
-    """Slip r at which the shear spring of each point is unstrained [m]."""
-    normal: Array
-    """Normal force N of each point on the block [N]."""
-    shear: Array
-    """Tangential force T of each point on the block [N]."""
-    closed: Flags
-    """Points that the last step found closed."""
+    motion: State  # displacement [m], velocity [m/s] and acceleration [m/s2] of the unknowns
+    gap: Array  # gap w of each point [m], negative where pressed, shape (points,)
+    slip: Array  # displacement s of each point along the base [m]
+    reference: Array  # slip r at which the shear spring of each point is unstrained [m]
+    normal: Array  # normal force N of each point on the block [N]
+    shear: Array  # tangential force T of each point on the block [N]
+    closed: Flags  # points that the last step found closed
 
 
 @dataclass(frozen=True)
@@ -56,10 +49,8 @@ class _Matrices:
 
     scheme: Scheme
     solve: Callable[[Array], Array]
-    response: Array
-    """S^-1 B', shape (unknowns, forces)."""
-    C: Array
-    """Alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)."""
+    response: Array  # S^-1 B', shape (unknowns, forces)
+    C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
 
 
 @dataclass
@@ -74,10 +65,8 @@ class ContactStepper:
 
     model: ContactModel
     scheme: Scheme
-    shear: str = "frictionless"
-    """``"frictionless"``, or ``"glued"``: shear springs hold the closed points."""
-    limit: int = 6
-    """Greatest number of solutions of the open-close iteration [-]."""
+    shear: str = "frictionless"  # ``"frictionless"``, or ``"glued"``: shear springs hold the closed points
+    limit: int = 6  # greatest number of solutions of the open-close iteration [-]
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:

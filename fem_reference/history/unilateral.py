@@ -45,18 +45,12 @@ class Unilateral:
         For a value out of its range, naming field, rule and value.
     """
 
-    gap: float = 0.0
-    """Gap g0 under the whole base at t = 0 [m], at least 0."""
-    velocity: float = 0.0
-    """Velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one."""
-    shear: str = "frictionless"
-    """``"frictionless"``, or ``"glued"``: shear springs of the problem's shear stiffness hold closed points."""
-    limit: int = 6
-    """Greatest number of solutions of the open-close iteration before its fallback [-]."""
-    cut: float = 0.3
-    """Factor on a step whose contact has no solution [-], between 0 and 1."""
-    shortest: float = 0.01
-    """Shortest step over the scheme's own [-], above 0 and at most 1."""
+    gap: float = 0.0  # gap g0 under the whole base at t = 0 [m], at least 0
+    velocity: float = 0.0  # velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one
+    shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
+    limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
+    cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
+    shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
 
     def __post_init__(self) -> None:
         for name, rule, good in (
@@ -75,32 +69,19 @@ class Unilateral:
 class UnilateralResult:
     """A history with its outcome and work counts; row 0 is step 1."""
 
-    time: Array
-    """Time of each row [s], shape (rows,): fewer rows than steps asked for where the outcome is not completed."""
-    columns: dict[str, Array]
-    """One array of shape (rows,) for each of `UNILATERAL_COLUMNS`."""
-    outcome: str
-    """``"completed"``, or why it ended early."""
-    unknowns: int
-    """Number of unknowns that were integrated [-]."""
-    points: int
-    """Number of contact points of the base [-]."""
-    nonzeros: int
-    """Stored entries of the matrix that was factorised last [-]."""
-    factorisations: int
-    """Number of factorisations [-]: one for each length of step, and one of M for a consistent start."""
-    solves: int
-    """Number of solutions with a factorised matrix [-]."""
-    notes: tuple[str, ...]
-    """Savings used and warnings, in words."""
-    setup_seconds: float
-    """Time for assembly, factorisation and the forces' responses [s]."""
-    stepping_seconds: float
-    """Time for the steps [s]."""
-    normal: Array | None = None
-    """Normal force of each point at each step [N], shape (rows, points), where asked for."""
-    gap: Array | None = None
-    """Gap of each point at each step [m], shape (rows, points), where asked for."""
+    time: Array  # time of each row [s], shape (rows,): fewer than steps asked for where the outcome is not completed
+    columns: dict[str, Array]  # one array of shape (rows,) for each of `UNILATERAL_COLUMNS`
+    outcome: str  # ``"completed"``, or why it ended early
+    unknowns: int  # number of unknowns that were integrated [-]
+    points: int  # number of contact points of the base [-]
+    nonzeros: int  # stored entries of the matrix that was factorised last [-]
+    factorisations: int  # number of factorisations [-]: one for each length of step, one of M for a consistent start
+    solves: int  # number of solutions with a factorised matrix [-]
+    notes: tuple[str, ...]  # savings used and warnings, in words
+    setup_seconds: float  # time for assembly, factorisation and the forces' responses [s]
+    stepping_seconds: float  # time for the steps [s]
+    normal: Array | None = None  # normal force of each point at each step [N], shape (rows, points), where asked for
+    gap: Array | None = None  # gap of each point at each step [m], shape (rows, points), where asked for
 
 
 def solve_unilateral(
@@ -208,16 +189,11 @@ def _run(
 class CutStep:
     """One step of the scheme, in one piece or in several."""
 
-    state: ContactState | None
-    """State at the end; None where even the shortest step has no contact."""
-    solves: int = 0
-    """Solutions of the open-close iteration in all pieces, tried and accepted [-]."""
-    cuts: int = 0
-    """Pieces that were tried without success [-]; the next step is tried in one piece again."""
-    pieces: list[float] = field(default_factory=list)
-    """Lengths of the accepted pieces over the step [-]."""
-    failure: str = ""
-    """Why there is no state, in words."""
+    state: ContactState | None  # state at the end; None where even the shortest step has no contact
+    solves: int = 0  # solutions of the open-close iteration in all pieces, tried and accepted [-]
+    cuts: int = 0  # pieces that were tried without success [-]; the next step is tried in one piece again
+    pieces: list[float] = field(default_factory=list)  # lengths of the accepted pieces over the step [-]
+    failure: str = ""  # why there is no state, in words
 
 
 def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Unilateral) -> CutStep:

@@ -99,5 +99,9 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     except OSError as error:
         raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
     blocks = _chapter(results, study, out)
-    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
-    return [path for svg in drawn for path in (svg, png_of(svg))]
+    paths: list[Path] = []
+    for block in blocks:
+        if isinstance(block, FigureBlock):
+            svg = out / block.file
+            paths += [svg, png_of(svg)]
+    return paths

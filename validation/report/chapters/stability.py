@@ -150,7 +150,8 @@ def _decade(value: float) -> str:
 def factor_tables(found: Sequence[Cell]) -> list[Block]:
     """Return one table of the one-factor extremes: radius, condition, residual and digits."""
     by_key = {(c.scene, c.solver): c for c in found}
-    rows = [_factor_row(scene, by_key) for scene in dict.fromkeys(scene for scene, _ in by_key)]
+    scenes = dict.fromkeys(c.scene for c in found)
+    rows = [_factor_row(scene, by_key) for scene in scenes]
     if not rows:
         return []
     titles = (

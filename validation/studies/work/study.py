@@ -153,7 +153,8 @@ def order_in_mesh(name: str) -> Derived:
     levels = named(name).expand()
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        found, exact = ([_columns(finished, case.name, solver) for case in levels] for solver in ("fem", "bar"))
+        found = [_columns(finished, case.name, "fem") for case in levels]
+        exact = [_columns(finished, case.name, "bar") for case in levels]
         return _orders([1 / n for n in MESHES], found, exact)
 
     needs = itertools.product((case.name for case in levels), ("fem", "bar"))
