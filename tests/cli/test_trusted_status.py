@@ -19,7 +19,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.studies.catalogue import STUDIES, get_study
 
-RUN = '[run]\nsolvers = {}\n'
+RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
 
 
