@@ -27,10 +27,10 @@ class Overlay(Results):
 
     def __init__(self, directory: Path, sound: Results) -> None:
         super().__init__(directory)
-        self.sound = sound
+        self.unharmed = sound
 
     def history(self, key: str) -> History | None:
-        return super().history(key) or self.sound.history(key)
+        return super().history(key) or self.unharmed.history(key)
 
 
 def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
