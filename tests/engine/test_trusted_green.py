@@ -263,8 +263,8 @@ class Wrong(Solver):
     [
         ("surrogate", Outcome.RAISED, r"ValueError: a lone \udcff and \x1b[31m red"),
         ("memory", Outcome.RAISED, "MemoryError"),
-        ("static", Outcome.COMPLETED, "modes not measured: LinAlgError: SVD did not converge"),
-        ("extra", Outcome.COMPLETED, "modes not measured: LinAlgError: SVD did not converge"),
+        ("static", Outcome.COMPLETED, ""),
+        ("extra", Outcome.COMPLETED, ""),
     ],
 )
 def test_odd_errors_and_values_are_named_outcomes(
@@ -274,7 +274,8 @@ def test_odd_errors_and_values_are_named_outcomes(
     results = Results(tmp_path)
     run_study(Study("test", "t", "p", [scene], ("dda",)), results)
     (row,) = results.rows().values()
-    assert row.outcome is outcome and row.notes[-1] == note
+    assert row.outcome is outcome and (row.notes[-1] if note else "") == note
+    assert outcome is not Outcome.COMPLETED or row.metrics["mode1.measured_damping"] == "undefined"
     history = results.history(row.key)
     assert (history is not None) == (outcome is Outcome.COMPLETED)
     assert history is None or list(history.columns) == ["displacement"]
