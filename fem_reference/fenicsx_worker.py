@@ -2,7 +2,8 @@
 
 It shares no line with the rest of this package: own nodes for the same mesh, own weak forms (UFL), own Newmark
 loop on PETSc matrices, factored once by PETSc's LU on one rank and by MUMPS on more. It reads one JSON object a
-line from standard input and answers each with one line of JSON; it ends where its input ends::
+line from standard input and answers each with one line of JSON that carries the request's "id"; it ends where its
+input ends::
 
     python3 fenicsx_worker.py < requests.jsonl
     mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
@@ -182,15 +183,17 @@ class Block:
         found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
         for name, (measure, expected) in found.items():
             if abs(self._integral(measure) - expected) > 1e-9 * expected:
-                raise ValueError(f"mesh: outline must be the block's, but its {name} is another")
+                raise ValueError(f"mesh: outline must be the block's, but its {name} differs")
         low, high = pressed_part(request, o.side(o.top)[2])
         if abs(self._integral(self.ds(PRESSED)) - (high - low)) > 1e-9 * o.side(o.top)[2]:
-            raise Inapplicable("the pressed part ends inside elements, and fenicsx integrates whole edges only")
+            raise Inapplicable(
+                "the pressed part of the top ends inside an element's edge, and fenicsx integrates whole edges only"
+            )
         spans = spring_intervals(request, o.side(0)[2])
         carried = sum(high - low for low, high in spans)
         if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
             if request["foundation"] == "patch":
-                raise Inapplicable("the patches end inside elements, and fenicsx integrates whole edges only")
+                raise Inapplicable("the patches end inside an element's edge, and fenicsx integrates whole edges only")
             raise ValueError("mesh: the base must be covered by edges of elements exactly")
         self.carried = carried if spans else 1.0
 
@@ -440,10 +443,10 @@ def run(request: Request) -> dict[str, Any]:
     }
 
 
-def answer(line: str) -> dict[str, Any]:
+def answer(request: Request) -> dict[str, Any]:
     """Run one request; what fails alike on every rank is an answer, anything else ends all ranks."""
     try:
-        return run(json.loads(line))
+        return run(request)
     except Inapplicable as error:
         return {"inapplicable": str(error)}
     except ValueError as error:
@@ -478,9 +481,10 @@ def main() -> None:
     """Answer request after request."""
     out = answers_only()
     while line := next_line():
-        found = answer(line)
+        request = json.loads(line)
+        found = answer(request)
         if COMM.rank == 0:
-            out.write(json.dumps(found) + "\n")
+            out.write(json.dumps({**found, "id": request.get("id")}) + "\n")
             out.flush()
         gc.collect()  # on every rank at the same place: matrices are freed together
 

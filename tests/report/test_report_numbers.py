@@ -151,6 +151,12 @@ def test_a_figure_compares_cases_over_the_time_that_all_of_them_run(drawn: dict[
     assert names_at(figure.axes[1])["dda"][0] == pytest.approx(-11)
 
 
+def test_pictures_take_differences_under_the_same_scheme_where_they_can() -> None:
+    history, names = made_history(0.1, [1.0]), ("dda", "continuum", "fem", "bar")
+    found = [made_case(BASE, {}, dict.fromkeys(names[:count], history)).reference for count in (4, 3, 2, 1)]
+    assert found == ["bar", "fem", "continuum", None]
+
+
 def test_the_drift_of_corner_springs_is_drawn_in_millimetres(drawn: dict[str, Figure], tmp_path: Path) -> None:
     cases = []
     for n, v in ((4, -0.02), (8, -0.025), (16, -0.03)):

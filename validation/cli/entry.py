@@ -11,6 +11,7 @@ import typer
 from validation.cli import compare, damping, report, run, verdicts, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.output import prepare, silence
+from validation.cli.signals import caught, interruption
 from validation.errors import InputError
 from validation.runs.text import printable
 
@@ -18,14 +19,15 @@ COMMANDS = (run, report, damping, compare, verdicts, work)  # importing them dec
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
+@caught()
 def main() -> None:
-    """Run the command line; bad input is one line and status 2, an interruption status 130."""
+    """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
     prepare()
     status = _guarded(lambda: app(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        typer.echo("interrupted: finished rows are kept, the same command goes on from there", err=True)
+        typer.echo("interrupted: finished rows are kept; run the same command again to continue", err=True)
         _guarded(sys.stdout.flush)
-        os._exit(INTERRUPTED)  # not through the pool's own exit, which may wait for a worker that is gone
+        os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
     sys.exit(_guarded(sys.stdout.flush) or status)
 
 

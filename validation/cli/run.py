@@ -36,16 +36,27 @@ from validation.cli.app import (
 
 
 @app.command("list")
-def list_command() -> None:
-    """List studies, built-in scenes, solvers and metrics.
+def list_command(
+    what: Annotated[
+        str | None, typer.Argument(help="metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
+    ] = None,
+) -> None:
+    """List studies, built-in scenes, solvers and metrics, or one of the four with units, needs and descriptions.
 
-    Example: [bold]dda-validate list[/bold]
+    Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
+    from validation.cli.listing import LISTS, in_columns
+    from validation.errors import InputError
     from validation.metrics.catalogue import METRICS
     from validation.scenes.scene import load_scene, scene_names
     from validation.solvers.registry import solver_names
     from validation.studies.catalogue import STUDIES, get_study
 
+    if what is not None and what not in LISTS:
+        raise InputError(f"list: must be one of {', '.join(sorted(LISTS))}, got {what!r}")
+    if what is not None:
+        typer.echo(in_columns(LISTS[what]()))
+        return
     typer.echo("studies")
     for name in STUDIES:
         typer.echo(f"  {name:<18} {get_study(name).title}")

@@ -34,7 +34,7 @@ def diff(
 
 @app.command("export-pack")
 def export_pack(
-    directory: Annotated[Path, typer.Argument(help="Directory to make.", metavar="DIR")],
+    directory: Annotated[Path, typer.Argument(help="Directory to create.", metavar="DIR")],
 ) -> None:
     """Write a reference pack: scenes, exact histories as CSV, bands and a README, for codes in any language.
 

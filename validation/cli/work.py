@@ -11,7 +11,7 @@ import typer
 
 from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
 
-StudyArgument = Annotated[str, typer.Argument(help="A study or scene whose results are there.")]
+StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
 
 
 def _table(study: str, results: Path) -> list[dict[str, Any]]:
@@ -28,7 +28,7 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
 @app.command()
 def rows(
     study: StudyArgument,
-    out: Annotated[Path, typer.Option("--csv", help="The table.", metavar="FILE.csv")] = Path("rows.csv"),
+    out: Annotated[Path, typer.Option("--csv", help="CSV file to write.", metavar="FILE.csv")] = Path("rows.csv"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
@@ -52,7 +52,7 @@ def plot(
     study: StudyArgument,
     x: Annotated[str, typer.Option(help="Column of the table for the x axis.", metavar="COLUMN")] = "seconds.total",
     y: Annotated[str, typer.Option(help="Column for the y axis.", metavar="COLUMN")] = "continuum:displacement.l2",
-    out: Annotated[Path, typer.Option(help="The figure.", metavar="FILE.svg")] = Path("plot.svg"),
+    out: Annotated[Path, typer.Option(help="SVG file to write.", metavar="FILE.svg")] = Path("plot.svg"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Draw one column of a study's table against another, both logarithmic, a line for each solver.
@@ -78,8 +78,10 @@ def plot(
 
 @app.command()
 def record(
-    update: Annotated[bool, typer.Option("--update-record", help="Write the record from this run.")] = False,
-    reason: Annotated[str, typer.Option(help="Why the record changes; needed to write it.", metavar="TEXT")] = "",
+    update: Annotated[bool, typer.Option("--update-record", help="Replace the committed record by this run.")] = False,
+    reason: Annotated[
+        str, typer.Option(help="Why the record changes; required with --update-record.", metavar="TEXT")
+    ] = "",
     results: ResultsOption = RESULTS,
 ) -> None:
     """Run the study work-precision and compare its errors and work counts with the committed record.

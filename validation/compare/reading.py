@@ -12,18 +12,20 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.regular import regular
 
 OURS = ("time", DISPLACEMENT, PRESSURE)
 NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, speed
 LEAST_ROWS = 4
 LARGEST = 1e100  # the squares of larger numbers overflow
 SAME_STEP = 1e-3  # relative; times are often printed with four digits
-MOST_STEPS = 1_000_000
+MOST_STEPS = 10_000  # every explanation that is tried steps through all of them: a minute or two, and 200 MB
+LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 
 @dataclass(frozen=True, eq=False)
 class Foreign:
-    """A history as another program gave it, in SI units, the first row after t = 0.
+    """A history of another program in SI units, from the first row after t = 0 on.
 
     `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
     (None if not given); `steps` [s] are the program's own time steps where it states them.
@@ -92,11 +94,12 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         The file cannot be read, or is no such history.
     """
     try:
+        regular(path, LARGEST_FILE)
         text = path.read_bytes().decode("utf-8-sig").replace("\0", "")
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
     found = reader(text, path, columns)
@@ -109,10 +112,11 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
 
 def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
     """Return our columns of a table."""
-    lines = [line.strip() for line in re.sub(r"[#%].*", "", text).splitlines()]
-    rows = [_cells(line) for line in lines if line]
-    if not rows:
+    lines = [line for line in map(str.strip, re.sub(r"[#%].*", "", text).splitlines()) if line]
+    if not lines:
         raise InputError(f"{path}: must hold a history, got an empty file")
+    _bounded(len(lines), path)
+    rows = [_cells(line) for line in lines]
     header = None if _numbers(rows[0]) else rows.pop(0)
     names = header or [str(i + 1) for i in range(len(rows[0]) if rows else 0)]
     values = []
@@ -169,11 +173,13 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     name = columns.get(DISPLACEMENT, next(iter(points)))
     if name not in points:
         raise InputError(f"{path}: no measured point {name!r}; it has {', '.join(points)}")
-    rows = [_numbers(line.split()) for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
+    lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
+    _bounded(len(lines), path)
+    rows = [_numbers(line.split()) for line in lines]
     kept = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
     if not kept or len(kept) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
-            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} others"
+            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} other rows"
         )
     step, time, dt, _, y, size, _, vy, _ = np.array(kept).T
     summed = np.cumsum(vy * dt)
@@ -186,8 +192,14 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     return {"time": time, DISPLACEMENT: moved} | ({"dt": dt} if every else {})
 
 
+def _bounded(rows: int, path: Path) -> None:
+    """Refuse a history that would take hours to judge."""
+    if rows > MOST_STEPS + 2:  # a header and the row at t = 0
+        raise InputError(f"{path}: must hold at most {MOST_STEPS} rows, got {rows}; cut it, or keep every tenth row")
+
+
 def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
-    return () if PRESSURE in found else ("no contact pressure in the file: displacement alone is judged",)
+    return () if PRESSURE in found else ("no contact pressure in the file: only the displacement is judged",)
 
 
 # ---- checks -------------------------------------------------------------------------------------------------------
@@ -209,9 +221,9 @@ def _checked(found: Mapping[str, Array], dt: Array | None, path: Path, notes: tu
         raise InputError(f"{path}: time: must not be negative, got {time[0]:g} in row 1")
     keep = time > 0
     if int(np.sum(keep)) < LEAST_ROWS:
-        raise InputError(f"{path}: must hold {LEAST_ROWS} rows after t = 0 or more, got {int(np.sum(keep))}")
+        raise InputError(f"{path}: must hold at least {LEAST_ROWS} rows after t = 0, got {int(np.sum(keep))}")
     if not np.all(keep):
-        notes = (*notes, "the row at t = 0 is left out")
+        notes = (*notes, "the row at t = 0 is ignored")
     pressure = found.get(PRESSURE)
     return Foreign(
         time[keep],
@@ -242,6 +254,11 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     ----------
     step
         The scene's time step [s].
+
+    Raises
+    ------
+    InputError
+        The rows are not uniform and lie too many steps apart.
     """
     gaps = np.diff(np.concatenate([[0.0], foreign.time]))
     every = np.arange(len(gaps))
@@ -249,7 +266,7 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     slip = _unit_slip(usual / step) if foreign.steps is None else None
     if slip:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
-        said = f"the times are {slip:g} times those of the scene: a slip of units"
+        said = f"the times are {slip:g} times those of the scene: a unit error"
         return [Stepping(inner.steps, inner.rows, said, slip)]
     found = []
     if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
@@ -263,15 +280,22 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
 def _multiples(gaps: Array, step: float) -> list[Stepping]:
     """Return the reading that rows show some of the scene's steps, if the times allow it."""
     ends = np.cumsum(gaps) / step
-    counts = np.rint(ends).astype(int)
-    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(counts, prepend=0)) < SAME_STEP * (1 + gaps / step))
-    if not near or counts[0] < 1 or counts[-1] > MOST_STEPS or np.any(np.diff(counts) < 1):
+    whole = np.rint(ends)
+    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(whole, prepend=0.0)) < SAME_STEP * (1 + gaps / step))
+    if not near or whole[0] < 1 or np.any(np.diff(whole) < 1):
         return []
+    if whole[-1] > MOST_STEPS:
+        if np.ptp(gaps) <= SAME_STEP * gaps[0]:
+            return []  # the program's own steps, longer than the scene's
+        raise InputError(f"time: must end within {MOST_STEPS} steps of {step:g} s, got step {whole[-1]:.0f}")
+    counts = whole.astype(int)
     every = np.diff(counts, prepend=0)
     kind = (
-        f"every {every[0]} steps" if np.all(every == every[0]) else "some of the steps, at times that are not uniform"
+        f"one row every {every[0]} steps"
+        if np.all(every == every[0])
+        else "rows for some of the steps, at non-uniform times"
     )
-    note = "" if np.all(every == 1) else f"the rows show {kind}"
+    note = "" if np.all(every == 1) else f"the file has {kind}"
     return [Stepping(np.full(int(counts[-1]), step), counts - 1, note)]
 
 
@@ -279,13 +303,13 @@ def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
     """Return the reading that every row is a step of the program's own."""
     if np.all(np.abs(gaps - usual) <= SAME_STEP * usual):
         mean = float(np.mean(gaps))
-        note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's"
+        note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's step"
         return [Stepping(np.full(len(gaps), mean), np.arange(len(gaps)), note)]
     first = gaps[0] / usual
     if np.all(np.abs(gaps[1:] - usual) <= SAME_STEP * usual) and first > 1 and abs(first - round(first)) < SAME_STEP:
         inner = _multiples(gaps, usual)
         return [Stepping(s.steps, s.rows, f"the rows begin at step {s.rows[0] + 1}") for s in inner]
-    return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken for one step")]
+    return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken as one step")]
 
 
 def _unit_slip(ratio: float) -> float | None:

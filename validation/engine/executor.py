@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -12,6 +15,9 @@ from validation.engine.measure import execute, failed_row, said
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
+from validation.solvers.guard import DEATH_SIGNAL, control
+
+LOOK = 0.25  # s between two looks whether the parent lives
 
 
 def executed(
@@ -20,7 +26,7 @@ def executed(
     """Run the pending cases, in this process where one worker or one case is all there is."""
     if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
-            yield execute(case, key, study.name)
+            yield _checked(case, key, study.name)
         return
     lost = []
     with _pool(executor, min(jobs, len(pending))) as pool:
@@ -38,17 +44,23 @@ def executed(
 
 
 def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers."""
-    if case.key() != key:
-        return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
-    return execute(case, key, study)
+    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers.
+
+    What fails outside the solver, memory included, is a named outcome as well.
+    """
+    try:
+        if case.key() != key:
+            return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
+        return execute(case, key, study)
+    except Exception as error:
+        return failed_row(case, key, study, said(error)), None
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with _pool(None, 1) as pool:
         try:
-            return pool.submit(execute, case, key, study.name).result()
+            return pool.submit(_checked, case, key, study.name).result()
         except BrokenExecutor:
             note = "worker killed (out of memory or a signal)"
             return failed_row(case, key, study.name, note), None
@@ -60,7 +72,7 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool, wait = ProcessPoolExecutor(jobs, initializer=_ignore_interrupt), True
+    pool, wait = ProcessPoolExecutor(jobs, initializer=_bound, initargs=(os.getpid(),)), True
     try:
         yield pool
     except KeyboardInterrupt:
@@ -73,6 +85,20 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent, which ends the workers."""
+def _bound(parent: int) -> None:
+    """Bind a worker's life to its parent's, and leave Ctrl-C to the parent, which ends the workers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+    control(DEATH_SIGNAL, signal.SIGKILL)  # at once, where the system can
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: int) -> None:
+    """End this process when its parent has ended, or the server that started it in the parent's name."""
+    own, known, pause = os.getppid(), multiprocessing.parent_process(), threading.Event()
+    if own != parent and multiprocessing.get_start_method() != "forkserver":  # it ended before this thread began
+        os._exit(1)
+    while os.getppid() == own and (known is None or known.is_alive()):
+        pause.wait(LOOK)
+    os._exit(1)

@@ -46,7 +46,7 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
     """
     thin = max(1, len(signal) // LONGEST)
     y = signal[: LONGEST * thin : thin]
-    if len(y) < 6 or not np.any(y):
+    if len(y) < 6 or not np.any(y) or not np.all(np.isfinite(y)):  # over a tiny static value numbers overflow
         return []
     size = float(np.max(np.abs(y)))
     z, c, misfit = _fit(y / size, order, tolerance)

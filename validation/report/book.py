@@ -10,7 +10,7 @@ from validation.errors import InputError
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
 from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, escaped, unescaped
-from validation.report.typesetting import _png, write_document
+from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
 from validation.runs.text import printable
 
@@ -43,18 +43,13 @@ def build(results: Results, out: Path) -> Path:
 
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters import front as chapters_front
+    from validation.report.chapters.front import front_matter, provenance
 
-    chapters = [block for study in studies for block in (PageBreak(), *_chapter_or_why(results, study, figures))]
+    chapters: list[Block] = []
+    for study in studies:
+        chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
     with _told(results, "the first and the last page"):
-        front, back = (part(results, studies, figures) for part in (chapters_front.front_matter, _provenance))
-    return [*front, *chapters, PageBreak(), *back]
-
-
-def _provenance(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters import front as chapters_front
-
-    return chapters_front.provenance(results, studies)
+        return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
@@ -104,5 +99,9 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     except OSError as error:
         raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
     blocks = _chapter(results, study, out)
-    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
-    return [path for svg in drawn for path in (svg, _png(svg))]
+    paths: list[Path] = []
+    for block in blocks:
+        if isinstance(block, FigureBlock):
+            svg = out / block.file
+            paths += [svg, png_of(svg)]
+    return paths

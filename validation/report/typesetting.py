@@ -33,12 +33,12 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
         raise InputError(f"{out}: cannot be written: {out.parent} is no directory; choose another place")
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
-        pdf = _typeset(root, blocks_of(root))
+        pdf = typeset(root, blocks_of(root))
     write_atomically(out, lambda stream: stream.write(pdf))
     return out
 
 
-def _typeset(root: Path, blocks: Sequence[Block]) -> bytes:
+def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     shutil.copyfile(TEMPLATE, root / "report.typ")
     data = {
@@ -63,17 +63,14 @@ def _shown(data: Any) -> Any:
     return [_shown(value) for value in data] if isinstance(data, list | tuple) else data
 
 
-def _png(svg: Path) -> Path:
+def png_of(svg: Path) -> Path:
     """Write a PNG of an SVG file beside it, rendered as in the report."""
     page = f'#set page(width: auto, height: auto, margin: 2mm)\n#image("{svg.name}")\n'
     with tempfile.TemporaryDirectory() as name:
         shutil.copyfile(svg, Path(name) / svg.name)
         (Path(name) / "page.typ").write_text(page, encoding="utf-8")
-        image = bytes(
-            typst.compile(
-                str(Path(name) / "page.typ"), root=name, format="png", ppi=PIXELS_PER_INCH, ignore_system_fonts=True
-            )
-        )
+        source = str(Path(name) / "page.typ")
+        image = typst.compile(source, root=name, format="png", ppi=PIXELS_PER_INCH, ignore_system_fonts=True)
     path = svg.with_suffix(".png")
-    write_atomically(path, lambda stream: stream.write(image))
+    write_atomically(path, lambda stream: stream.write(bytes(image)))
     return path

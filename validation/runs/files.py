@@ -15,6 +15,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import Array, History
+from validation.runs.regular import regular
 
 
 @contextmanager
@@ -90,7 +91,8 @@ def read_table(path: Path) -> tuple[list[str], Array]:
         The file cannot be read or is not such a table.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as stream:
+        regular(path)
+        with path.open(encoding="utf-8-sig", newline="") as stream:
             names = [name.strip() for name in next(csv.reader(stream), [])]
             lines = [line for line in stream if line.strip()]
             table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))

@@ -17,6 +17,7 @@ from typing import Any, Self
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
+from validation.runs.regular import regular
 from validation.scenes.tables import (
     BlockSection,
     ContactSection,
@@ -82,6 +83,18 @@ class Scene(Section):
     def _check_impact(self) -> Self:
         if self.block.velocity and self.contact.law == "locked":
             raise ValueError(f'block: velocity goes with contact.law = "unilateral" only, got {self.block.velocity:g}')
+        return self
+
+    @model_validator(mode="after")
+    def _check_files(self) -> Self:
+        for field, name in (("fem: mesh", self.fem.mesh), ("load: base_motion", self.load.base_motion)):
+            try:
+                if name is not None:
+                    regular(Path(name))
+            except InputError as error:
+                raise ValueError(f"{field}: {error}") from None
+            except (OSError, ValueError):  # that it cannot be read is said where it is read
+                continue
         return self
 
     def _swept(self) -> dict[str, list[Any]]:
@@ -274,9 +287,10 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: must be at most {LARGEST_FILE} bytes, got {path.stat().st_size}")
+        regular(path, LARGEST_FILE)
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except InputError:
+        raise
     except FileNotFoundError:
         known = ", ".join(scene_names())
         raise InputError(f"{path}: no such scene file; built-in scenes: {known}") from None

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-import os
+from collections.abc import Iterable
 from pathlib import Path
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
+from validation.solvers.limits_of_memory import available
 
 NUMBER = 8  # bytes
 COPIES = 4  # of a history while it is made, observed, checked and kept
 UNKNOWN = 3000  # bytes of assembly for each unknown: element matrices, indices, M, K and S
 FILL = 150  # bytes of the factor for each unknown and doubling of the mesh
+REFUSED = "must fit into memory"  # what a refusal says; it holds for the moment and is not kept
 MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
 
@@ -48,19 +50,6 @@ def _blocks(scene: Scene) -> tuple[float, str]:
     return COPIES * NUMBER * unknowns**2, "block.subdivide"
 
 
-def available() -> float:
-    """Return the bytes that can be had without swapping; infinite where the system does not say."""
-    try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        return next(1024.0 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
-    except (OSError, StopIteration, ValueError):
-        pass
-    try:
-        return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, OSError, ValueError):
-        return math.inf
-
-
 def check(scene: Scene, solver: Solver) -> None:
     """Refuse a scene whose run cannot fit.
 
@@ -75,6 +64,11 @@ def check(scene: Scene, solver: Solver) -> None:
         section, _, key = field.partition(".")
         value = getattr(getattr(scene, section), key)
         raise InputError(
-            f"{scene.name}: {field}: must fit into memory, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
+            f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
             f"{there / GIGABYTE:.3g} GB are there, got {value}"
         )
+
+
+def refused(notes: Iterable[str]) -> bool:
+    """Whether a row was refused for want of memory, which may be there the next time."""
+    return any(f": {REFUSED}, " in note for note in notes)

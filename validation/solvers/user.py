@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.errors import InputError
 from validation.metrics.values import norm
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.modes import Mode
@@ -31,6 +32,7 @@ UNITS = {  # what a value in another unit is, over the value in SI
     PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
 }
 NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
+MOST_WORDS = 400  # characters of what a user's solver says
 ALIKE = 0.8  # correlation from which two histories are one but for their unit
 
 
@@ -46,7 +48,11 @@ class UserSolver(Solver):
         """Return None: what the solver handles is known in its own process only, which says so."""
         return None
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def unhandled(self, scene: Scene) -> list[str]:
+        """Return nothing, see `refusal`."""
+        return []
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene; the solver sees it when it is run."""
         return Asked(self, scene)
 
@@ -70,18 +76,22 @@ class Asked(Prepared):
         except WorkerHangs:
             return Run(Outcome.TIMEOUT, notes=(f"hangs: no history within {limit:g} s",))
         except WorkerDied as error:
-            return Run(Outcome.RAISED, notes=(f"crashed: {error}",))
+            return Run(Outcome.RAISED, notes=(words(f"crashed: {error}"),))
         if "inapplicable" in self._answer:
-            return Run(Outcome.NOT_APPLICABLE, notes=(str(self._answer["inapplicable"]),))
+            return Run(Outcome.NOT_APPLICABLE, notes=(words(str(self._answer["inapplicable"])),))
         if "raised" in self._answer:
-            return Run(Outcome.RAISED, notes=(str(self._answer["raised"]),))
+            return Run(Outcome.RAISED, notes=(words(str(self._answer["raised"])),))
         return _judged(self.scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution that the solver reports."""
         if self._answer.get("static") is None:
             raise NotReported(f"{self.solver.name} reports no static solution")
-        return dict(self._answer["static"])
+        values = {str(name): float(value) for name, value in dict(self._answer["static"]).items()}
+        for name, value in values.items():
+            if value != 0 and not sys.float_info.min <= abs(value) <= sys.float_info.max:
+                raise InputError(f"static: must be zero or a normal number, got {value!r} for {words(name)}")
+        return values
 
     def assumed_static(self) -> Mapping[str, float]:
         """Return the static solution that settling is measured from where the solver reports none: the block's."""
@@ -94,13 +104,23 @@ class Asked(Prepared):
         return tuple(Mode(w, share, (complex(*a), complex(*b))) for w, share, (a, b, *_) in self._answer["modes"])
 
 
+def words(text: str) -> str:
+    """Return a user's text as one line of a note: no half characters, none that a terminal obeys, not a book."""
+    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())
+    said = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
+    return said if len(said) <= MOST_WORDS else f"{said[:MOST_WORDS]} ..."
+
+
 def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
     """Return the run of columns, or the outcome that names what is wrong with them."""
     steps = scene.time.steps
     if DISPLACEMENT not in columns:
-        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {DISPLACEMENT}, got {', '.join(columns) or 'nothing'}",))
+        got = words(", ".join(columns)) or "nothing"
+        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {DISPLACEMENT}, got {got}",))
     expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
-    history = History(columns.pop("time", expected), columns)
+    time = columns.pop("time", expected)
+    columns = {name: values for name, values in columns.items() if name in (*UNITS, *scene.run.columns)}
+    history = History(time, columns)
     for name, values in {"time": history.time, **columns}.items():
         if values.shape != (steps,):
             zero = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""

@@ -7,6 +7,7 @@ them, or "raised" with the error.
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -56,10 +57,27 @@ def columns_of(value: Any) -> dict[str, Any]:
     raise TypeError(f"the solver {FORMS}, got {type(value).__name__}")
 
 
-def plain(values: Any) -> list[Any]:
-    """Return numbers of any shape as lists."""
-    listed: list[Any] = np.asarray(values, dtype=float).tolist()
+def plain(name: str, values: Any) -> list[Any]:
+    """Return real numbers of any shape as lists.
+
+    Raises
+    ------
+    TypeError
+        They are complex numbers, texts or dates, which numpy would turn into other numbers without a word.
+    """
+    found = np.asarray(values)
+    if found.dtype.kind not in "biufO":
+        raise TypeError(f"{name} must hold real numbers, got an array of {found.dtype}")
+    listed: list[Any] = found.astype(float).tolist()
     return listed
+
+
+def text_of(error: BaseException) -> str:
+    """Return what an error says, whatever it says it with."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except BaseException as worse:  # __str__ may be anybody's code, too
+        return f"{type(error).__name__}, whose text raises {type(worse).__name__}"
 
 
 def optional(solver: Any, part: str, scene: Scene) -> Any:
@@ -80,7 +98,7 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
     static, modes = optional(solver, "static", scene), optional(solver, "modes", scene) or ()
     return {
-        "columns": {name: plain(values) for name, values in found.items()},
+        "columns": {str(name): plain(str(name), values) for name, values in found.items()},
         "static": None if static is None else {name: float(value) for name, value in static.items()},
         "modes": [[m.frequency, m.share, [[z.real, z.imag] for z in map(complex, m.eigenvalues)]] for m in modes],
     }
@@ -90,13 +108,15 @@ def main(name: str, paths: list[str]) -> None:
     """Answer requests with one solver."""
     sys.path[:] = paths + [path for path in sys.path if path not in paths]
     kept: list[Any] = []
+    place = os.getcwd()
 
     def answer(request: dict[str, Any]) -> dict[str, Any]:
+        os.chdir(place)  # which the last scene may have left
         try:
             kept.extend([] if kept else [load(name)])
             return run(kept[0], request)
-        except (Exception, SystemExit) as error:
-            return {"raised": f"{type(error).__name__}: {error}"}
+        except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
+            return {"raised": text_of(error)}
 
     serve(answer)
 

@@ -8,13 +8,17 @@ import json
 import os
 import re
 import select
-import signal
 import subprocess
 import sys
-import tempfile
+import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import IO, Any
 
+GUARD = Path(__file__).with_name("guard.py")
+LONGEST = 2**30  # bytes of an answer: ten million steps of four columns
+PIECE, PIECES = 2**16, 64  # bytes read at a time and kept of standard error, and pieces of what a dead worker left
+ENDING, PATIENCE = 0.5, 3.0  # s for a process that has closed its output, and for a guard to end what it guards
 TAIL = 3  # lines of a dead worker's standard error that are worth telling
 NAMED = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
 FRAME = re.compile(r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*")  # a launcher's rules and advice
@@ -36,64 +40,172 @@ def last_words(text: str) -> str:
     return " | ".join((named or said)[-TAIL:]) or "no message"
 
 
-class Worker:
-    """A process, with whatever processes it starts, that answers requests until this one ends."""
+class Lines:
+    """What has come through a pipe so far, to be taken line by line."""
 
-    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the worker
-        self._process = subprocess.Popen(
-            list(command),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            env=dict(environment),
-            start_new_session=True,
-        )
+    def __init__(self) -> None:
+        self._held, self._seen = bytearray(), 0
 
-    def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
-        """Send a request and wait for its answer, at most `limit` seconds.
+    def add(self, piece: bytes) -> None:
+        """Take a piece.
 
         Raises
         ------
         WorkerDied
-            The process ended without an answer.
-        WorkerHangs
-            There was no answer within the limit.
+            The line is longer than any answer.
         """
-        given, taken = self._process.stdin, self._process.stdout
-        line = b""
-        if given is not None and taken is not None:
-            with contextlib.suppress(BrokenPipeError):
-                given.write(json.dumps(request).encode() + b"\n")
-                given.flush()
-                if not select.select([taken], [], [], limit)[0]:
-                    raise WorkerHangs(f"no answer within {limit:g} s")
-                line = taken.readline()
-        if not line:
-            raise WorkerDied(f"the process ended with status {self._process.wait()}: {self._tail()}")
-        return dict(json.loads(line))
+        self._held += piece
+        if len(self._held) > LONGEST:
+            raise WorkerDied(f"its answer is longer than {LONGEST} bytes")
+
+    def next(self) -> bytes | None:
+        """Return the first line, or None where it is not whole yet."""
+        end = self._held.find(b"\n", self._seen)
+        if end < 0:
+            self._seen = len(self._held)
+            return None
+        line = bytes(self._held[:end])
+        del self._held[: end + 1]
+        self._seen = 0
+        return line
+
+
+class Worker:
+    """A process, with whatever processes it starts, that answers requests until this one ends.
+
+    Between the two stands a guard, which ends the worker and its descendants with this process, however it ends.
+    """
+
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
+        watched, lifeline = os.pipe()
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-S", str(GUARD), str(watched), *command],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=dict(environment),
+            pass_fds=(watched,),
+            start_new_session=True,
+            bufsize=0,
+        )
+        os.close(watched)
+        self._lifeline = os.fdopen(lifeline, "wb", buffering=0)
+        self._lines, self._said, self._asked = Lines(), b"", 0
+        for stream in self._streams():
+            os.set_blocking(stream.fileno(), False)
+
+    def _streams(self) -> tuple[IO[bytes], IO[bytes], IO[bytes]]:
+        given, taken, complaints = self._process.stdin, self._process.stdout, self._process.stderr
+        if given is None or taken is None or complaints is None:
+            raise ValueError("worker: must have three pipes, got fewer")
+        return given, taken, complaints
+
+    def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
+        """Send a request and wait for its answer, at most `limit` seconds.
+
+        What carries the number of another request is not taken: a process that has forked answers twice.
+
+        Raises
+        ------
+        WorkerDied
+            The process ended without an answer, or said what is none.
+        WorkerHangs
+            There was no whole answer within the limit.
+        """
+        self._asked += 1
+        deadline = None if limit is None else time.monotonic() + limit
+        rest = json.dumps({**request, "id": self._asked}).encode() + b"\n"
+        while (found := self._answer()) is None:
+            rest = self._exchange(rest, deadline)
+            if deadline is not None and time.monotonic() > deadline:
+                raise WorkerHangs(f"no answer within {limit:g} s")
+        return found
+
+    def _exchange(self, rest: bytes, deadline: float | None) -> bytes:
+        """Wait until something moves; return what is left to be sent."""
+        given, taken, complaints = self._streams()
+        left = None if deadline is None else max(0.0, deadline - time.monotonic())
+        heard = [taken] if complaints.closed else [taken, complaints]
+        ready, free, _ = select.select(heard, [given] if rest else [], [], left)
+        if free:
+            with contextlib.suppress(BlockingIOError):
+                rest = self._sent(rest)
+        if complaints in ready:
+            self._listen()
+        if taken in ready and (piece := _read(taken)) is not None:
+            if not piece:
+                raise WorkerDied(f"the process ended with status {self._status()}: {self._tail()}")
+            self._lines.add(piece)
+        return rest
+
+    def _sent(self, data: bytes) -> bytes:
+        """Send what the pipe takes and return the rest, nothing where nobody reads any more."""
+        try:
+            return data[os.write(self._streams()[0].fileno(), data) :]
+        except BrokenPipeError:
+            return b""
+
+    def _listen(self) -> None:
+        """Keep the end of what the worker writes to its standard error, so that it neither waits nor fills a disk."""
+        stream = self._streams()[2]
+        if (piece := _read(stream)) is not None:
+            self._said = (self._said + piece)[-PIECE:]
+            if not piece:
+                stream.close()
 
     def _tail(self) -> str:
-        self._errors.seek(0)
-        return last_words(self._errors.read().decode(errors="replace"))
+        stream = self._streams()[2]
+        for _ in range(PIECES):
+            if stream.closed or not select.select([stream], [], [], 0)[0]:
+                break
+            self._listen()
+        return last_words(self._said.decode(errors="replace"))
+
+    def _answer(self) -> dict[str, Any] | None:
+        """Return the answer to the latest request where all of it is here."""
+        while (line := self._lines.next()) is not None:
+            try:
+                found = dict(json.loads(line))
+            except (ValueError, TypeError, RecursionError):
+                raise WorkerDied(f"no answer but {line[:60].decode(errors='replace')!r}: {self._tail()}") from None
+            if found.pop("id", None) == self._asked:
+                return found
+        return None
+
+    def _status(self) -> int:
+        """Return the status of a process that has ended, or has closed its output and is ended for it."""
+        try:
+            return self._process.wait(timeout=ENDING)
+        except subprocess.TimeoutExpired:
+            return self.kill()
 
     def close(self) -> None:
-        """End the process: its input ends, and so does it."""
-        for stream in (self._process.stdin, self._process.stdout):
-            if stream is not None:
-                with contextlib.suppress(OSError):
-                    stream.close()
-        try:
-            self._process.wait(timeout=5)
-        except subprocess.TimeoutExpired:
-            self.kill()
-        self._errors.close()
+        """End the process: its input ends, and so does it, or is ended by its guard."""
+        for stream in (*self._streams(), self._lifeline):
+            with contextlib.suppress(OSError):
+                stream.close()
+        self._wait()
 
-    def kill(self) -> None:
-        """End the process and all that it started, at once."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+    def kill(self) -> int:
+        """End the process and all that it started, at once; return its status."""
+        with contextlib.suppress(OSError, ValueError):
+            self._lifeline.write(b"!")
+        return self._wait()
+
+    def _wait(self) -> int:
+        try:
+            return self._process.wait(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:  # somebody has stopped the guard; the worker is killed with it
+            self._process.kill()
+            return self._process.wait()
+
+
+def _read(stream: IO[bytes]) -> bytes | None:
+    """Return what a pipe holds, nothing at its end, None where there is nothing yet."""
+    try:
+        return os.read(stream.fileno(), PIECE)
+    except BlockingIOError:
+        return None
 
 
 _kept: dict[tuple[int, tuple[str, ...]], Worker] = {}
@@ -129,12 +241,19 @@ def ask(
 
 
 def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
-    """Answer requests from standard input until it ends; what else is printed goes to standard error."""
-    requests, answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    """Answer requests from standard input until it ends; what else is printed goes to standard error.
+
+    Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing.
+    """
+    requests, answers, own = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w"), os.getpid()
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
     for line in requests:
-        answers.write(json.dumps(answer(json.loads(line))) + "\n")
+        request = json.loads(line)
+        said = json.dumps({**answer(request), "id": request["id"]})
+        if os.getpid() != own:
+            os._exit(0)
+        answers.write(said + "\n")
         answers.flush()

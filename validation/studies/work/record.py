@@ -19,6 +19,7 @@ from validation.runs import strict
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Value
+from validation.studies.bands import OWN, about
 
 PATH = Path(__file__).with_name("record.json")
 REFERENCES = {"dda": "bar", "fem": "bar", "bar": "continuum"}
@@ -124,16 +125,11 @@ def compared(cases: tuple[tuple[str, str], ...]) -> Derived:
 def gates() -> Iterator[Gate]:
     """Yield the gates on the record."""
     for part, slack in SLACK.items():
-        yield Gate(
-            "work-precision",
-            ("record",),
-            f"record.{part}",
-            1 - slack,
-            1 + slack,
+        why = (
             f"worst ratio of {part} to the committed record (validation/record.json): no case may be worse, and where "
-            "all are better `dda-validate record --update-record` is due",
-            reference_kind="own last value",
+            "all are better `dda-validate record --update-record` is due"
         )
+        yield Gate("work-precision", ("record",), f"record.{part}", *about(1, slack), why, OWN)
 
 
 def update(finished: Finished, cases: Sequence[tuple[str, str]], reason: str) -> None:

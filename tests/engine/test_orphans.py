@@ -1,0 +1,157 @@
+"""After any end of the parent nothing of it runs two seconds later: no worker, no user's solver, nothing it started."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import SCENE
+from oracles.processes import AFTER, MARK, left, marked, new_mark
+
+from validation.runs.results import Results
+
+SWEEP = '"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
+SOLVERS = """
+import atexit, os, signal, subprocess, sys, threading, time
+
+def endless(scene):
+    while True:
+        time.sleep(0.01)
+
+def with_a_child(scene):
+    subprocess.run([sys.executable, "-c", "import time; time.sleep(600)"])
+
+def deaf(scene):
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        signal.signal(number, signal.SIG_IGN)
+    endless(scene)
+
+def with_a_daemon(scene):
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            endless(scene)
+        os._exit(0)
+    endless(scene)
+
+def sound(scene):
+    return {"displacement": [-1e-3] * scene.time.steps}
+
+def with_a_thread(scene):
+    threading.Thread(target=endless, args=(scene,)).start()
+    return sound(scene)
+
+def with_an_exit_hook(scene):
+    atexit.register(endless, scene)
+    return sound(scene)
+
+def with_a_daemon_left(scene):
+    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], start_new_session=True)
+    return sound(scene)
+"""
+needs_proc = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="finds processes in /proc")
+pytestmark = needs_proc
+
+
+@pytest.fixture
+def mark() -> Iterator[str]:
+    with new_mark() as name:
+        yield name
+
+
+def begin(directory: Path, mark: str, solvers: str, *options: str) -> subprocess.Popen[str]:
+    """Start a run of a scene by the named solvers of the module above."""
+    (directory / "bad_solvers.py").write_text(SOLVERS)
+    scene = directory / "long.toml"
+    scene.write_text(SCENE + f"[run]\nsolvers = [{solvers}]\n[sweep]\n{SWEEP}")
+    command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(directory / "r"), *options]
+    places = [str(directory), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return subprocess.Popen(
+        command,
+        cwd=directory,
+        env=os.environ | {MARK: mark, "OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(places)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def wait_for(mark: str, words: str, process: subprocess.Popen[str]) -> None:
+    """Wait until a process with these words in its command line has been there for a moment."""
+    deadline = time.monotonic() + 60
+    while process.poll() is None and time.monotonic() < deadline:
+        if any(words in line for line in marked(mark).values()):
+            time.sleep(1.0)
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"no process with {words!r}: {marked(mark)}")
+
+
+SIGNALS = [signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGKILL]
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize(("solver", "words"), [("with_a_child", "sleep(600)"), ("with_a_daemon", "user_worker")])
+def test_nothing_outlives_the_parent(
+    number: signal.Signals, solver: str, words: str, tmp_path: Path, mark: str
+) -> None:
+    """The signal goes to the parent alone, as from a scheduler or an out-of-memory killer."""
+    with begin(tmp_path, mark, f'"dda", "bad_solvers:{solver}"', "--jobs", "2") as process:
+        wait_for(mark, words, process)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=30)
+    assert left(mark) == []
+    assert "Traceback" not in said
+    assert process.returncode == (-9 if number == signal.SIGKILL else 128 + number)
+    if number != signal.SIGKILL:
+        assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals, tmp_path: Path, mark: str) -> None:
+    with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
+        wait_for(mark, "user_worker", process)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=30)
+    assert left(mark) == [] and "Traceback" not in said
+    assert len(Results(tmp_path / "r").rows()) == 1, "the finished row of dda is kept"
+
+
+@pytest.mark.parametrize("solver", ["with_a_thread", "with_an_exit_hook", "with_a_daemon_left"])
+def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
+    with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2") as process:
+        process.communicate(timeout=60)
+    assert left(mark) == []
+    assert {str(row.outcome) for row in Results(tmp_path / "r").rows().values()} == {"completed"}
+
+
+def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
+    with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
+        wait_for(mark, "user_worker", process)
+        for _ in range(3):
+            process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    assert left(mark) == [] and "Traceback" not in said and process.returncode == 130
+
+
+def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path, mark: str) -> None:
+    """As under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
+            wait_for(mark, "user_worker", process)
+            process.send_signal(signal.SIGHUP)
+            time.sleep(AFTER)
+            assert process.poll() is None
+            process.terminate()
+            process.communicate(timeout=30)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert left(mark) == []

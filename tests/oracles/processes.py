@@ -1,0 +1,47 @@
+"""Processes of a test, known by a mark in their environment, whoever their parents are by now."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+MARK = "DDA_VALIDATE_TEST_MARK"
+AFTER = 2.0  # s that what a parent leaves may still run
+
+
+def marked(mark: str) -> dict[int, str]:
+    """Return the processes that carry a mark in their environment, with their command lines."""
+    found = {}
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            if mark.encode() in (place / "environ").read_bytes():
+                words = (place / "cmdline").read_bytes().replace(b"\0", b" ")
+                found[int(place.name)] = words.decode(errors="replace")
+        except OSError:  # it has ended meanwhile, or is another user's
+            continue
+    return found
+
+
+def left(mark: str) -> list[str]:
+    """Return what still runs after the time that it has."""
+    deadline = time.monotonic() + AFTER
+    while (found := marked(mark)) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return sorted(found.values())
+
+
+@contextmanager
+def new_mark() -> Iterator[str]:
+    """Yield a mark, and end whatever a red test has left under it."""
+    mark = uuid.uuid4().hex
+    yield mark
+    for process in marked(mark):
+        try:
+            os.kill(process, signal.SIGKILL)
+        except OSError:
+            continue

@@ -1,0 +1,130 @@
+"""Memory: limits of control groups and of the process count, and a refusal for want of it is not kept."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, typed
+
+from validation.advice.spectra import damping
+from validation.engine.run import run_study
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+from validation.solvers import limits_of_memory, memory
+from validation.studies.catalogue import scene_study
+
+MB = 2**20
+
+
+def machine(root: Path, groups: str, files: dict[str, str]) -> Path:
+    """Make the files of a machine's control groups."""
+    for name, text in {"proc/self/cgroup": groups, **{f"sys/fs/cgroup/{n}": t for n, t in files.items()}}.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def left(root: Path) -> float:
+    return min(limits_of_memory.of_groups(root), default=math.inf)
+
+
+V2 = "0::/user.slice/job.scope\n"
+V1 = "12:cpu,cpuacct:/\n9:memory:/docker/abc\n1:name=systemd:/docker/abc\n"
+JOB, USER = "user.slice/job.scope", "user.slice"
+
+
+@pytest.mark.parametrize(
+    ("groups", "files", "expected"),
+    [
+        (V2, {}, math.inf),
+        (V2, {f"{JOB}/memory.max": "max\n", f"{JOB}/memory.high": "max\n", f"{JOB}/memory.current": "5\n"}, math.inf),
+        (V2, {f"{JOB}/memory.max": f"{100 * MB}\n", f"{JOB}/memory.current": f"{30 * MB}\n"}, 70 * MB),
+        (V2, {f"{JOB}/memory.max": "max", f"{JOB}/memory.high": f"{60 * MB}", f"{JOB}/memory.current": "0"}, 60 * MB),
+        (V2, {f"{JOB}/memory.max": f"{90 * MB}", f"{JOB}/memory.high": f"{60 * MB}"}, 60 * MB),
+        (V2, {f"{USER}/memory.max": f"{50 * MB}", f"{USER}/memory.current": f"{MB}"}, 49 * MB),
+        (V2, {"memory.max": f"{40 * MB}", "memory.current": "0"}, 40 * MB),  # a container that sees its own root
+        (
+            V2,
+            {
+                f"{JOB}/memory.max": f"{100 * MB}",
+                f"{JOB}/memory.current": f"{90 * MB}",
+                f"{JOB}/memory.stat": f"anon {10 * MB}\nfile {80 * MB}\ninactive_file {60 * MB}\n",
+            },
+            70 * MB,
+        ),
+        (V1, {"memory/docker/abc/memory.limit_in_bytes": "9223372036854771712"}, math.inf),
+        (
+            V1,
+            {
+                "memory/memory.limit_in_bytes": f"{100 * MB}",
+                "memory/memory.usage_in_bytes": f"{80 * MB}",
+                "memory/memory.stat": f"cache 1\ntotal_inactive_file {20 * MB}\n",
+            },
+            40 * MB,
+        ),
+        ("rubbish\n", {"memory.max": "1"}, math.inf),
+    ],
+)
+def test_what_control_groups_leave(groups: str, files: dict[str, str], expected: float, tmp_path: Path) -> None:
+    assert left(machine(tmp_path, groups, files)) == expected
+
+
+def test_the_least_of_all_limits_is_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    there = memory.available()
+    monkeypatch.setattr(limits_of_memory, "of_groups", lambda root: iter([there / 2, there / 4]))
+    assert memory.available() <= there / 4
+    monkeypatch.setattr(limits_of_memory, "of_groups", lambda root: iter([-1.0]))
+    assert memory.available() == 0.0
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="sizes of a process are read from /proc")
+@pytest.mark.parametrize("limit", ["RLIMIT_AS", "RLIMIT_DATA"])
+def test_limits_of_the_process_count(limit: str) -> None:
+    code = (
+        "import resource as r; from validation.solvers.limits_of_memory import available\n"
+        f"r.setrlimit(r.{limit}, (3 * 2**30, r.RLIM_INFINITY)); print(available())"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert 0 < float(done.stdout) < 3 * 2**30
+
+
+def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, results = tmp_path / "own.toml", Results(tmp_path / "r")
+    path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
+    monkeypatch.setattr(memory, "available", lambda: 1.0)
+    run_study(scene_study(str(path)), results)
+    (row,) = results.rows().values()
+    assert row.outcome is Outcome.REFUSED and memory.refused(row.notes)
+    monkeypatch.undo()
+    run_study(scene_study(str(path)), results)
+    (row,) = results.rows().values()
+    assert row.outcome is Outcome.COMPLETED and not memory.refused(row.notes)
+
+
+def test_other_refusals_are_kept() -> None:
+    assert not memory.refused(["own: time.step: must not exceed 0.001 s", "it does not handle friction"])
+
+
+@pytest.mark.parametrize("command", ["damping", "advise"])
+def test_models_of_the_advice_must_fit_as_well(command: str, scene_file: Path) -> None:
+    wanted = ["--damping", "0.05"] if command == "advise" else []
+    asked = ["--set", "block.poisson=0.2", "--set", "fem.elements=100000", *wanted]
+    done = typed(command, scene_file, *asked)
+    assert "Traceback" not in done.stderr
+    said, status = (done.stderr, 2) if command == "damping" else (done.stdout, 0)
+    assert "fem.elements: must fit into memory, fem needs about" in said
+    assert done.returncode == status
+
+
+def test_damping_takes_no_steps_and_needs_no_memory_for_them(scene_file: Path) -> None:
+    many = load_scene(scene_file).with_values({"time.steps": 10**14})
+    assert damping(many, references=True).modes
+    with pytest.raises(InputError, match=r"block.subdivide: must fit into memory"):
+        damping(load_scene(scene_file).with_values({"block.subdivide": [10**4, 10**4]}))

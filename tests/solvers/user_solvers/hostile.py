@@ -1,0 +1,287 @@
+"""Users' solvers that do whatever a program can do wrong; each is a row with a name and costs no other row."""
+
+import atexit
+import fcntl
+import gc
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from typing import ClassVar
+
+import numpy as np
+
+
+def sound(scene):
+    return {"displacement": np.full(scene.time.steps, -1e-3)}
+
+
+def forks(scene):
+    """Both processes return, as a forgotten os._exit makes them."""
+    if os.fork() == 0:
+        return {"displacement": np.full(scene.time.steps, 7.0)}
+    time.sleep(0.2)
+    return sound(scene)
+
+
+def forks_and_stays(scene):
+    if os.fork() == 0:
+        time.sleep(0.3)
+        return {"displacement": np.full(scene.time.steps, 7.0)}
+    return sound(scene)
+
+
+def leaves_a_thread(scene):
+    threading.Thread(target=time.sleep, args=(60,)).start()
+    return sound(scene)
+
+
+def leaves_an_exit_hook(scene):
+    atexit.register(time.sleep, 60)
+    return sound(scene)
+
+
+def exits_in_a_thread(scene):
+    thread = threading.Thread(target=sys.exit, args=(3,))
+    thread.start()
+    thread.join()
+    return sound(scene)
+
+
+def prints(scene):
+    print("{}" * 100)
+    sys.__stdout__.write("{}\n")
+    os.write(1, b'{"columns": {}}\n')
+    return sound(scene)
+
+
+def prints_without_end(scene):
+    line = b"x" * 99_999 + b"\n"
+    for _ in range(300):  # 30 MB
+        os.write(2, line)
+    return sound(scene)
+
+
+def _answers():
+    """Return the descriptor of the pipe that answers go through: the one beside 0, 1 and 2 that can be written."""
+    for name in os.listdir("/proc/self/fd"):
+        try:
+            pipe = os.readlink(f"/proc/self/fd/{name}").startswith("pipe:")
+            if pipe and int(name) > 2 and fcntl.fcntl(int(name), fcntl.F_GETFL) & os.O_WRONLY:
+                return int(name)
+        except OSError:
+            continue
+    raise LookupError("no pipe")
+
+
+def writes_half_a_line(scene):
+    os.write(_answers(), b'{"columns": ')
+    time.sleep(60)
+
+
+def drips(scene):
+    while True:
+        os.write(_answers(), b" ")
+        time.sleep(0.05)
+
+
+def writes_garbage(scene):
+    os.write(_answers(), b"\xff\xfe{{{\n")
+    return sound(scene)
+
+
+def writes_a_list(scene):
+    os.write(_answers(), b"[1, 2]\n")
+    return sound(scene)
+
+
+def answers_another_request(scene):
+    os.write(_answers(), b'{"columns": {"displacement": [7.0]}, "id": 99}\n')
+    return sound(scene)
+
+
+def closes_everything(scene):
+    os.closerange(0, 256)
+    return sound(scene)
+
+
+def closes_and_sleeps(scene):
+    os.closerange(0, 256)
+    time.sleep(60)
+
+
+def sleeps(scene):
+    time.sleep(60)
+
+
+def spins(scene):
+    while True:
+        pass
+
+
+def ignores_signals(scene):
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        signal.signal(number, signal.SIG_IGN)
+    time.sleep(60)
+
+
+def stops_itself(scene):
+    os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def stops_its_guard(scene):
+    os.kill(os.getppid(), signal.SIGSTOP)
+    time.sleep(60)
+
+
+def kills_its_guard(scene):
+    os.kill(os.getppid(), signal.SIGKILL)
+    time.sleep(60)
+
+
+def terminates_its_guard(scene):
+    os.kill(os.getppid(), signal.SIGTERM)
+    time.sleep(60)
+
+
+def kills_its_group(scene):
+    os.killpg(0, signal.SIGKILL)
+
+
+def kills_itself(scene):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def leaves_a_daemon(scene):
+    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"], start_new_session=True)
+    return sound(scene)
+
+
+def changes_directory(scene):
+    os.chdir("/")
+    return sound(scene)
+
+
+def interrupts(scene):
+    raise KeyboardInterrupt
+
+
+def ends_a_generator(scene):
+    raise GeneratorExit("no more")
+
+
+class Nameless(BaseException):
+    def __str__(self):
+        raise RuntimeError("no text")
+
+
+def raises_what_has_no_text(scene):
+    raise Nameless
+
+
+def raises_half_a_character(scene):
+    raise ValueError("half \udc80 of \ud800 a character, \x1b[31mred\x1b[0m, \0 and\nlines")
+
+
+def raises_a_book(scene):
+    raise ValueError("x" * 10_000_000)
+
+
+def recurses(scene):
+    return recurses(scene)
+
+
+def wants_memory(scene):
+    resource.setrlimit(resource.RLIMIT_AS, (2**32, 2**32))
+    return {"displacement": np.ones(2**40)}
+
+
+def not_a_number(scene):
+    return {"displacement": np.full(scene.time.steps, np.nan)}
+
+
+def infinite(scene):
+    return {"displacement": np.full(scene.time.steps, -np.inf)}
+
+
+def texts(scene):
+    return {"displacement": ["-1e-3"] * scene.time.steps}
+
+
+def complex_numbers(scene):
+    return {"displacement": np.full(scene.time.steps, -1e-3 + 1j)}
+
+
+def dates(scene):
+    return {"displacement": np.full(scene.time.steps, np.datetime64("2020-01-01"))}
+
+
+def nothing_in_it(scene):
+    return {"displacement": [None] * scene.time.steps}
+
+
+def scalar(scene):
+    return {"displacement": -1e-3}
+
+
+def square(scene):
+    return {"displacement": np.zeros((scene.time.steps, scene.time.steps))}
+
+
+def ragged(scene):
+    return {"displacement": [[1.0], [1.0, 2.0]]}
+
+
+def odd_names(scene):
+    odd = {"\udc80": [1.0], "../../x": [1.0], 3: [1.0], (1, 2): [1.0], "file": [1.0], "": [1.0]}
+    return sound(scene) | odd
+
+
+def names_of_half_characters(scene):
+    return {"\udc80": [1.0]}
+
+
+class Static:
+    """Reports a static solution."""
+
+    values: ClassVar = {"displacement": -1e-3}
+
+    def solve(self, scene):
+        return {"displacement": np.linspace(-1e-3, -2e-3, scene.time.steps)}
+
+    def static(self, scene):
+        return self.values
+
+
+class SubnormalStatic(Static):
+    values: ClassVar = {"displacement": -1e-320}
+
+
+class LeastStatic(Static):
+    values: ClassVar = {"displacement": -3e-308}
+
+
+class UndefinedStatic(Static):
+    values: ClassVar = {"displacement": float("nan")}
+
+
+class TextStatic(Static):
+    values: ClassVar = {"displacement": "x"}
+
+
+class OddModes(Static):
+    def modes(self, scene):
+        class Mode:
+            frequency, share, eigenvalues = float("nan"), "x", [complex("nan"), 0]
+
+        return [Mode()]
+
+
+def collects_itself(scene):
+    gc.disable()
+    sys.setrecursionlimit(50)
+    np.seterr(all="raise")
+    return sound(scene)

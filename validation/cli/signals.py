@@ -1,0 +1,110 @@
+"""Ctrl-C, SIGTERM and SIGHUP: an orderly end where there is one, an end in any case."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from validation.cli.app import INTERRUPTED
+
+CAUGHT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+PATIENCE = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
+_received: list[int] = []
+_watchers: list[threading.Thread] = []
+
+
+def interruption() -> int:
+    """Return the status of an interrupted command: 128 and the number of the signal that ended it."""
+    return 128 + _received[0] if _received else INTERRUPTED
+
+
+@contextmanager
+def caught() -> Iterator[None]:
+    """Turn the first signal into a KeyboardInterrupt; a second one, or `PATIENCE` seconds, ends the process.
+
+    What a signal's owner has chosen to ignore (nohup) stays ignored. Threads other than the main one, which Python
+    lets set no handlers, are left as they are.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    _received.clear()
+    before, hook = {number: signal.getsignal(number) for number in CAUGHT}, sys.unraisablehook
+    with _watched():
+        for number in (n for n, handler in before.items() if handler is not signal.SIG_IGN):
+            signal.signal(number, _handler(os.getpid()))
+        sys.unraisablehook = _unraisable(hook)
+        try:
+            yield
+        except BaseException:
+            if _received:  # whatever a library has made of the interruption
+                os._exit(interruption())
+            raise
+        finally:
+            sys.unraisablehook = hook
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+@contextmanager
+def _watched() -> Iterator[None]:
+    """Have a thread that hears of signals even while the main thread is in a library's long call."""
+    heard, told = os.pipe()
+    os.set_blocking(told, False)
+    previous = signal.set_wakeup_fd(told, warn_on_full_buffer=False)
+    watcher = threading.Thread(target=_watch, args=(heard,), daemon=True)
+    watcher.start()
+    _watchers.append(watcher)
+    try:
+        yield
+    finally:
+        _watchers.remove(watcher)
+        signal.set_wakeup_fd(previous)
+        os.close(told)
+        watcher.join()
+
+
+def _watch(heard: int) -> None:
+    """End the process a while after a signal, wherever its main thread is."""
+    while numbers := os.read(heard, 1):
+        if numbers[0] in CAUGHT:
+            threading.Event().wait(PATIENCE)
+            os._exit(128 + numbers[0])
+    os.close(heard)
+
+
+def _handler(owner: int) -> Callable[[int, FrameType | None], None]:
+    """Return the handler of a process; its forks, which inherit it, just end."""
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        if _received or os.getpid() != owner:
+            os._exit(128 + number)
+        _received.append(number)
+        raise KeyboardInterrupt
+
+    return handle
+
+
+def _unraisable(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[sys.UnraisableHookArgs], None]:
+    """Return a hook that ends the process where an interruption came in a place that raises nothing."""
+
+    def told(raised: sys.UnraisableHookArgs) -> None:
+        if _received:
+            os._exit(interruption())
+        hook(raised)
+
+    return told
+
+
+def _forked() -> None:
+    """Keep a fork's signals from its parent's watcher."""
+    if _watchers and threading.current_thread() is threading.main_thread():
+        signal.set_wakeup_fd(-1)
+
+
+os.register_at_fork(after_in_child=_forked)
