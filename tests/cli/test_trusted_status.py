@@ -14,9 +14,12 @@ from conftest import SCENE, typed
 from validation.engine.measured import Judged, covers, wanting
 from validation.engine.run import run_study
 from validation.gates.gate import Status, Verdict
+from validation.report import book
+from validation.report.blocks import Callout, FigureBlock, Heading
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
 from validation.studies.catalogue import STUDIES, get_study
 
 RUN = "[run]\nsolvers = {}\n"
@@ -153,7 +156,8 @@ def test_gates_that_are_deleted_are_worse(scene_file: Path, tmp_path: Path) -> N
         ("[-inf, inf]", "worse", 1),
         ("[-0.1, 0.9]", "worse", 1),
         ("[0.01, 0.9]", "band", 0),
-        ("[0.0, 1.0000000000001]", None, 0),  # the last digits of an edge are the processor's
+        ("[0.0, 1.00000000001]", None, 0),  # the last digits of an edge are the processor's
+        ("[0.0, 1.0000000001]", "worse", 1),
     ],
 )
 def test_a_band_that_changed_is_reported_and_a_wider_one_is_worse(
@@ -273,6 +277,18 @@ def test_fields_are_not_written_after_an_overflow(scene_file: Path, tmp_path: Pa
     assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
 
 
+def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
+    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "f.vtu"
+    out.write_text("a good file")
+    run = get_solver("dda").solve(load_scene(scene_file))
+    monkeypatch.setattr("validation.engine.measure.completed", lambda *arguments: run)
+    done = typed("solve", scene_file, "--solver", "fem", "--fields", out)
+    assert done.returncode == 2 and "--fields: fem has written none" in done.stderr
+    assert out.read_text() == "a good file"
+
+
 @pytest.mark.parametrize(("text", "status"), [(TIGHT, 1), (WIDE, 0)])
 def test_a_reader_that_has_gone_does_not_change_the_status(
     text: str, status: int, scene_file: Path, tmp_path: Path
@@ -316,3 +332,19 @@ def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> 
     assert (tmp_path / "r.pdf").read_bytes().startswith(b"%PDF-")
     done = typed("figures", stem, "--results", tmp_path / "r", "--out", tmp_path / "f")
     assert done.returncode == 0, done.stderr
+
+
+def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(
+    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("small", "other"):
+        scene_file.with_name(f"{name}.toml").write_text(SCENE)
+        assert typed("run", scene_file.with_name(f"{name}.toml"), "--results", tmp_path / "r").returncode == 0
+    drawn = book.chapter_of
+    monkeypatch.setattr(book, "chapter_of", lambda study: (lambda *a: [][0]) if study == "other" else drawn(study))
+    blocks = book._all_blocks(Results(tmp_path / "r"), ["other", "small"], tmp_path)
+    (said,) = [block.text for block in blocks if isinstance(block, Callout)]
+    assert "the chapter of other cannot be drawn from these results (IndexError: list index out of range)" in said
+    assert Heading("A small scene", 2) in blocks or any(isinstance(block, FigureBlock) for block in blocks)
+    done = typed("figures", "other", "--results", tmp_path / "r", "--out", tmp_path / "f")
+    assert done.returncode == 2 and "IndexError" in done.stderr

@@ -5,6 +5,7 @@ import shutil
 import threading
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -157,6 +158,14 @@ def test_the_latest_row_of_a_key_counts(scene: Scene, tmp_path: Path) -> None:
     for seconds in (1.0, 2.0, 3.0):
         results.append(Row("k", "s", "x", "dda", Outcome.REFUSED, {}, seconds={"setup": seconds}), None)
     assert results.rows()["k"].seconds == {"setup": 3.0}
+
+
+def test_a_row_that_does_not_say_what_made_it_is_run_again(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    row = next(row for row in results.rows().values() if row.solver == "dda")
+    results.append(replace(row, provenance={}), results.history(row.key))
+    assert ran(scene, results) == ["dda"]
 
 
 @pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])

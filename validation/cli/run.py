@@ -200,6 +200,7 @@ class _Abandoned(Exception):
 def _solved(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run:
     """Run a case; a file of fields takes its name only when the run has completed."""
     from validation.engine.measure import completed
+    from validation.errors import InputError
     from validation.runs.files import atomic_path
     from validation.runs.run import Outcome
 
@@ -207,8 +208,10 @@ def _solved(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run
         return completed(solver, case, full)
     with suppress(_Abandoned), atomic_path(fields) as part:
         done = completed(solver, case, full, part)
-        if done.outcome is not Outcome.COMPLETED or part.stat().st_size == 0:
+        if done.outcome is not Outcome.COMPLETED:
             raise _Abandoned
+        if part.stat().st_size == 0:
+            raise InputError(f"--fields: {solver.name} has written none, got {str(fields)!r}")
     return done
 
 

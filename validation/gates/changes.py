@@ -13,7 +13,7 @@ from validation.runs.records import Baseline, Judged, VerdictRecord
 
 Record = Judged
 Edges = tuple[float, float]
-LAST_DIGIT = 2e-12  # of the larger edge: edges are kept with twelve digits
+LAST_DIGIT = 1.5e-11  # of the larger edge: edges are kept with twelve digits, the last of which is 1e-11 of 1.00
 WORDS = ("PASS", "FAIL", "NOT RUN")
 RANK = {"PASS": 0, "NOT RUN": 1, "FAIL": 2}
 ABSENT = "absent"
