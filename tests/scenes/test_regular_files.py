@@ -61,7 +61,7 @@ def test_devices_and_directories_are_named(tmp_path: Path) -> None:
 def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe: Path, tmp_path: Path) -> None:
     path = tmp_path / "swept.toml"
     path.write_text(SCENE + f'[sweep]\n"load.base_motion" = ["{pipe.name}"]\n')
-    with pytest.raises(InputError, match="base_motion: .*must be a regular file, got a pipe"):
+    with pytest.raises(InputError, match=r"base_motion: .*must be a regular file, got a pipe"):
         load_scene(path).expand()
 
 
