@@ -2,26 +2,28 @@
 
 Time is measured in travel times h / c and starts with the load. Without damping the waves are summed
 one by one (d'Alembert): a wave that has met the spring j times carries the factor R^j,
-R = (s - kappa) / (s + kappa) in the Laplace variable s. With l_j(x) = exp(-x / 2) L_j(x), L_j the
-Laguerre polynomials, and x = 2 kappa t, the originals of 2 kappa R^j / (s (s + kappa)) and R^j / s^2 follow
-by recurrence::
+R = (s - kappa) / (s + kappa) in the Laplace variable s. With x = 2 kappa t and the Laguerre polynomials L_j^m,
+l_j^m(x) = exp(-x / 2) x^m L_j^m(x) m! j! / (j + m)!, the originals of 2 kappa R^j / (s (s + kappa)) and R^j / s^2
+follow by recurrence, without a difference of nearly equal terms on a soft spring::
 
-    I_0 = 2 (1 - exp(-kappa t)),   I_(j+1) = -I_j + 2 (l_j - l_(j+1))
+    I_0 = 2 (1 - exp(-kappa t)),   I_(j+1) = -I_j + 2 l_j^1
     N_0 = t,                       N_(j+1) = -N_j + I_j / kappa
 
     pressure / q            =  sum of I_j(t - 2 j - 1)
     -v(h / 2) E / (q h)     =  sum of N_j(t - 2 j - 1/2) + N_(j+1)(t - 2 j - 3/2)
 
 each term from its arrival on. Their integrals over time, which the damped bar needs at a front, are the sums
-of K_j and of Q_j + Q_(j+1), K_(j+1) = -K_j + (I_j - I_(j+1)) / kappa and Q_(j+1) = -Q_j + K_j / kappa. The
-damped bar itself is in `damped`.
+of K_j and of Q_j + Q_(j+1), K_(j+1) = -K_j + D_j and Q_(j+1) = -Q_j + K_j / kappa. Here
+D_j = (I_j - I_(j+1)) / kappa, the original of 4 kappa R^j / (s (s + kappa)^2), which on a soft spring keeps its
+digits by its own recurrence, D_(j+1) = -D_j + l_j^2 / kappa. The damped bar itself is in `damped`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from scipy.special import gammainc
 
 from fem_reference.exact import damped
 from fem_reference.problem.problem import Array
@@ -30,6 +32,8 @@ CHUNK = 2**20
 """Entries of a work array."""
 LONGEST = 700.0
 """Travel times up to which the waves of the undamped bar are summed: their cost grows with the square."""
+SOFT = 1.0
+"""Stiffness below which D_j has its own recurrence: l_j^2 / kappa grows as kappa, D_j is at most 4 / kappa."""
 HUGE = 1e100
 """Laguerre polynomial from which its scale is changed."""
 
@@ -86,19 +90,24 @@ def _in_chunks(waves: Callable[[Array, float], Array], times: Array, kappa: floa
 def _pressure(t: Array, kappa: float) -> Array:
     """Sums of I_j(t_j) and K_j(t_j), the recurrence run for all waves at once; `t` has shape (times, waves)."""
     total = np.zeros((2, len(t)))
-    laguerre = _Laguerre(2 * kappa * t)
-    force, impulse = _first(t, kappa)
-    for _ in range(t.shape[1]):
+    for _, (force, impulse) in zip(range(t.shape[1]), _forces(t, kappa), strict=False):
         total += force[:, 0], impulse[:, 0]
-        before, force = force[:, 1:], 2 * laguerre.advance() - force[:, 1:]
-        impulse = (before - force) / kappa - impulse[:, 1:]
     return total
 
 
-def _first(t: Array, kappa: float) -> tuple[Array, Array]:
-    """I_0 and its integral K_0."""
-    force = -2 * np.expm1(-kappa * t)
-    return force, 2 * t - force / kappa
+def _forces(t: Array, kappa: float) -> Iterator[tuple[Array, Array]]:
+    """Yield I_j and K_j for j = 0, 1, ..., of the waves from j on, the last axis of `t`."""
+    first, second = _Laguerre(2 * kappa * t, 1), _Laguerre(2 * kappa * t, 2)
+    begun = -np.expm1(-kappa * t)
+    force, rise = 2 * begun, 4 / kappa * gammainc(2, kappa * t)
+    impulse = 2 * t * begun - rise / 2
+    while True:
+        yield force, impulse
+        before, force = force[..., 1:], 2 * first.advance() - force[..., 1:]
+        if kappa < SOFT:
+            impulse, rise = rise[..., 1:] - impulse[..., 1:], second.advance() / kappa - rise[..., 1:]
+        else:
+            impulse = (before - force) / kappa - impulse[..., 1:]
 
 
 def _displacement(t: Array, kappa: float) -> Array:
@@ -108,44 +117,42 @@ def _displacement(t: Array, kappa: float) -> Array:
     """
     total = np.zeros((2, len(t)))
     both = np.array([t, np.maximum(t - 1, 0.0)])
-    laguerre = _Laguerre(2 * kappa * both)
-    force, impulse = _first(both, kappa)
     step = np.minimum(t, 1.0)
     area = step * (both[0] + both[1]) / 2
-    for _ in range(t.shape[1]):
+    for _, (force, impulse) in zip(range(t.shape[1]), _forces(both, kappa), strict=False):
         total += step[:, 0] + force[1, :, 0] / kappa, area[:, 0] + impulse[1, :, 0] / kappa
         step = ((force[0] - force[1]) / kappa - step)[:, 1:]
         area = ((impulse[0] - impulse[1]) / kappa - area)[:, 1:]
-        before, force = force[..., 1:], 2 * laguerre.advance() - force[..., 1:]
-        impulse = (before - force) / kappa - impulse[..., 1:]
     return total
 
 
 class _Laguerre:
-    """l_j(x) = exp(-x / 2) L_j(x) for the waves that go on beyond reflection j, the last axis of x.
+    """l_j^m(x) for the waves that go on beyond reflection j, the last axis of x.
 
-    Where exp(-x / 2) underflows L_j still matters: there the rest of the exponent is held back.
+    P_j = L_j^m m! j! / (j + m)! goes on by (j + 1 + m) (P_(j+1) - P_j) = j (P_j - P_(j-1)) - x P_j. Where exp(-x / 2)
+    underflows P_j still matters: there the rest of the exponent is held back.
     """
 
-    def __init__(self, x: Array) -> None:
-        self._x, self._j = x, 0
+    def __init__(self, x: Array, order: int = 1) -> None:
+        self._x, self._j, self._order = x, 0, order
         begun = np.minimum(x / 2, 600.0)
-        self._before, self._now, self._exponent = np.zeros_like(x), np.exp(-begun), begun - x / 2
+        self._rise, self._now, self._exponent = np.zeros_like(x), np.exp(-begun), begun - x / 2
         self._scaled = bool(np.any(self._exponent < 0))
 
     def advance(self) -> Array:
-        """Drop the first wave, raise j by one and return l_j - l_(j+1)."""
-        j, x, now, before = self._j, self._x[..., 1:], self._now[..., 1:], self._before[..., 1:]
-        following = ((2 * j + 1 - x) * now - j * before) / (j + 1)
-        self._j, self._x, self._before, self._now = j + 1, x, now, following
-        return self._rescaled(now - following) if self._scaled else now - following
+        """Drop the first wave, raise j by one and return l_j^m; for m = 1 that is l_j^0 - l_(j+1)^0."""
+        j, x, now = self._j, self._x[..., 1:], self._now[..., 1:]
+        self._rise = (j * self._rise[..., 1:] - x * now) / (j + 1 + self._order)
+        self._j, self._x, self._now = j + 1, x, now + self._rise
+        value = x**self._order * now
+        return self._rescaled(value) if self._scaled else value
 
-    def _rescaled(self, step: Array) -> Array:
-        """Return a difference to its scale; take polynomials that have become huge nearer to theirs."""
+    def _rescaled(self, value: Array) -> Array:
+        """Return a value to its scale; take polynomials that have become huge nearer to theirs."""
         self._exponent = self._exponent[..., 1:]
-        result: Array = step * np.exp(self._exponent)
+        result: Array = value * np.exp(self._exponent)
         down = np.where(np.abs(self._now) > HUGE, np.minimum(np.log(HUGE), -self._exponent), 0.0)
         if down.any():
             factor = np.exp(-down)
-            self._before, self._now, self._exponent = self._before * factor, self._now * factor, self._exponent + down
+            self._rise, self._now, self._exponent = self._rise * factor, self._now * factor, self._exponent + down
         return result

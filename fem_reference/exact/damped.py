@@ -1,14 +1,15 @@
 """Modes of the damped bar on a spring, M D'' + c M D' + K D = F, with the fronts of its waves.
 
 Time is in travel times and a = c / 2. With the shares of the modes (`bar_modes`) a history over its static
-value is 1 - sum of share * x, and::
+value is the sum of share * (1 - x): on a soft spring all of it is small, and nothing is subtracted from one. And::
 
     x(w, t) = exp(-a t) (cos v t + a sin(v t) / v),   v = sqrt(w^2 - a^2)
             = exp(-a t) (cos w t + (a + a^2 t / 2) sin(w t) / w) + O(1 / w^2)
 
 Away from the fronts the sum is cut off smoothly. Near a front its tail is that of the leading terms,
 and these are summed over all modes at once: they are the undamped history and its integral, which the waves
-give. Fronts have died once exp(-a t) is below rounding; strong damping leaves diffusion, a few modes.
+give (the shares of all modes sum to one). Fronts have died once exp(-a t) is below rounding; strong damping
+leaves diffusion, a few modes.
 """
 
 from __future__ import annotations
@@ -36,9 +37,11 @@ WAVE_WORK = 2**27
 REACH = 42.0
 """Distance from a front times modes from which the smooth cut-off leaves less than 1e-12."""
 NOTHING = 1e-13
-"""Tail of a sum over its static value that need not be looked after."""
+"""Tail of a sum over the history's maximum that need not be looked after."""
 DEAD = 40.0
 """Exponent at which a decayed term is below rounding."""
+GAUSS = 20
+"""Points of a quadrature over an arc of one."""
 BLOCK = 2**20
 """Entries of a work array."""
 
@@ -71,8 +74,10 @@ def history(column: str, times: Array, kappa: float, a: float, undamped: Undampe
     arrived = times > begin
     live = arrived & (a * times < DEAD)
     distance = np.abs((times - first + gap / 2) % gap - gap / 2)
-    tail = MODES * abs(shares(column, wave_numbers(kappa, MODES), kappa)[MODES // 4])
-    near = live & (distance * MODES < REACH) & (np.exp(-np.minimum(a * times, DEAD)) * tail > NOTHING)
+    b = wave_numbers(kappa, MODES)
+    tail = MODES * abs(shares(column, b, kappa)[MODES // 4])
+    size = min(1.0, float(slowest(times, b[0], a).max(initial=0.0)))
+    near = live & (distance * MODES < REACH) & (np.exp(-np.minimum(a * times, DEAD)) * tail > NOTHING * size)
     result[arrived] = _away(column, times, kappa, a, begin)[arrived]
     if near.any():
         _check_waves(times[near])
@@ -91,11 +96,9 @@ def mode_counts(a: float, begin: float) -> tuple[int, int]:
 def _away(column: str, times: Array, kappa: float, a: float, begin: float) -> Array:
     """Sum of the modes, cut off smoothly."""
     low, count = mode_counts(a, begin)
-    b = wave_numbers(kappa, count)
-    weights = shares(column, b, kappa)
-    if low < count:
-        weights = weights * cut_off(count, count)
-    result: Array = 1 - _by_blocks(times, b[:low], weights[:low], lambda t, w: response(t, w, a))
+    b = wave_numbers(kappa, MODES)
+    weights = shares(column, b, kappa) * cut_off(MODES, MODES)
+    result: Array = weights[low:].sum() + _by_blocks(times, b[:low], weights[:low], lambda t, w: gone(t, w, a))
     if low < count:
         last = int(np.searchsorted(times, DEAD / a, side="right"))
         v = np.sqrt((b[low:] - a) * (b[low:] + a))
@@ -134,16 +137,48 @@ def _near(column: str, times: Array, kappa: float, a: float, undamped: Undamped)
     b = wave_numbers(kappa, count)
     weights = shares(column, b, kappa) * cut_off(count, count)
     value, integral = undamped(column, times, kappa)
-    lead = a + a * a * times / 2
-    leading = np.exp(-a * times) * (1 - value + lead * (times - integral))
-    rest = _by_blocks(times, b, weights, lambda t, w: _beyond(t, w, a))
-    return np.asarray(1 - leading - rest)
+    leading = np.exp(-a * times) * (value + (a + a * a * times / 2) * integral)
+    return np.asarray(leading + _by_blocks(times, b, weights, lambda t, w: _beyond(t, w, a)))
 
 
 def _beyond(t: Array, w: Array, a: float) -> Array:
-    """Response of the modes less its leading terms; `t` is a column."""
+    """Way 1 - x that modes have gone less its leading terms; `t` is a column."""
     lead = a + a * a * t / 2
-    return np.asarray(response(t, w, a) - np.exp(-a * t) * (np.cos(w * t) + lead * np.sin(w * t) / w))
+    return np.asarray(gone(t, w, a) - np.exp(-a * t) * (2 * np.sin(w * t / 2) ** 2 + lead * lag(t, w)))
+
+
+def lag(t: Array, w: Array) -> Array:
+    """T - sin(w t) / w, which is w^2 t^3 / 6 for slow modes, with all its digits."""
+    z = np.minimum(w * t, 1.0) ** 2
+    series = np.ones_like(z)
+    for divisor in (342, 272, 210, 156, 110, 72, 42, 20):
+        series = 1 - z / divisor * series
+    return np.asarray(np.where(w * t < 1, t * z / 6 * series, t - np.sin(w * t) / w))
+
+
+def gone(t: Array, w: Array, a: float) -> Array:
+    """Way 1 - x(w, t) of modes; the first one's, which is slow on a soft spring, with all its digits."""
+    y = 1 - response(t, w, a)
+    y[:, :1] = slowest(t[:, 0], w[0], a)[:, None]
+    return np.asarray(y)
+
+
+def slowest(t: Array, w: float, a: float) -> Array:
+    """Way 1 - x(w, t) of one mode, which is w^2 t^2 / 2 at first and w^2 t / (2 a) where damping is strong.
+
+    It is w^2 times the integral of exp(-a u) sin(v u) / v, whose integrand does not cancel before w t or a t is one.
+    """
+    y = 1 - response(t[:, None], np.array([w]), a)[:, 0]
+    early = (w * t < 1) & (a * t < 1)
+    u, weights = np.polynomial.legendre.leggauss(GAUSS)
+    s = t[early, None] * (1 + u) / 2
+    v = np.sqrt(complex(w * w - a * a))
+    y[early] = w * w * t[early] / 2 * (np.exp(-a * s) * s * np.sinc(v * s / np.pi).real @ weights)
+    if w < a / 2:
+        q = np.sqrt((a - w) * (a + w))
+        slow, fast, late = w * w / (a + q), a + q, t[~early]
+        y[~early] = (slow * np.expm1(-fast * late) - fast * np.expm1(-slow * late)) / (2 * q)
+    return np.asarray(y)
 
 
 def response(t: Array, w: Array, a: float) -> Array:

@@ -186,8 +186,10 @@ def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
     """1 - x of one mode at steps 1 to `steps`, keeping the digits of small values."""
     s, (y1, y2) = spectrum(omega, scheme), first_steps(omega, scheme)
     x1, rise, k = 1 - y1, y1 - y2, np.arange(steps)
-    if s.trace[0] < 0 or abs(s.discriminant[0]) <= (CLOSE * s.trace[0]) ** 2:
+    if s.trace[0] < 0:
         return np.asarray(1 - _chunk(omega, np.ones((1, 1)), scheme, steps)[0], dtype=np.float64)
+    if abs(s.discriminant[0]) <= CLOSE**2 * s.product[0]:
+        return _stepped(float(s.det[0]), float(s.product[0]), float(y1[0]), float(y2[0]), steps)
     gap = np.sqrt(np.abs(s.discriminant))
     if s.discriminant[0] < 0:
         amplitude = x1 - 2j * (rise + s.mu / 2 * x1) / gap
@@ -197,6 +199,16 @@ def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
     slow = (rise + far * x1) / gap * _one_minus(near).minus_one(k)
     fast = (rise + near * x1) / gap * _one_minus(far).minus_one(k)
     return np.asarray(y1 - (slow - fast).real, dtype=np.float64)
+
+
+def _stepped(det: float, product: float, y1: float, y2: float, steps: int) -> Array:
+    """Y = 1 - x from y(k+1) - y(k) = det (y(k) - y(k-1)) + product (1 - y(k)), for nearly equal roots."""
+    y, rise, rows = y1, y2 - y1, []
+    for _ in range(steps):
+        rows.append(y)
+        y += rise
+        rise = det * rise + product * (1 - y)
+    return np.array(rows)
 
 
 def _chunk(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:

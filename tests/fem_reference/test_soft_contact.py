@@ -1,0 +1,81 @@
+"""The exact bars on soft springs, where all that moves is a small difference, against transforms in 50 digits.
+
+Errors are over the history's own maximum, which on a soft spring is far below the static value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from oracles import bar_by_transform, bar_steps_by_transform
+from oracles.bars import damped_by_kernel
+
+from fem_reference.exact import bar as bar_module
+from fem_reference.exact import continuum
+from fem_reference.exact.bar import Bar
+from fem_reference.problem.problem import Scheme
+
+SOFTNESS = [2e-12, 2e-8, 4e-6, 1e-3, 0.9]  # of the spring over the bar: twice p / E of a square block
+COLUMNS = ["contact_pressure", "displacement"]
+CUT_OFF = 2e-12  # of the sums over modes, as in `test_damped_fronts`
+
+
+def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
+    scale = max(map(abs, expected))
+    return float(max(abs(mpf(float(x)) - y) for x, y in zip(found, expected, strict=True)) / scale)
+
+
+@pytest.mark.parametrize("column", COLUMNS)
+@pytest.mark.parametrize("kappa", SOFTNESS)
+@pytest.mark.parametrize("rate", [0.0, 1e-6, 1e-2, 1.0, 30.0, 300.0])
+@pytest.mark.parametrize("step", [0.25, 0.2371])
+def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
+    """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
+    times, looked = step * np.arange(1, 61), [19, 59]
+    found = continuum.histories(times, kappa, rate, (column,))[0]
+    expected = [bar_by_transform.history(column, float(times[i]), kappa, rate) for i in looked]
+    assert over_maximum(found[looked], expected) <= CUT_OFF
+
+
+@pytest.mark.parametrize("stiffness", [1e-15, 1e-12, 3e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        Scheme(0.5, 1.0, 1.0, 2e-3),
+        Scheme(0.25, 0.5, 1.0, 5e-5),
+        Scheme(0.25, 0.5, 0.95, 2e-4),
+        Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
+        Scheme(0.5, 1.0, 0.999, 1e-3),
+        Scheme(0.25, 0.5, 1 - 3e-5, 2e-4),
+    ],
+)
+def test_the_bar_in_steps(stiffness: float, scheme: Scheme) -> None:
+    steps = [1, 3, 20, 120]
+    bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * stiffness, 5e6)
+    expected = bar_steps_by_transform.at_steps(bar, scheme, steps)
+    for name, values in bar.solve(scheme, steps[-1]).columns.items():
+        assert over_maximum(values[np.array(steps) - 1], expected[name]) <= bar_module.TARGET
+
+
+def test_a_critically_damped_slow_mode_in_steps() -> None:
+    """The lowest mode's roots are equal and next to one: no pair of powers, and no difference from one either."""
+    bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e1, 5e6)
+    omega = float(bar.frequencies(1)[0]) * 2e-4
+    gg = 1 - 2 * omega  # (1 - gg)^2 = 4 h, to the first order of h = Omega^2
+    scheme, steps = Scheme(0.25, 0.5, gg, 2e-4), [2, 40, 120]
+    expected = bar_steps_by_transform.at_steps(bar, scheme, steps)
+    for name, values in bar.solve(scheme, steps[-1]).columns.items():
+        assert over_maximum(values[np.array(steps) - 1], expected[name]) <= bar_module.TARGET
+
+
+def test_the_transform_itself() -> None:
+    """The first wave undamped is 2 (1 - exp(-kappa t)); damped and on a firm spring it is the Bessel kernel's."""
+    first = bar_by_transform.history("contact_pressure", 2.5, 1e-3, 0.0)
+    with mp.workdps(bar_by_transform.DIGITS):
+        assert abs(first + 2 * mp.expm1(-mpf(1e-3) * 3 / 2)) < mpf(10) ** -25
+    for column in COLUMNS:
+        expected = damped_by_kernel(column, 5.3, 2.0, 0.4)
+        assert float(bar_by_transform.history(column, 5.3, 2.0, 0.8)) == pytest.approx(expected, abs=1e-12)
