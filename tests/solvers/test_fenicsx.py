@@ -27,8 +27,8 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
-from validation.solvers import worker
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, places
+from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
 from validation.studies.second_fem_code import POLYGONS, SAME, TWO_CODES
 
@@ -58,7 +58,8 @@ def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.Monkey
     gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
     scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
     run = typed("run", scene_file, cwd=tmp_path)
-    assert run.returncode == 0 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
+    assert run.returncode == 1 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
+    assert "none of its 1 gates was judged" in run.stdout
     assert typed("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
 
 

@@ -19,7 +19,7 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers import worker
+from validation.solvers.processes import worker
 from validation.solvers.user import VARIABLE, words
 
 HERE = Path(__file__).parent / "user_solvers"

@@ -15,7 +15,7 @@ from validation.engine.measure import execute, failed_row, said
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
-from validation.solvers.guard import DEATH_SIGNAL, control
+from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 LOOK = 0.25  # s between two looks whether the parent lives
 

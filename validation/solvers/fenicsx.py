@@ -27,8 +27,8 @@ from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable
+from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, no_fields, pulls
-from validation.solvers.worker import ask
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"

@@ -22,8 +22,8 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
+from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
 from validation.solvers.translation import no_fields, pulls
-from validation.solvers.worker import WorkerDied, WorkerHangs, ask
 
 LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case, and what sets it
 UNITS = {  # what a value in another unit is, over the value in SI
@@ -68,7 +68,7 @@ class Asked(Prepared):
         """Run the scene in the solver's own process."""
         no_fields(self.solver.name, self.scene, fields)
         limit = float(os.environ.get(VARIABLE, LIMIT))
-        worker = [sys.executable, "-m", "validation.solvers.user_worker"]
+        worker = [sys.executable, "-m", "validation.solvers.processes.user_worker"]
         command = [*worker, self.solver.target, os.getcwd(), *filter(None, sys.path)]
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:

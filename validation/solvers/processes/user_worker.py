@@ -1,4 +1,4 @@
-"""The process in which a user's solver runs: ``python -m validation.solvers.user_worker module:attribute``.
+"""The process in which a user's solver runs: ``python -m validation.solvers.processes.user_worker module:attribute``.
 
 A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
 them, or "raised" with the error.
@@ -18,7 +18,7 @@ from validation.runs.history import History
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.worker import serve
+from validation.solvers.processes.worker import serve
 
 FORMS = (
     "must return a History, a Run, a mapping of columns, (displacement, contact_pressure), "
