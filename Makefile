@@ -4,8 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 export OMP_NUM_THREADS ?= 1
+# Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all test gates lint portable api bench clean
+.PHONY: report report-all test test-all gates lint portable api bench clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -13,11 +15,14 @@ report: $(READY)  ## the core study, error against run time, and their PDF, writ
 report-all: $(READY)  ## every study and one PDF
 	@$(BIN)/dda-validate run all; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
 
-test: $(READY)  ## all tests and all accuracy gates
-	$(BIN)/python -m pytest -q -n 2 --dist loadgroup
+test: $(READY)  ## the tests and the accuracy gates, without the long ones
+	$(PYTEST) -n 2 --dist loadgroup -m "not long"
+
+test-all: test  ## these, then the long ones: all seeded faults, all fifty histories
+	$(PYTEST) -n 2 --dist loadgroup -m long
 
 gates: $(READY)  ## the accuracy gates alone
-	$(BIN)/python -m pytest -q -m validation
+	$(PYTEST) -m validation
 
 lint: $(READY)  ## style and types
 	$(BIN)/ruff check .

@@ -6,6 +6,7 @@ recursion beside it; the scheme's spectral formulas. Importing the package costs
 """
 
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
+from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
@@ -16,6 +17,7 @@ from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.solution import Result, solve
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
+from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, UnilateralResult, solve_unilateral
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
@@ -43,6 +45,10 @@ __all__ = [
     "Section",
     "SurfaceLoad",
     "TwoBlockModel",
+    "Unilateral",
+    "UnilateralModel",
+    "UnilateralOptions",
+    "UnilateralResult",
     "contact_stiffness",
     "diagnostics",
     "highest_frequency",
@@ -53,6 +59,7 @@ __all__ = [
     "solve",
     "solve_system",
     "solve_textbook",
+    "solve_unilateral",
     "spectral",
     "spring_vectors",
     "static_system",

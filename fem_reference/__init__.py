@@ -15,6 +15,7 @@ from fem_reference.problem.result import COLUMNS, Mode, Result
 if TYPE_CHECKING:
     from fem_reference.exact.bar import Bar, applicable
     from fem_reference.history.solver import solve, static
+    from fem_reference.history.unilateral import UNILATERAL_COLUMNS, Unilateral, UnilateralResult, solve_unilateral
     from fem_reference.mesh.model import assemble
     from fem_reference.scheme.eigen import highest_frequency, modes
 
@@ -26,21 +27,29 @@ _HOMES = {
     "modes": "scheme.eigen",
     "solve": "history.solver",
     "static": "history.solver",
+    "UNILATERAL_COLUMNS": "history.unilateral",
+    "Unilateral": "history.unilateral",
+    "UnilateralResult": "history.unilateral",
+    "solve_unilateral": "history.unilateral",
 }
 
 __all__ = [
     "COLUMNS",
+    "UNILATERAL_COLUMNS",
     "Bar",
     "Mode",
     "Motion",
     "Problem",
     "Result",
     "Scheme",
+    "Unilateral",
+    "UnilateralResult",
     "applicable",
     "assemble",
     "highest_frequency",
     "modes",
     "solve",
+    "solve_unilateral",
     "static",
 ]
 

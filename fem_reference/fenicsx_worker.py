@@ -183,15 +183,17 @@ class Block:
         found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
         for name, (measure, expected) in found.items():
             if abs(self._integral(measure) - expected) > 1e-9 * expected:
-                raise ValueError(f"mesh: outline must be the block's, but its {name} is another")
+                raise ValueError(f"mesh: outline must be the block's, but its {name} differs")
         low, high = pressed_part(request, o.side(o.top)[2])
         if abs(self._integral(self.ds(PRESSED)) - (high - low)) > 1e-9 * o.side(o.top)[2]:
-            raise Inapplicable("the pressed part ends inside elements, and fenicsx integrates whole edges only")
+            raise Inapplicable(
+                "the pressed part of the top ends inside an element's edge, and fenicsx integrates whole edges only"
+            )
         spans = spring_intervals(request, o.side(0)[2])
         carried = sum(high - low for low, high in spans)
         if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
             if request["foundation"] == "patch":
-                raise Inapplicable("the patches end inside elements, and fenicsx integrates whole edges only")
+                raise Inapplicable("the patches end inside an element's edge, and fenicsx integrates whole edges only")
             raise ValueError("mesh: the base must be covered by edges of elements exactly")
         self.carried = carried if spans else 1.0
 

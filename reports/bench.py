@@ -11,8 +11,10 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -20,13 +22,26 @@ from pathlib import Path
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
-
-import numpy as np  # noqa: E402  (after the number of threads is set)
-
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+import numpy as np  # noqa: E402  (after the number of threads is set)
+from rivals import block_numpy, elements_skfem, estimates  # noqa: E402
+
+import dda  # noqa: E402
+import fem_reference  # noqa: E402
+from validation import load_scene, solve  # noqa: E402
+from validation.engine.measure import completed  # noqa: E402
+from validation.engine.run import run_study  # noqa: E402
+from validation.engine.study import Study  # noqa: E402
+from validation.runs.results import Results  # noqa: E402
+from validation.runs.run import Outcome  # noqa: E402
+from validation.solvers.registry import get_solver  # noqa: E402
+
 TABLE = HERE.parent / "docs" / "speed.md"
-History = tuple[np.ndarray, np.ndarray]
+SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+PAPER = (0.5, 1.0, 1.0, 1e-3)  # alpha, delta, gg, dt [s]
+History = tuple[np.ndarray, ...]  # displacement [m], contact pressure [Pa]
 
 
 @dataclass(frozen=True)
@@ -38,7 +53,7 @@ class Contest:
     rival: str
     theirs: Callable[[], History]
     target: float  # ratio that is asked for; 0 where none is
-    agreement: float  # over the maximum
+    agreement: float  # greatest difference over the maximum
     repeats: int = 3
 
 
@@ -53,227 +68,157 @@ def timed(run: Callable[[], History]) -> tuple[float, History]:
     return least, answer
 
 
+def difference(found: History, expected: History) -> float:
+    """Return the greatest difference of two answers over the maximum."""
+    return max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(found, expected, strict=True))
+
+
+def line(name: str, ours: float, rival: str, theirs: float, target: float, off: float) -> str:
+    """Return a line of the table, and print it."""
+    asked = f"{target:g}" if target else "-"
+    text = f"| {name} | {ours:.3g} | {rival} | {theirs:.3g} | **{theirs / ours:.0f}** | {asked} | {off:.0e} |"
+    print(text, flush=True)
+    return text
+
+
 def compete(contest: Contest) -> str:
     """Run both sides by turns; return a line of the table."""
-    ours, theirs, off = [], [], 0.0
+    ours, theirs = [], []
     for _ in range(contest.repeats):
-        for seconds, run in ((ours, contest.ours), (theirs, contest.theirs)):
-            spent, answer = timed(run)
-            seconds.append(spent)
-            if seconds is ours:
-                expected = answer
-        off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(answer, expected, strict=True))
+        spent, expected = timed(contest.ours)
+        ours.append(spent)
+        spent, answer = timed(contest.theirs)
+        theirs.append(spent)
+        off = difference(answer, expected)
         if not off <= contest.agreement:
             raise SystemExit(f"{contest.name}: {contest.rival} differs by {off:.2g} of the maximum")
-    ratio = min(theirs) / min(ours)
-    target = f"{contest.target:g}" if contest.target else "-"
-    line = (
-        f"| {contest.name} | {min(ours):.3g} | {contest.rival} | {min(theirs):.3g} | **{ratio:.0f}** | {target} | "
-        f"{off:.0e} |"
-    )
-    print(line, flush=True)
-    return line
+    return line(contest.name, min(ours), contest.rival, min(theirs), contest.target, off)
 
 
 # ---- ours -----------------------------------------------------------------------------------------------------------
 
 
-def dda_history(steps: int) -> History:
-    """Build the model of the square block and solve it."""
-    import dda
-
-    block = dda.Block.rectangle(2.0, 2.0, dda.Material(2700.0, 1e9, 0.0))
-    model = dda.TwoBlockModel(block, dda.Contact(1e9), 5e6)
-    columns = dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, 1e-3), steps).columns
-    return columns["displacement"], columns["contact_pressure"]
-
-
-def built_history() -> Callable[[int], History]:
-    """Return the history of a model that is there already."""
-    import dda
-
-    block = dda.Block.rectangle(2.0, 2.0, dda.Material(2700.0, 1e9, 0.0))
+def dda_model() -> dda.TwoBlockModel:
+    """Return the model of the square block."""
+    block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
     model = dda.TwoBlockModel(block, dda.Contact(1e9), 5e6)
     model.gap_form.reduced()
+    return model
 
-    def history(steps: int) -> History:
-        columns = dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, 1e-3), steps).columns
-        return columns["displacement"], columns["contact_pressure"]
 
-    return history
+def dda_history(steps: int, model: dda.TwoBlockModel | None = None) -> History:
+    """Solve the square block, and build its model where it is not there already."""
+    return tuple(dda.solve(model or dda_model(), dda.Scheme(*PAPER), steps).columns.values())
 
 
 def fem_history(steps: int, poisson: float, elements: int = 64) -> History:
     """Mesh the square block and solve it."""
-    import fem_reference
-
-    corners = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
     numbers = (2700.0, 1e9, poisson, "plane stress", 1e9, 1e9, 5e6)
-    problem = fem_reference.Problem(corners, 0, 2, *numbers, elements=elements, degree=1)
-    columns = fem_reference.solve(problem, fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), steps).columns
-    return columns["displacement"], columns["contact_pressure"]
+    problem = fem_reference.Problem(SQUARE, 0, 2, *numbers, elements=elements, degree=1)
+    return tuple(fem_reference.solve(problem, fem_reference.Scheme(*PAPER), steps).columns.values())
 
 
 # ---- contests -------------------------------------------------------------------------------------------------------
 
 
+def dda_contest(steps: int, model: dda.TwoBlockModel | None, target: float, agreement: float, repeats: int) -> Contest:
+    """Return a contest of the block."""
+    name = f"dda, {steps:,} steps" + ("" if model else ", model built too")
+    theirs = lambda: block_numpy.history(steps)  # noqa: E731
+    return Contest(name, lambda: dda_history(steps, model), "numpy loop", theirs, target, agreement, repeats)
+
+
+def fem_contest(steps: int, mu: float, target: float, repeats: int) -> Contest:
+    """Return a contest of the elements."""
+    name = f"fem, 64 x 64, mu = {mu:g}, {steps:,} steps"
+    theirs = lambda: elements_skfem.history(steps, poisson=mu)  # noqa: E731
+    ours = lambda: fem_history(steps, mu)  # noqa: E731
+    return Contest(name, ours, "scikit-fem, SuperLU loop", theirs, target, 1e-10, repeats)
+
+
 def contests(quick: bool) -> list[Contest]:
     """Return the contests; `quick` leaves the long ones out."""
-    from rivals import block_numpy, elements_skfem
-
-    loop, skfem, built = "numpy loop", "scikit-fem, SuperLU loop", built_history()
-    found = [
-        Contest("dda, 10,000 steps", lambda: built(10**4), loop, lambda: block_numpy.history(10**4), 200, 1e-11, 9),
-        Contest(
-            "dda, 10,000 steps, model built too",
-            lambda: dda_history(10**4),
-            loop,
-            lambda: block_numpy.history(10**4),
-            0,
-            1e-11,
-            9,
-        ),
-    ]
-    fem = [(1000, 0.25, 10, 3), (10_000, 0.25, 60, 1), (1000, 0.0, 80, 2)]
+    model = dda_model()
+    found = [dda_contest(10**4, model, 200, 1e-11, 9), dda_contest(10**4, None, 0, 1e-11, 9)]
     if not quick:
-        found.append(
-            Contest("dda, 1,000,000 steps", lambda: built(10**6), loop, lambda: block_numpy.history(10**6), 500, 1e-9)
-        )
-    for steps, mu, target, repeats in fem:
-        if quick and steps > 1000:
-            continue
-        found.append(
-            Contest(
-                f"fem, 64 x 64, mu = {mu:g}, {steps:,} steps",
-                lambda steps=steps, mu=mu: fem_history(steps, mu),
-                skfem,
-                lambda steps=steps, mu=mu: elements_skfem.history(steps, poisson=mu),
-                target,
-                1e-10,
-                repeats,
-            )
-        )
-    return found
+        found += [dda_contest(10**6, model, 500, 1e-9, 3), fem_contest(10**4, 0.25, 60, 1)]
+    return [*found, fem_contest(1000, 0.25, 10, 3), fem_contest(1000, 0.0, 80, 2)]
 
 
-def fenicsx_line() -> str:
+def fenicsx_line(n: int = 64, steps: int = 1000) -> str:
     """Return the line of FEniCSx, whose seconds are its own, without starting its interpreter."""
-    from validation import load_scene, solve
-    from validation.engine.measure import attempt
-    from validation.runs.run import Outcome
-    from validation.solvers.registry import get_solver
-
-    values = {"block.poisson": 0.25, "fem.elements": 64, "fem.degree": 1, "time.steps": 1000, "time.step": 1e-3}
+    values = {"block.poisson": 0.25, "fem.elements": n, "fem.degree": 1, "time.steps": steps, "time.step": 1e-3}
     scene = load_scene("figures-3-4").with_values(values)
-    ours = min(timed(lambda: fem_history(1000, 0.25))[0] for _ in range(3))
-    runs = [attempt(get_solver("fenicsx"), scene, False) for _ in range(2)]
-    name = "| fem, 64 x 64, mu = 0.25, 1,000 steps"
+    ours = least_seconds(lambda: fem_history(steps, 0.25, n), 3)
+    runs = [completed(get_solver("fenicsx"), scene) for _ in range(2)]
+    name, rival = f"fem, {n} x {n}, mu = 0.25, {steps:,} steps", "FEniCSx, PETSc LU"
     if runs[0].outcome is not Outcome.COMPLETED:
-        return f"{name} | {ours:.3g} | FEniCSx, PETSc LU | NOT RUN: {'; '.join(runs[0].notes)} | | | |"
-    theirs = min(sum(run.seconds.values()) for run in runs)
-    own, other = solve(scene, "fem"), runs[0]
-    pairs = ((own.displacement, other.displacement), (own.contact_pressure, other.contact_pressure))
-    off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in pairs)
-    line = f"{name} | {ours:.3g} | FEniCSx, PETSc LU | {theirs:.3g} | **{theirs / ours:.0f}** | - | {off:.0e} |"
-    print(line, flush=True)
-    return line
+        return f"| {name} | {ours:.3g} | {rival} | NOT RUN: {'; '.join(runs[0].notes)} | | | |"
+    own, other = ((run.displacement, run.contact_pressure) for run in (solve(scene, "fem"), runs[0]))
+    return line(name, ours, rival, min(sum(run.seconds.values()) for run in runs), 0, difference(own, other))
 
 
 # ---- growth ---------------------------------------------------------------------------------------------------------
 
 
-def law(sizes: Sequence[float], seconds: Sequence[float]) -> float:
-    """Return the exponent of the cost over the upper two thirds of the sizes."""
-    part = slice(len(sizes) // 3, None)
-    return float(np.polyfit(np.log(sizes[part]), np.log(seconds[part]), 1)[0])
-
-
-def growth(quick: bool) -> list[str]:
-    """Return the lines of the growth table."""
-    built = built_history()
-    steps = [10**3, 10**4, 10**5, 10**6]
-    meshes = [4, 8, 16, 32, 64] if quick else [4, 8, 16, 32, 64, 128]
-    rows = [
-        ("dda, steps", "s", steps, [best(lambda n=n: built(n), 5) for n in steps]),
-        ("fem, 16 x 16, mu = 0.25, steps", "s", steps, [best(lambda n=n: fem_history(n, 0.25, 16), 2) for n in steps]),
-        (
-            "fem, mu = 0.25, 1,000 steps, elements per side",
-            "s",
-            meshes,
-            [best(lambda n=n: fem_history(1000, 0.25, n), 2) for n in meshes],
-        ),
-        ("engine, scenes (dda, 200 steps)", "s", [1, 10, 100], [sweep_seconds(count) for count in (1, 10, 100)]),
-    ]
-    return [
-        f"| {name} | {', '.join(f'{n:,}' for n in sizes)} | {', '.join(f'{t:.2g}' for t in seconds)} | "
-        f"{law(sizes, seconds):.2f} |"
-        for name, _, sizes, seconds in rows
-    ]
-
-
-def best(run: Callable[[], History], repeats: int) -> float:
+def least_seconds(run: Callable[[], History], repeats: int) -> float:
     """Return the least seconds of some runs."""
     return min(timed(run)[0] for _ in range(repeats))
 
 
-def sweep_seconds(count: int) -> float:
-    """Return the seconds of a study of some scenes in this process, results kept."""
-    import tempfile
+def grown(name: str, sizes: Sequence[int], seconds: Callable[[int], float]) -> str:
+    """Return a line of the growth table: the exponent is that of the upper two thirds of the sizes."""
+    spent = [seconds(n) for n in sizes]
+    part = slice(len(sizes) // 3, None)
+    exponent = np.polyfit(np.log(sizes[part]), np.log(spent[part]), 1)[0]
+    return (
+        f"| {name} | {', '.join(f'{n:,}' for n in sizes)} | {', '.join(f'{t:.2g}' for t in spent)} | {exponent:.2f} |"
+    )
 
-    from validation import load_scene
-    from validation.engine.run import run_study
-    from validation.engine.study import Study
-    from validation.runs.results import Results
 
+def growth(quick: bool) -> list[str]:
+    """Return the lines of the growth table."""
+    model, steps, meshes = dda_model(), [10**3, 10**4, 10**5, 10**6], [4, 8, 16, 32, 64, 128]
+    meshes = meshes[:-1] if quick else meshes
+    return [
+        grown("dda, steps", steps, lambda n: least_seconds(lambda: dda_history(n, model), 5)),
+        grown("fem, 16 x 16, mu = 0.25, steps", steps, lambda n: least_seconds(lambda: fem_history(n, 0.25, 16), 2)),
+        grown(
+            "fem, mu = 0.25, 1,000 steps, elements per side",
+            meshes,
+            lambda n: least_seconds(lambda: fem_history(1000, 0.25, n), 2),
+        ),
+        grown("engine, scenes (dda, 200 steps)", [1, 10, 100], lambda n: sweep_seconds("figures-3-4", {}, "dda", n)),
+    ]
+
+
+def sweep_seconds(name: str, values: dict[str, float], solver: str, count: int, jobs: int = 1) -> float:
+    """Return the seconds of a study of some time steps of a scene, results kept."""
+    scene = load_scene(name).with_values({"time.step": 1e-3, **values}).model_copy(update={"sweep": {}})
     steps = [1e-3 * (1 + i / count) for i in range(count)]
-    scene = load_scene("figures-3-4").with_values({"time.step": steps[0]}).model_copy(update={"sweep": {}})
-    study = Study("growth", "Growth", "Growth.", [scene], ("dda",), {"time.step": steps})
+    study = Study("sweep", "Sweep", "Sweep.", [scene], (solver,), {"time.step": steps}, measures=("history",))
     with tempfile.TemporaryDirectory() as directory:
         began = time.perf_counter()
-        run_study(study, Results(directory))
+        run_study(study, Results(directory), jobs=jobs)
         return time.perf_counter() - began
 
 
-def two_workers() -> str:
+def two_workers(count: int = 16, n: int = 48) -> str:
     """Return the line of a sweep on two worker processes over that on one."""
-    import tempfile
+    values = {"fem.elements": n, "fem.degree": 1}
+    one, two = (sweep_seconds("poisson", values, "fem", count, jobs) for jobs in (1, 2))
+    return f"A sweep of {count} scenes by `fem` takes {one:.2g} s on one worker and {two:.2g} s on two."
 
-    from validation import load_scene
-    from validation.engine.run import run_study
-    from validation.engine.study import Study
-    from validation.runs.results import Results
 
-    scene = load_scene("poisson").with_values({"fem.elements": 48, "fem.degree": 1}).model_copy(update={"sweep": {}})
-    steps = [1e-3 * (1 + i / 16) for i in range(16)]
-    study = Study("sweep", "Sweep", "Sweep.", [scene], ("fem",), {"time.step": steps}, measures=("history",))
+def start_up(name: str, arguments: list[str]) -> str:
+    """Return a line of the start-up table: processor seconds of a fresh interpreter, least of five."""
     spent = []
-    for jobs in (1, 2):
-        with tempfile.TemporaryDirectory() as directory:
-            began = time.perf_counter()
-            run_study(study, Results(directory), jobs=jobs)
-            spent.append(time.perf_counter() - began)
-    return f"A sweep of 16 scenes by `fem` takes {spent[0]:.2g} s on one worker and {spent[1]:.2g} s on two."
-
-
-def start_up() -> list[str]:
-    """Return the lines of the start-up table: processor seconds of a fresh interpreter."""
-    lines = []
-    for name, arguments in (
-        ("import dda", ["-c", "import dda"]),
-        ("dda-validate --help", ["-m", "validation", "--help"]),
-    ):
-        spent = min(_processor_seconds(arguments) for _ in range(5))
-        lines.append(f"| `{name}` | {spent:.2f} |")
-    return lines
-
-
-def _processor_seconds(arguments: list[str]) -> float:
-    import resource
-
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=HERE.parent)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    for _ in range(5):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=HERE.parent)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return f"| `{name}` | {min(spent):.2f} |"
 
 
 PAGE = """# Speed
@@ -316,18 +261,16 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--quick", action="store_true", help="leave the long contests out and print only")
     quick = options.parse_args().quick
-    from rivals import estimates
-
-    lines = [compete(contest) for contest in contests(quick)] + [fenicsx_line()]
+    commands = {"import dda": ["-c", "import dda"], "dda-validate --help": ["-m", "validation", "--help"]}
     page = PAGE.format(
         machine=f"{os.cpu_count()} cores, {platform.machine()}",
         python=platform.python_version(),
         numpy=np.__version__,
-        contests="\n".join(lines),
+        contests="\n".join([*map(compete, contests(quick)), fenicsx_line()]),
         growth="\n".join(growth(quick)),
-        start="\n".join(start_up()),
         sweep=two_workers(),
         honesty=estimates.honesty(40 if quick else 200),
+        start="\n".join(start_up(name, arguments) for name, arguments in commands.items()),
     )
     if quick:
         print(page)

@@ -7,22 +7,11 @@ Both sides run on one thread, by turns; each keeps the minimum of its repeats.
 
 from __future__ import annotations
 
-import os
 import sys
-from pathlib import Path
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ[name] = "1"
-
-import numpy as np  # noqa: E402  (after the number of threads is set)
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-import dda  # noqa: E402
-import fem_reference  # noqa: E402
+from bench import PAPER, SQUARE, dda, fem_reference, np
 
 STEPS = 40
-SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 
 
 def per_unknown(result: dda.Result | fem_reference.Result) -> float:
@@ -39,8 +28,8 @@ def measure(n: int, repeats: int = 3) -> tuple[int, float, float]:
     )
     ours, theirs = [], []
     for _ in range(repeats):
-        ours.append(dda.solve_system(system, dda.Scheme(0.5, 1.0, 1.0, 1e-3), STEPS, full=True))
-        theirs.append(fem_reference.solve(problem, fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), STEPS, full=True))
+        ours.append(dda.solve_system(system, dda.Scheme(*PAPER), STEPS, full=True))
+        theirs.append(fem_reference.solve(problem, fem_reference.Scheme(*PAPER), STEPS, full=True))
     return ours[0].unknowns, min(map(per_unknown, ours)), min(map(per_unknown, theirs))
 
 

@@ -40,8 +40,10 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_changes",
     "test_claims",
     "test_compare",
+    "test_compare_words",
     "test_confusion",
     "test_fenicsx",
+    "test_kept_numbers",
     "test_paper_chapter",
     "test_report",
     "test_work_precision",
@@ -69,6 +71,15 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
     config.option.loadscopereorder = False
     return Groups(config, log)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip what needs FEniCSx by name where there is none, which is asked when the first such test is reached."""
+    if item.get_closest_marker("fenicsx"):
+        from validation.solvers.fenicsx import NEEDED, interpreter
+
+        if interpreter() is None:
+            pytest.skip(f"fenicsx is NOT RUN: {NEEDED}")
 
 
 def beside(finished_cases: Path, directory: Path) -> Results:

@@ -30,9 +30,9 @@ class BaseMotion:
         if time.ndim != 1 or len(time) < 1 or moved.shape != (len(time), 2):
             raise ValueError(f"displacement: must be one (x, y) for each instant, got shape {moved.shape}")
         if not (np.all(np.isfinite(time)) and np.all(np.isfinite(moved))):
-            raise ValueError("displacement: must hold finite numbers, got others")
+            raise ValueError("displacement: must hold finite numbers only, got NaN or infinity")
         if not np.all(np.diff(time) > 0):
-            raise ValueError("time: must increase from instant to instant, got a step that does not")
+            raise ValueError("time: must increase from instant to instant, got a repeated or decreasing one")
 
     def at(self, instants: ArrayLike) -> Array:
         """Return the displacement at given instants, (len(instants), 2) [m]."""

@@ -28,7 +28,7 @@ class Material:
     density: float  # rho [kg/m^3]
     young: float  # E [Pa]
     poisson: float  # mu [-]
-    hypothesis: Hypothesis = "plane stress"
+    hypothesis: Hypothesis = "plane stress"  # or "plane strain"
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -61,7 +61,7 @@ class Material:
 
     @property
     def free_modulus(self) -> float:
-        """4 G (lambda + G) / (lambda + 2 G) [Pa]: stress over strain when the other direct stress is nil.
+        """4 G (lambda + G) / (lambda + 2 G) [Pa]: stress over strain when the other direct stress is zero.
 
         E in plane stress, E / (1 - mu^2) in plane strain.
         """

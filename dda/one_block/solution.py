@@ -27,13 +27,13 @@ class Result:
 
     time: Array  # (steps,) [s]
     columns: dict[str, Array]  # name -> (steps,), displacements in m, pressure in Pa
-    unknowns: int
+    unknowns: int  # number of unknowns that were integrated [-]
     nonzeros: int  # of the matrix that is diagonalised
     factorisations: int  # or diagonalisations
     solves: int  # one a step where it is stepped, none where it is blocked
-    notes: tuple[str, ...]
-    setup_seconds: float
-    stepping_seconds: float
+    notes: tuple[str, ...]  # savings used and warnings, in words
+    setup_seconds: float  # assembly and factorisation [s]
+    stepping_seconds: float  # the steps [s]
 
 
 def solve(

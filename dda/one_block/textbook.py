@@ -28,14 +28,14 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
     if scheme.alpha * scheme.step**2 == 0:
         return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
     if model.traction or model.gravity or model.eccentricity or model.motion is not None:
-        return "eq. (31), (32) are written for a centred pressure alone"
+        return "eq. (31), (32) hold for a centred pressure only"
     corners = np.roll(model.block.corners, -model.base, axis=0)
     x, y = corners.T
     upright = len(x) == 4 and y[0] == y[1] and x[1] == x[2] and y[2] == y[3] and x[3] == x[0]
     if not (upright and x[1] > x[0]):
-        return "eq. (31) is written for an upright rectangle on its lower edge"
+        return "eq. (31) holds for an upright rectangle on its lower edge only"
     if model.top != (model.base + 2) % 4:
-        return "eq. (31) is written for a load on the edge opposite the base"
+        return "eq. (31) holds for a load on the edge opposite the base only"
     return None
 
 

@@ -40,8 +40,8 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
     """
     omegas = [scheme.step * w for w in frequencies.tolist()]
     if not all(1 / _RANGE < omega < _RANGE for omega in omegas):
-        return f"w dt leaves {1 / _RANGE:g} to {_RANGE:g}"
-    return "the scheme grows" if any(_grows(scheme, omega) for omega in omegas) else None
+        return f"w dt is outside {1 / _RANGE:g} to {_RANGE:g}"
+    return "a mode grows" if any(_grows(scheme, omega) for omega in omegas) else None
 
 
 def _grows(scheme: Scheme, omega: float) -> bool:

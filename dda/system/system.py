@@ -46,7 +46,7 @@ class BlockSystem:
     Raises
     ------
     ValueError
-        If a joint or a load names a block that there is not, or the observed point lies in no block.
+        If a joint or a load names a block that does not exist, or the observed point lies in no block.
     """
 
     blocks: Sequence[Block]
@@ -60,7 +60,7 @@ class BlockSystem:
     base_normal: tuple[float, float] = (0.0, 1.0)  # unit normal of the supports, into the blocks
 
     def __post_init__(self) -> None:
-        """Check that every block that is named is there."""
+        """Check that every block that is named exists."""
         named = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
         named |= {load.block for load in self.loads} | set(self.fixed)
         unknown = [b for b in named if not 0 <= b < len(self.blocks)]

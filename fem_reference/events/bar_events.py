@@ -39,32 +39,22 @@ DIGITS = 60
 class BarHistory:
     """The motion at given instants."""
 
-    time: Array
-    """Instants [s], shape (times,)."""
-    displacement: Array
-    """Displacement of the mid-height [m], shape (times,)."""
-    gap: Array
-    """Gap w under the base [m], negative when pressed, shape (times,)."""
-    contact_pressure: Array
-    """N = max(0, -k w / W) [Pa], shape (times,)."""
-    mean_velocity: Array
-    """Velocity averaged over the height [m/s], shape (times,)."""
-    impulse: Array
-    """Integral of the contact pressure over the time so far [Pa s], shape (times,)."""
-    momentum_residual: Array
-    """rho H (mean velocity - V0 + b t) + q t - impulse [Pa s], zero but for rounding, shape (times,)."""
+    time: Array  # instants [s], shape (times,)
+    displacement: Array  # displacement of the mid-height [m], shape (times,)
+    gap: Array  # gap w under the base [m], negative when pressed, shape (times,)
+    contact_pressure: Array  # N = max(0, -k w / W) [Pa], shape (times,)
+    mean_velocity: Array  # velocity averaged over the height [m/s], shape (times,)
+    impulse: Array  # integral of the contact pressure over the time so far [Pa s], shape (times,)
+    momentum_residual: Array  # rho H (mean velocity - V0 + b t) + q t - impulse [Pa s], zero but for rounding, (times,)
 
 
 @dataclass(frozen=True)
 class BarFields:
     """The bar at one instant."""
 
-    displacement: Array
-    """u [m], shape (points,)."""
-    velocity: Array
-    """Rate of u [m/s], shape (points,)."""
-    stress: Array
-    """Axial stress, tension positive [Pa], shape (points,)."""
+    displacement: Array  # u [m], shape (points,)
+    velocity: Array  # rate of u [m/s], shape (points,)
+    stress: Array  # axial stress, tension positive [Pa], shape (points,)
 
 
 @dataclass(frozen=True)
@@ -72,16 +62,11 @@ class BarMotion:
     """Exact motion of a bar from t = 0 to `end`."""
 
     problem: BarProblem
-    end: float
-    """Last instant [s]."""
-    digits: int
-    """Decimal digits of the computation."""
-    closed_at_start: bool
-    """Whether the base is closed just after t = 0, where a base that stays at zero gap counts as closed."""
-    switches: tuple[Switch, ...]
-    """Openings and closings of the base, ``corner`` being ``"base"``, in the order of time."""
-    pieces: tuple[Piece, ...]
-    """The pieces of the motion in the order of time."""
+    end: float  # last instant [s]
+    digits: int  # decimal digits of the computation
+    closed_at_start: bool  # whether the base is closed just after t = 0; one that stays at zero gap counts as closed
+    switches: tuple[Switch, ...]  # openings and closings of the base, ``corner`` being ``"base"``, in the order of time
+    pieces: tuple[Piece, ...]  # the pieces of the motion in the order of time
 
     def at(self, times: ArrayLike) -> BarHistory:
         """The motion at instants in any order.

@@ -19,34 +19,23 @@ from fem_reference.events.exponential import NOISE, Exponential
 class Piece:
     """The base from an instant on; functions of the time since then, in travel times."""
 
-    start: Decimal
-    """Instant in travel times."""
-    closed: bool
-    """Whether the base is closed."""
-    gap: Exponential
-    """Gap w [m/s]."""
-    rate: Exponential
-    """f' [m/s]."""
-    wave: Exponential
-    """f, zero at t = 0 [m/s]."""
-    impulse: Exponential
-    """Integral of N / Z over the time so far [m/s]."""
+    start: Decimal  # instant in travel times
+    closed: bool  # whether the base is closed
+    gap: Exponential  # gap w [m/s]
+    rate: Exponential  # f' [m/s]
+    wave: Exponential  # f, zero at t = 0 [m/s]
+    impulse: Exponential  # integral of N / Z over the time so far [m/s]
 
 
 @dataclass(frozen=True)
 class Start:
     """What a piece begins with."""
 
-    time: Decimal
-    """Instant in travel times."""
-    incoming: Exponential
-    """g' from then on [m/s]."""
-    gap: Decimal
-    """Gap w [m/s]."""
-    wave: Decimal
-    """f [m/s]."""
-    impulse: Decimal
-    """Integral of N / Z over the time so far [m/s]."""
+    time: Decimal  # instant in travel times
+    incoming: Exponential  # g' from then on [m/s]
+    gap: Decimal  # gap w [m/s]
+    wave: Decimal  # f [m/s]
+    impulse: Decimal  # integral of N / Z over the time so far [m/s]
 
 
 def pieces(units: Units, end: Decimal) -> Iterator[Piece]:

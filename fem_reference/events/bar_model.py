@@ -21,24 +21,15 @@ class BarProblem:
         For a value out of its range, naming field, rule and value.
     """
 
-    height: float
-    """Length H of the bar [m]."""
-    width: float
-    """Width W [m], unit thickness."""
-    density: float
-    """Mass density rho [kg/m3]."""
-    young: float
-    """Axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]."""
-    base_stiffness: float
-    """Stiffness k = 2 p of the base spring [N/m]."""
-    pressure: float = 0.0
-    """Pressure q on the top [Pa], downwards, from t = 0 on."""
-    gravity: float = 0.0
-    """Acceleration of gravity, downwards [m/s2]."""
-    gap: float = 0.0
-    """Gap g0 under the base at t = 0 [m]."""
-    velocity: float = 0.0
-    """Velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one."""
+    height: float  # length H of the bar [m]
+    width: float  # width W [m], unit thickness
+    density: float  # mass density rho [kg/m3]
+    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
+    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
+    pressure: float = 0.0  # pressure q on the top [Pa], downwards, from t = 0 on
+    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
+    gap: float = 0.0  # gap g0 under the base at t = 0 [m]
+    velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -65,20 +56,13 @@ class BarProblem:
 class Units:
     """The data in m/s and travel times."""
 
-    travel: Decimal
-    """H / c [s]."""
-    impedance: Decimal
-    """Z = rho c [Pa s/m]."""
-    kappa: Decimal
-    """k H / (E W) [-]."""
-    q: Decimal
-    """q / Z [m/s]."""
-    b: Decimal
-    """b H / c [m/s]."""
-    gap: Decimal
-    """g0 c / H [m/s]."""
-    V: Decimal
-    """Initial velocity [m/s]."""
+    travel: Decimal  # H / c [s]
+    impedance: Decimal  # Z = rho c [Pa s/m]
+    kappa: Decimal  # k H / (E W) [-]
+    q: Decimal  # q / Z [m/s]
+    b: Decimal  # b H / c [m/s]
+    gap: Decimal  # g0 c / H [m/s]
+    V: Decimal  # initial velocity [m/s]
 
     @classmethod
     def of(cls, bar: BarProblem) -> Units:

@@ -40,34 +40,20 @@ DERIVATIVES = 8
 class BlockHistory:
     """The motion at given instants; forces act on the block."""
 
-    time: Array
-    """Instants [s], shape (times,)."""
-    displacement: Array
-    """(u, v, r, ex, ey, gxy) of the centroid [m, rad, -], shape (6, times)."""
-    velocity: Array
-    """Their rates [m/s, 1/s], shape (6, times)."""
-    gap: Array
-    """Gap w at M and N [m], negative when pressed, shape (2, times)."""
-    gap_velocity: Array
-    """Rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)."""
-    normal_force: Array
-    """N = p max(0, -w) at M and N [N], upwards, shape (2, times)."""
-    shear_force: Array
-    """T = -p_s (s - r) of the closed corners [N], towards +x, shape (2, times)."""
-    closed: Array
-    """1 where a corner is closed, else 0, shape (2, times)."""
-    contact_pressure: Array
-    """(N_M + N_N) / a [Pa], shape (times,)."""
-    kinetic: Array
-    """Kinetic energy [J], shape (times,)."""
-    strain: Array
-    """Strain energy [J], shape (times,)."""
-    springs: Array
-    """Energy of the normal and shear springs [J], shape (times,)."""
-    load: Array
-    """Potential energy of pressure, traction and weight, -F x [J], shape (times,)."""
-    released: Array
-    """Energy of the shear springs lost by opening until then [J], shape (times,)."""
+    time: Array  # instants [s], shape (times,)
+    displacement: Array  # (u, v, r, ex, ey, gxy) of the centroid [m, rad, -], shape (6, times)
+    velocity: Array  # their rates [m/s, 1/s], shape (6, times)
+    gap: Array  # gap w at M and N [m], negative when pressed, shape (2, times)
+    gap_velocity: Array  # rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)
+    normal_force: Array  # N = p max(0, -w) at M and N [N], upwards, shape (2, times)
+    shear_force: Array  # T = -p_s (s - r) of the closed corners [N], towards +x, shape (2, times)
+    closed: Array  # 1 where a corner is closed, else 0, shape (2, times)
+    contact_pressure: Array  # (N_M + N_N) / a [Pa], shape (times,)
+    kinetic: Array  # kinetic energy [J], shape (times,)
+    strain: Array  # strain energy [J], shape (times,)
+    springs: Array  # energy of the normal and shear springs [J], shape (times,)
+    load: Array  # potential energy of pressure, traction and weight, -F x [J], shape (times,)
+    released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
 
     @property
     def energy(self) -> Array:
@@ -80,14 +66,10 @@ class BlockMotion:
     """Exact motion of a block from t = 0 to `end`."""
 
     problem: BlockProblem
-    end: float
-    """Last instant [s]."""
-    closed_at_start: Closed
-    """Whether M and N are closed just after t = 0."""
-    switches: tuple[Switch, ...]
-    """Changes of the corners in the order of time; corners that switch together stand as M, N."""
-    pieces: tuple[FloatPiece, ...]
-    """The pieces of the motion in the order of time."""
+    end: float  # last instant [s]
+    closed_at_start: Closed  # whether M and N are closed just after t = 0
+    switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
+    pieces: tuple[FloatPiece, ...]  # the pieces of the motion in the order of time
 
     @cached_property
     def _matrices(self) -> tuple[Array, Array, Array]:

@@ -38,34 +38,20 @@ class BlockProblem:
         For a value out of its range, naming field, rule and value.
     """
 
-    width: float
-    """Width a of the block [m], unit thickness."""
-    height: float
-    """Height b [m]."""
-    density: float
-    """Mass density rho [kg/m3]."""
-    young: float
-    """Young's modulus E [Pa]."""
-    stiffness: float
-    """Normal stiffness p of one corner [N/m]."""
-    pressure: float = 0.0
-    """Pressure q on the top edge [Pa], downwards, from t = 0 on."""
-    shear_stiffness: float = 0.0
-    """Shear stiffness p_s of a closed corner [N/m]; 0 is a frictionless corner, else it is glued in shear."""
-    poisson: float = 0.0
-    """Poisson's ratio mu [-]."""
-    hypothesis: str = "plane stress"
-    """``"plane stress"`` or ``"plane strain"``."""
-    eccentricity: float = 0.0
-    """Shift e towards +x of the middle of the pressed part of the top, whose length is a - 2 |e| [m]."""
-    traction: float = 0.0
-    """Traction towards +x on the whole top edge [Pa]."""
-    gravity: float = 0.0
-    """Acceleration of gravity, downwards [m/s2]."""
-    gap: float = 0.0
-    """Gap g0 under both corners at t = 0 [m]."""
-    velocity: float = 0.0
-    """Velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one."""
+    width: float  # width a of the block [m], unit thickness
+    height: float  # height b [m]
+    density: float  # mass density rho [kg/m3]
+    young: float  # Young's modulus E [Pa]
+    stiffness: float  # normal stiffness p of one corner [N/m]
+    pressure: float = 0.0  # pressure q on the top edge [Pa], downwards, from t = 0 on
+    shear_stiffness: float = 0.0  # shear stiffness p_s of a closed corner [N/m]; 0: frictionless, else glued in shear
+    poisson: float = 0.0  # Poisson's ratio mu [-]
+    hypothesis: str = "plane stress"  # ``"plane stress"`` or ``"plane strain"``
+    eccentricity: float = 0.0  # shift e towards +x of the middle of the pressed part of the top, a - 2 |e| long [m]
+    traction: float = 0.0  # traction towards +x on the whole top edge [Pa]
+    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
+    gap: float = 0.0  # gap g0 under both corners at t = 0 [m]
+    velocity: float = 0.0  # velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -96,24 +82,15 @@ class BlockProblem:
 class BlockModel:
     """Matrices of a block in the unknowns (u, v, ux, uy, vx, vy)."""
 
-    mass: Vector
-    """Diagonal of the mass matrix [kg, kg m2]."""
-    elastic: Matrix
-    """Stiffness of the strained block [N/m, N m]."""
-    load: Vector
-    """Loads of pressure, traction and weight [N, N m]."""
-    normal: Matrix
-    """Gap of each corner less g0, as rows over the unknowns [-, m]."""
-    shear: Matrix
-    """Shear stretch of each corner, as rows over the unknowns [-, m]."""
-    gap: Decimal
-    """Gap g0 at t = 0 [m]."""
-    p: Decimal
-    """Normal stiffness of a corner [N/m]."""
-    ps: Decimal
-    """Shear stiffness of a corner [N/m]."""
-    velocity: Vector
-    """Velocities at t = 0 [m/s, 1/s]."""
+    mass: Vector  # diagonal of the mass matrix [kg, kg m2]
+    elastic: Matrix  # stiffness of the strained block [N/m, N m]
+    load: Vector  # loads of pressure, traction and weight [N, N m]
+    normal: Matrix  # gap of each corner less g0, as rows over the unknowns [-, m]
+    shear: Matrix  # shear stretch of each corner, as rows over the unknowns [-, m]
+    gap: Decimal  # gap g0 at t = 0 [m]
+    p: Decimal  # normal stiffness of a corner [N/m]
+    ps: Decimal  # shear stiffness of a corner [N/m]
+    velocity: Vector  # velocities at t = 0 [m/s, 1/s]
 
     @classmethod
     def of(cls, problem: BlockProblem) -> BlockModel:

@@ -22,10 +22,8 @@ Closed = tuple[bool, bool]
 class Modes:
     """Natural modes of the block on its closed corners, M-orthonormal."""
 
-    squares: Vector
-    """Squared angular frequencies [rad2/s2]; exactly zero for a rigid mode."""
-    shapes: Matrix
-    """Mode shapes over the unknowns, one a row."""
+    squares: Vector  # squared angular frequencies [rad2/s2]; exactly zero for a rigid mode
+    shapes: Matrix  # mode shapes over the unknowns, one a row
 
     @classmethod
     def of(cls, model: BlockModel, closed: Closed) -> Modes:
@@ -42,18 +40,12 @@ class Modes:
 class State:
     """An instant of the motion."""
 
-    time: Decimal
-    """Instant [s]."""
-    displacement: Vector
-    """Unknowns (u, v, ux, uy, vx, vy) [m, -]."""
-    velocity: Vector
-    """Their rates [m/s, 1/s]."""
-    closed: Closed
-    """Which of the corners M and N are closed from now on."""
-    references: tuple[Decimal, Decimal]
-    """Shear stretch at which each corner closed last [m]."""
-    released: Decimal
-    """Energy of the shear springs lost by opening until now [J]."""
+    time: Decimal  # instant [s]
+    displacement: Vector  # unknowns (u, v, ux, uy, vx, vy) [m, -]
+    velocity: Vector  # their rates [m/s, 1/s]
+    closed: Closed  # which of the corners M and N are closed from now on
+    references: tuple[Decimal, Decimal]  # shear stretch at which each corner closed last [m]
+    released: Decimal  # energy of the shear springs lost by opening until now [J]
 
 
 @dataclass(frozen=True)

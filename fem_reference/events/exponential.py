@@ -29,12 +29,9 @@ FINEST = Decimal("1e-30")
 class Exponential:
     """P(s) + exp(-kappa s) Q(s); a function of the time s since a piece began."""
 
-    kappa: Decimal
-    """Decay rate, positive."""
-    P: Coefficients
-    """Coefficients of 1, s, s^2, ..."""
-    Q: Coefficients = ()
-    """Coefficients of 1, s, s^2, ... beside the exponential."""
+    kappa: Decimal  # decay rate, positive
+    P: Coefficients  # coefficients of 1, s, s^2, ...
+    Q: Coefficients = ()  # coefficients of 1, s, s^2, ... beside the exponential
 
     def __add__(self, other: Exponential) -> Exponential:
         return Exponential(self.kappa, _sum(self.P, other.P), _sum(self.Q, other.Q))
@@ -152,12 +149,9 @@ class Exponential:
 class Node:
     """A point of the search for a crossing."""
 
-    at: Decimal
-    """Argument s of the function."""
-    here: Exponential
-    """The function of the argument since s."""
-    changes: int
-    """Its changes of sign."""
+    at: Decimal  # argument s of the function
+    here: Exponential  # the function of the argument since s
+    changes: int  # its changes of sign
 
 
 def _sign(a: Decimal, b: Decimal) -> int:

@@ -35,10 +35,8 @@ def first_landing(height: float, density: float, young: float) -> float:
 class MicroImpacts:
     """Impacts of an unloaded block of one strain on rigid ground."""
 
-    times: tuple[float, ...]
-    """Instants of the impacts over b / c, c = sqrt(E / rho) [-]."""
-    restitution: float
-    """Momentum after the last impact over that before the first [-]."""
+    times: tuple[float, ...]  # instants of the impacts over b / c, c = sqrt(E / rho) [-]
+    restitution: float  # momentum after the last impact over that before the first [-]
 
 
 def micro_impacts() -> MicroImpacts:

@@ -17,10 +17,8 @@ from fem_reference.events.decimals import HALF, ZERO, cos_sin, root
 class Oscillation:
     """c0 + c1 s + c2 s^2 + sum of A cos(w s) + B sin(w s)."""
 
-    polynomial: tuple[Decimal, Decimal, Decimal]
-    """c0, c1, c2."""
-    waves: tuple[tuple[Decimal, Decimal, Decimal], ...]
-    """(w, A, B) of each oscillation, w > 0."""
+    polynomial: tuple[Decimal, Decimal, Decimal]  # c0, c1, c2
+    waves: tuple[tuple[Decimal, Decimal, Decimal], ...]  # (w, A, B) of each oscillation, w > 0
 
     def __call__(self, s: Decimal) -> tuple[Decimal, Decimal, Decimal]:
         """Value, first and second derivative."""

@@ -40,12 +40,9 @@ class ContactScheme:
         For a value out of its range, naming field, rule and value.
     """
 
-    alpha: float
-    """Weight of the new acceleration in the displacement [-], positive."""
-    delta: float
-    """Weight of the new acceleration in the velocity [-]; at most alpha + 1/2, else contact could end downwards."""
-    gg: float = 1.0
-    """Factor on the velocity at the start of each step [-]."""
+    alpha: float  # weight of the new acceleration in the displacement [-], positive
+    delta: float  # weight of the new acceleration in the velocity [-]; above alpha + 1/2 contact could end downwards
+    gg: float = 1.0  # factor on the velocity at the start of each step [-]
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.alpha) and self.alpha > 0):
@@ -66,14 +63,10 @@ class ContactScheme:
 class Branch:
     """One straight line of the restitution, e = constant + slope theta."""
 
-    low: float
-    """Least theta [-]."""
-    high: float
-    """Greatest theta [-]."""
-    constant: float
-    """The line's value at theta = 0 [-]."""
-    slope: float
-    """Its slope [-]."""
+    low: float  # least theta [-]
+    high: float  # greatest theta [-]
+    constant: float  # the line's value at theta = 0 [-]
+    slope: float  # its slope [-]
 
     def __call__(self, theta: float) -> float:
         """Restitution."""
@@ -84,14 +77,10 @@ class Branch:
 class Statistics:
     """Restitution over theta uniform from 0 to 1."""
 
-    mean: float
-    """Mean of e [-]."""
-    low: float
-    """Least e [-]."""
-    high: float
-    """Greatest e [-]."""
-    mean_square: float
-    """Mean of e^2, the share of the energy that is left [-]."""
+    mean: float  # mean of e [-]
+    low: float  # least e [-]
+    high: float  # greatest e [-]
+    mean_square: float  # mean of e^2, the share of the energy that is left [-]
 
 
 def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:

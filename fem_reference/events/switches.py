@@ -9,12 +9,9 @@ from dataclasses import dataclass
 class Switch:
     """A change of one contact."""
 
-    time: float
-    """Instant [s]."""
-    corner: str
-    """``"M"`` at (0, 0) or ``"N"`` at (a, 0) of a block, ``"base"`` of a bar."""
-    kind: str
-    """``"opens"`` or ``"closes"``."""
+    time: float  # instant [s]
+    corner: str  # ``"M"`` at (0, 0) or ``"N"`` at (a, 0) of a block, ``"base"`` of a bar
+    kind: str  # ``"opens"`` or ``"closes"``
 
 
 class NoContactStateError(ArithmeticError):

@@ -49,18 +49,12 @@ class Bar:
         If a dimension, the density, the modulus or the stiffness is not positive and finite.
     """
 
-    height: float
-    """Length h of the bar [m]."""
-    width: float
-    """Width W [m], unit thickness."""
-    density: float
-    """Mass density rho [kg/m3]."""
-    young: float
-    """Axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]."""
-    base_stiffness: float
-    """Stiffness k = 2 p of the base spring [N/m]."""
-    pressure: float
-    """Pressure q on the top [Pa], downwards; the load is q W."""
+    height: float  # length h of the bar [m]
+    width: float  # width W [m], unit thickness
+    density: float  # mass density rho [kg/m3]
+    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
+    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
+    pressure: float  # pressure q on the top [Pa], downwards; the load is q W
 
     def __post_init__(self) -> None:
         for name in ("height", "width", "density", "young", "base_stiffness"):
@@ -132,7 +126,7 @@ class Bar:
         Raises
         ------
         ValueError
-            If the scheme is not stable for every frequency, or `steps` or `columns` cannot be served.
+            If the scheme is not stable for every frequency, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
         reason = bar_scheme.applicable(scheme)
@@ -166,7 +160,7 @@ class Bar:
         Raises
         ------
         ValueError
-            If gg is zero, or `steps` or `columns` cannot be served.
+            If gg is zero, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
         if scheme.gg == 0:
@@ -198,7 +192,7 @@ class Bar:
 def applicable(problem: Problem) -> str | None:
     """Why the bar is not exact for a problem, in words; None if it is."""
     if not problem.vertical or problem.gravity != 0 or problem.motion is not None:
-        return "the bar is written for a centred pressure alone"
+        return "the bar carries a centred pressure only"
     if problem.rectangle is None:
         return "the block is not an upright rectangle loaded opposite its base"
     if problem.poisson != 0:

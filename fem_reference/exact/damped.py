@@ -122,12 +122,12 @@ def _turns(v: Array, amplitude: NDArray[np.complex128], times: Array) -> Array:
 
 
 def _check_waves(times: Array) -> None:
-    """Refuse instants at fronts whose waves would take too long."""
+    """Raise for instants at fronts whose waves would take too long to sum."""
     work = float(np.sum((times / 2) ** 2))
     if work > WAVE_WORK:
         raise ValueError(
-            f"steps: instants t at live fronts must have a sum of (t / 2)^2 of at most {WAVE_WORK}, in travel times "
-            f"of the wave, got {work:.6g}; another time step falls less often on the fronts"
+            "steps: the sum of (t / 2)^2 over instants t at undecayed wave fronts, in travel times of the wave, must "
+            f"be at most {WAVE_WORK}, got {work:.6g}; choose a time step that falls on the fronts less often"
         )
 
 

@@ -49,12 +49,9 @@ BLOCK = 256
 class Reduced:
     """A history from a small space."""
 
-    history: Array
-    """Columns of every step, shape (columns, steps)."""
-    vectors: int
-    """Number of vectors of the space [-]."""
-    estimate: float
-    """Estimated error over the maximum value [-]."""
+    history: Array  # columns of every step, shape (columns, steps)
+    vectors: int  # number of vectors of the space [-]
+    estimate: float  # estimated error over the maximum value [-]
 
 
 def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
@@ -84,17 +81,17 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
         space.grow(size)
         modes = modes_of(space, stepper, rows, steps)
         if stepper.scheme.start == "consistent" and np.min(modes.inertia) < LIGHTEST:
-            return "a consistent start needs digits of the inertia that long steps leave to no small space"
+            return "a consistent start needs digits of the inertia that a small space loses in long steps"
         found = [*found[-1:], history(modes, stepper.scheme, steps)]
         changes += [_change(*found)] if len(found) == 2 else []
         held = len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding
         if (space.closed or held) and _cancelled(modes, found[-1], duals, stepper.scheme) > CANCELLED:
-            return "the modes of a small space cancel in a column that has hardly begun, or under a stiff spring"
+            return "rounding in a small space is too large for a column that has hardly moved, or under a stiff spring"
         if space.closed or held:
             return Reduced(found[-1], len(space), modes.rounding + (0.0 if space.closed else changes[-1]))
         if capacity < len(stepper.F) and 2 * size >= capacity and min(changes, default=1.0) > HALFWAY:
             break
-    return f"{len(space)} Krylov vectors do not hold the history"
+    return f"{len(space)} Krylov vectors do not represent the history"
 
 
 def _change(before: Array, after: Array) -> float:
@@ -120,16 +117,11 @@ def _cancelled(modes: Modes, history: Array, duals: Array, scheme: Scheme) -> fl
 class Modes:
     """Modes of the reduced block, S = 1."""
 
-    inertia: Array
-    """tau [-], shape (modes,)."""
-    stiffness: Array
-    """kappa = 1 - tau, alpha dt^2 times the stiffness [-]."""
-    load: Array
-    """dt^2 times the load."""
-    observed: Array
-    """What each mode adds to each column, shape (columns, modes)."""
-    rounding: float
-    """Rounding of a history, over its maximum [-]."""
+    inertia: Array  # tau [-], shape (modes,)
+    stiffness: Array  # kappa = 1 - tau, alpha dt^2 times the stiffness [-]
+    load: Array  # dt^2 times the load
+    observed: Array  # what each mode adds to each column, shape (columns, modes)
+    rounding: float  # rounding of a history, over its maximum [-]
 
 
 def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> Modes:

@@ -45,7 +45,7 @@ def solve(
     Raises
     ------
     ValueError
-        If the block cannot be meshed, or `steps`, `columns` or `fields` cannot be served.
+        If the block cannot be meshed, or `steps`, `columns` or `fields` are not valid.
     """
     check_request(steps, tuple(columns))
     began = time.perf_counter()

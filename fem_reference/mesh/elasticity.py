@@ -50,12 +50,9 @@ def strain_form(u, v, w):  # type: ignore[no-untyped-def]
 class Rule(NamedTuple):
     """Points on facets with weights."""
 
-    points: Array
-    """Reference coordinates in the cell, shape (2, count)."""
-    cells: NDArray[np.int64]
-    """Cell of each point, shape (count,)."""
-    weights: Array
-    """Weights [m], shape (count,)."""
+    points: Array  # reference coordinates in the cell, shape (2, count)
+    cells: NDArray[np.int64]  # cell of each point, shape (count,)
+    weights: Array  # weights [m], shape (count,)
 
 
 def vector_basis(mesh: Mesh, degree: int) -> Basis:

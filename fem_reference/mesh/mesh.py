@@ -22,12 +22,9 @@ from fem_reference.problem.problem import Array, Problem
 class TaggedMesh:
     """A mesh and the facets of its base and top."""
 
-    mesh: Mesh
-    """The scikit-fem mesh, coordinates relative to the start of the base [m]."""
-    base: NDArray[np.int64]
-    """Facets of the base."""
-    top: NDArray[np.int64]
-    """Facets of the top."""
+    mesh: Mesh  # the scikit-fem mesh, coordinates relative to the start of the base [m]
+    base: NDArray[np.int64]  # facets of the base
+    top: NDArray[np.int64]  # facets of the top
 
 
 def block_mesh(problem: Problem) -> TaggedMesh:

@@ -30,7 +30,7 @@ from fem_reference.problem.problem import Array, Problem
 
 CORNER_WARNING = (
     "corner point springs have no fine-mesh limit: the displacement drifts with the logarithm of the "
-    'element size; the cure is foundation = "distributed" or "patch"'
+    'element size; use foundation = "distributed" or "patch"'
 )
 
 
@@ -38,42 +38,27 @@ CORNER_WARNING = (
 class Model:
     """M D'' + K D = F + base_force y for a load of unit size, and what is observed of D."""
 
-    M: csr_array
-    """Consistent mass matrix [kg], shape (unknowns, unknowns)."""
-    K: csr_array
-    """Stiffness matrix with the springs [N/m]."""
-    F: Array
-    """Constant load over the problem's `load_size` [m2], shape (unknowns,)."""
-    base_force: Array
-    """Load of a unit displacement of the base in x and in y [N/m], shape (unknowns, 2)."""
-    base_pressure: Array
-    """Contact pressure of a unit displacement of the base, the block held [Pa/m], shape (2,)."""
-    observers: dict[str, Array]
-    """Row of each column of a history, shape (unknowns,)."""
-    places: Array
-    """x, y relative to the start of the base [m] and component (0: u, 1: v), shape (3, unknowns)."""
-    kind: str
-    """``"whole"``, ``"half"`` or ``"column"``."""
-    notes: tuple[str, ...]
-    """Savings used and warnings, in words."""
+    M: csr_array  # consistent mass matrix [kg], shape (unknowns, unknowns)
+    K: csr_array  # stiffness matrix with the springs [N/m]
+    F: Array  # constant load over the problem's `load_size` [m2], shape (unknowns,)
+    base_force: Array  # load of a unit displacement of the base in x and in y [N/m], shape (unknowns, 2)
+    base_pressure: Array  # contact pressure of a unit displacement of the base, the block held [Pa/m], shape (2,)
+    observers: dict[str, Array]  # row of each column of a history, shape (unknowns,)
+    places: Array  # x, y relative to the start of the base [m] and component (0: u, 1: v), shape (3, unknowns)
+    kind: str  # ``"whole"``, ``"half"`` or ``"column"``
+    notes: tuple[str, ...]  # savings used and warnings, in words
 
 
 @dataclass(frozen=True)
 class Assembled:
     """Matrices of the block in the scikit-fem basis."""
 
-    M: csr_array
-    """Consistent mass matrix [kg]."""
-    K: csr_array
-    """Elastic stiffness without the springs [N/m]."""
-    springs: csr_array
-    """Stiffness of the foundation [N/m]."""
-    F: Array
-    """Constant load of the problem [N]."""
-    basis: Basis
-    """The displacement basis; coordinates relative to the start of the base."""
-    observers: dict[str, Array]
-    """Row of each column of a history."""
+    M: csr_array  # consistent mass matrix [kg]
+    K: csr_array  # elastic stiffness without the springs [N/m]
+    springs: csr_array  # stiffness of the foundation [N/m]
+    F: Array  # constant load of the problem [N]
+    basis: Basis  # the displacement basis; coordinates relative to the start of the base
+    observers: dict[str, Array]  # row of each column of a history
 
 
 def build(problem: Problem, full: bool = False) -> Model:

@@ -22,10 +22,10 @@ def warnings(problem: Problem) -> tuple[str, ...]:
     found = []
     ratio = problem.stiffness / problem.young
     if not SOFTEST <= ratio <= STIFFEST:
-        found.append(f"nine digits are kept for p/E from {SOFTEST:g} to {STIFFEST:g} only, here it is {ratio:.3g}")
+        found.append(f"nine digits are kept only for p/E from {SOFTEST:g} to {STIFFEST:g}, here p/E = {ratio:.3g}")
     if problem.lame > INCOMPRESSIBLE * problem.shear_modulus:
         found.append(
-            f"nine digits are kept for lam/G up to {INCOMPRESSIBLE:g} only, here it is "
+            f"nine digits are kept only for lam/G up to {INCOMPRESSIBLE:g}, here lam/G = "
             f"{problem.lame / problem.shear_modulus:.3g}: nearly incompressible"
         )
     return tuple(found)
@@ -38,7 +38,11 @@ def front(problem: Problem, step: float) -> tuple[str, ...]:
     modulus = problem.lame + 2 * problem.shear_modulus
     height = float(np.ptp(problem.outline[:, 1]))
     passed = float(np.sqrt(modulus / problem.density)) * step * problem.elements / height
-    return (f"too coarse for the wave: {passed:.3g} elements per c dt, about 40 show its front",) if passed < 1 else ()
+    return (
+        (f"mesh too coarse for the wave: {passed:.3g} elements per c dt, its front needs about 40",)
+        if passed < 1
+        else ()
+    )
 
 
 def bounded(history: Array, pressure: float) -> Array:

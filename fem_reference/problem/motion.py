@@ -20,18 +20,15 @@ class Motion:
         For a record that is not one of increasing instants and finite numbers.
     """
 
-    time: tuple[float, ...]
-    """Instants [s], increasing."""
-    x: tuple[float, ...]
-    """Horizontal displacement at the instants [m]."""
-    y: tuple[float, ...]
-    """Vertical displacement at the instants [m]."""
+    time: tuple[float, ...]  # instants [s], increasing
+    x: tuple[float, ...]  # horizontal displacement at the instants [m]
+    y: tuple[float, ...]  # vertical displacement at the instants [m]
 
     def __post_init__(self) -> None:
         if not len(self.time) == len(self.x) == len(self.y) > 0:
             raise ValueError(f"motion: must give x and y for every instant, got {len(self.time)} instants")
         if not np.all(np.isfinite([self.time, self.x, self.y])) or np.any(np.diff(self.time) <= 0):
-            raise ValueError("motion: must hold finite numbers at increasing instants, got others")
+            raise ValueError("motion: must hold finite numbers at increasing instants, got other values")
 
     def __call__(self, instants: Array) -> Array:
         """Displacement (x, y) at some instants, shape (count, 2) [m]."""

@@ -32,10 +32,8 @@ def _finite(field: str, value: float) -> None:
 class Rectangle(NamedTuple):
     """An upright rectangle that stands on its base."""
 
-    width: float
-    """Length of the base [m]."""
-    height: float
-    """Distance from the base to the top [m]."""
+    width: float  # length of the base [m]
+    height: float  # distance from the base to the top [m]
 
 
 @dataclass(frozen=True)
@@ -52,46 +50,26 @@ class Problem:
         For a value out of its range, naming field, rule and value.
     """
 
-    vertices: tuple[tuple[float, float], ...]
-    """Corners of the polygon, counter-clockwise [m]; edge i runs from vertex i to vertex i + 1."""
-    base: int
-    """Index of the edge that stands on the springs."""
-    top: int
-    """Index of the loaded edge."""
-    density: float
-    """Mass density rho [kg/m3]."""
-    young: float
-    """Young's modulus E [Pa]."""
-    poisson: float
-    """Poisson's ratio mu [-]."""
-    hypothesis: str
-    """``"plane stress"`` or ``"plane strain"``."""
-    stiffness: float
-    """Normal stiffness p of one corner spring [N/m]; the foundation carries 2 p in all."""
-    shear_stiffness: float
-    """Tangential stiffness of one corner spring [N/m]."""
-    pressure: float
-    """Pressure q on the top edge [Pa], downwards."""
-    elements: int = 16
-    """Elements along each side of a structured mesh [-]."""
-    degree: int = 2
-    """Polynomial degree of the elements [-], 1 or 2."""
-    mesh: str | None = None
-    """Path of a mesh file with the boundary tags ``base`` and ``top``; None meshes the block itself."""
-    foundation: str = "distributed"
-    """``"distributed"``, ``"patch"``, ``"corner"`` or ``"nodes"``: p l/a at each end of a base facet of length l."""
-    patch_width: float | None = None
-    """Width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``."""
-    cells: str = "quadrilaterals"
-    """Cells of a structured mesh: ``"quadrilaterals"``, or ``"triangles"``, each cut from lower left to upper right."""
-    eccentricity: float = 0.0
-    """Shift towards +x of the middle of the pressed part of the top edge, whose length is L - 2 |e| [m]."""
-    traction: float = 0.0
-    """Traction towards +x on the whole top edge [Pa]."""
-    gravity: float = 0.0
-    """Acceleration of gravity, downwards [m/s2]."""
-    motion: Motion | None = None
-    """Motion of the fixed side of the foundation."""
+    vertices: tuple[tuple[float, float], ...]  # corners, counter-clockwise [m]; edge i runs from vertex i to i + 1
+    base: int  # index of the edge that stands on the springs
+    top: int  # index of the loaded edge
+    density: float  # mass density rho [kg/m3]
+    young: float  # Young's modulus E [Pa]
+    poisson: float  # Poisson's ratio mu [-]
+    hypothesis: str  # ``"plane stress"`` or ``"plane strain"``
+    stiffness: float  # normal stiffness p of one corner spring [N/m]; the foundation carries 2 p in all
+    shear_stiffness: float  # tangential stiffness of one corner spring [N/m]
+    pressure: float  # pressure q on the top edge [Pa], downwards
+    elements: int = 16  # elements along each side of a structured mesh [-]
+    degree: int = 2  # polynomial degree of the elements [-], 1 or 2
+    mesh: str | None = None  # mesh file with the boundary tags ``base`` and ``top``; None meshes the block itself
+    foundation: str = "distributed"  # or "patch", "corner"; "nodes": p l/a at each end of a base facet of length l
+    patch_width: float | None = None  # width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``
+    cells: str = "quadrilaterals"  # or "triangles", each cut from lower left to upper right, of a structured mesh
+    eccentricity: float = 0.0  # shift towards +x of the middle of the pressed part of the top, L - 2 |e| long [m]
+    traction: float = 0.0  # traction towards +x on the whole top edge [Pa]
+    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
+    motion: Motion | None = None  # motion of the fixed side of the foundation
 
     def __post_init__(self) -> None:
         self._check_polygon()
@@ -272,16 +250,11 @@ class Scheme:
         For a value out of its range, naming field, rule and value.
     """
 
-    alpha: float
-    """Weight of the new acceleration in the displacement [-]."""
-    delta: float
-    """Weight of the new acceleration in the velocity [-]."""
-    gg: float
-    """Factor on the velocity at the start of each step [-], 0 to 1."""
-    step: float
-    """Time step dt [s]."""
-    start: Literal["zero", "consistent"] | str = "zero"
-    """Initial acceleration: ``"zero"`` (as the paper) or ``"consistent"`` (M A0 = F)."""
+    alpha: float  # weight of the new acceleration in the displacement [-]
+    delta: float  # weight of the new acceleration in the velocity [-]
+    gg: float  # factor on the velocity at the start of each step [-], 0 to 1
+    step: float  # time step dt [s]
+    start: Literal["zero", "consistent"] | str = "zero"  # initial acceleration: A0 = 0 as the paper, or M A0 = F
 
     def __post_init__(self) -> None:
         for field in ("alpha", "delta", "gg", "step"):

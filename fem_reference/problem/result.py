@@ -1,4 +1,4 @@
-"""What a solver of this package hands back."""
+"""What a solver of this package returns."""
 
 from __future__ import annotations
 
@@ -17,42 +17,29 @@ COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotat
 class Result:
     """A history with its work counts; row 0 is step 1."""
 
-    time: Array
-    """Time of each row [s], shape (steps,)."""
-    columns: dict[str, Array]
-    """One array of shape (steps,) for each asked column, in the units of `COLUMNS`."""
-    unknowns: int
-    """Number of unknowns that were integrated [-]."""
-    nonzeros: int
-    """Stored entries of the matrix that was factorised [-]."""
-    factorisations: int
-    """Number of factorisations [-]."""
-    solves: int
-    """Number of solutions with a factorised matrix [-]."""
-    notes: tuple[str, ...]
-    """Savings used and warnings, in words."""
-    setup_seconds: float
-    """Time for assembly and factorisation [s]."""
-    stepping_seconds: float
-    """Time for the steps [s]."""
-    estimate: float | None = None
-    """Estimated error over the maximum value [-]; None where none is made."""
+    time: Array  # time of each row [s], shape (steps,)
+    columns: dict[str, Array]  # one array of shape (steps,) for each asked column, in the units of `COLUMNS`
+    unknowns: int  # number of unknowns that were integrated [-]
+    nonzeros: int  # stored entries of the matrix that was factorised [-]
+    factorisations: int  # number of factorisations [-]
+    solves: int  # number of solutions with a factorised matrix [-]
+    notes: tuple[str, ...]  # savings used and warnings, in words
+    setup_seconds: float  # time for assembly and factorisation [s]
+    stepping_seconds: float  # time for the steps [s]
+    estimate: float | None = None  # estimated error over the maximum value [-]; None where none is made
 
 
 @dataclass(frozen=True)
 class Mode:
     """A natural mode and what one step of the scheme makes of it."""
 
-    frequency: float
-    """Natural frequency w [rad/s]."""
-    share: float
-    """Share of the static response, (phi'F)^2 / (w^2 F'D_static) [-]."""
-    eigenvalues: NDArray[np.complex128]
-    """Eigenvalues of the mode's own one-step operator, greatest modulus first, shape (3,)."""
+    frequency: float  # natural frequency w [rad/s]
+    share: float  # share of the static response, (phi'F)^2 / (w^2 F'D_static) [-]
+    eigenvalues: NDArray[np.complex128]  # of the mode's own one-step operator, greatest modulus first, shape (3,)
 
 
 def check_request(steps: int, columns: tuple[str, ...]) -> None:
-    """Refuse a number of steps or a column that cannot be served.
+    """Raise for a number of steps or a column that is not available.
 
     Raises
     ------

@@ -18,16 +18,11 @@ from fem_reference.scheme.newmark import Work, effective_matrix
 class Diagnostics:
     """What one step does to the mesh's modes, and how well its matrix is conditioned."""
 
-    condition_number: float
-    """Of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices."""
-    scaled_residual: float
-    """Max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]."""
-    spectral_radius: float
-    """Largest |lambda| seen: the code's own step applied to unit states of single modes [-]."""
-    predicted_radius: float
-    """Largest |lambda| of the same modes from trace and determinant [-]."""
-    largest_omega: float
-    """Largest w dt [-]."""
+    condition_number: float  # of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices
+    scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
+    spectral_radius: float  # largest |lambda| seen: the code's own step applied to unit states of single modes [-]
+    predicted_radius: float  # largest |lambda| of the same modes from trace and determinant [-]
+    largest_omega: float  # largest w dt [-]
 
 
 def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Model | None = None) -> Diagnostics:

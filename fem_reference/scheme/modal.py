@@ -30,16 +30,11 @@ CLOSE = 1e-2
 class Spectrum(NamedTuple):
     """Roots of a step, one entry for each mode."""
 
-    trace: Array
-    """Sum of the two roots [-]."""
-    det: Array
-    """Their product [-]."""
-    discriminant: Array
-    """trace^2 - 4 det [-]."""
-    mu: Array
-    """2 - trace [-]: the sum of the roots' distances from one."""
-    product: Array
-    """1 - trace + det [-]: the product of these distances."""
+    trace: Array  # sum of the two roots [-]
+    det: Array  # their product [-]
+    discriminant: Array  # trace^2 - 4 det [-]
+    mu: Array  # 2 - trace [-]: the sum of the roots' distances from one
+    product: Array  # 1 - trace + det [-]: the product of these distances
 
 
 def applicable(scheme: Scheme) -> str | None:
@@ -116,10 +111,8 @@ def _distances(s: Spectrum) -> tuple[Array, Array]:
 class _Power(NamedTuple):
     """Roots in the form sign * exp(log), so that a root near the negative axis keeps its distance from it."""
 
-    log: Array | Complex
-    """Logarithm of sign times the root."""
-    sign: Array
-    """1 or -1."""
+    log: Array | Complex  # logarithm of sign times the root
+    sign: Array  # 1 or -1
 
     def minus_one(self, k: NDArray[np.int64]) -> Array | Complex:
         """Power k less one, without cancellation for roots near one."""

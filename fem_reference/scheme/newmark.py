@@ -26,12 +26,9 @@ from fem_reference.problem.problem import Array, Scheme
 class Work:
     """Counters of the work done."""
 
-    factorisations: int = 0
-    """Number of factorisations [-]."""
-    solves: int = 0
-    """Number of solutions with a factorised matrix [-]."""
-    nonzeros: int = 0
-    """Stored entries of the last matrix factorised [-]."""
+    factorisations: int = 0  # number of factorisations [-]
+    solves: int = 0  # number of solutions with a factorised matrix [-]
+    nonzeros: int = 0  # stored entries of the last matrix factorised [-]
 
     def factor(self, matrix: csr_array) -> Callable[[Array], Array]:
         """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides."""
@@ -52,12 +49,9 @@ class Work:
 class State:
     """Displacement, velocity and acceleration at the end of a step, each of shape (unknowns,)."""
 
-    D: Array
-    """Displacement [m]."""
-    V: Array
-    """Velocity [m/s]."""
-    A: Array
-    """Acceleration [m/s2]."""
+    D: Array  # displacement [m]
+    V: Array  # velocity [m/s]
+    A: Array  # acceleration [m/s2]
 
 
 def effective_matrix(M: csr_array, K: csr_array, scheme: Scheme) -> csr_array:

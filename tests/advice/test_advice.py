@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import cli
+from conftest import typed
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -94,7 +94,7 @@ def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: st
     assert crossings <= len(advice.solutions), advice.sentence
     if not advice.reachable and advice.greatest is not None:
         assert "No" in advice.sentence and (target > advice.greatest or target < advice.least)
-        word = "greatest" if target > advice.greatest else "least"
+        word = "largest" if target > advice.greatest else "smallest"
         assert word in advice.sentence
 
 
@@ -213,18 +213,18 @@ def test_damping_tells_parts_and_the_mode_that_flips() -> None:
 
 def test_the_commands_answer_in_plain_text_and_json() -> None:
     case = ("figures-3-4", "--set", "time.step=0.002")
-    told = cli("damping", *case, "--json")
+    told = typed("damping", *case, "--json")
     found = json.loads(told.stdout)
     assert {"name", "frequency", "damping", "spectral_radius", "omega_dt"} <= set(found["modes"][0])
     assert found["modes"][0]["name"] == "first axial" and found["sentence"]
     assert found["references"]["bar"]["damping"] == pytest.approx(0.15334, abs=1e-5)
-    advised = cli("advise", *case, "--damping", "0.05", "--solve-for", "dt", "--json")
+    advised = typed("advise", *case, "--damping", "0.05", "--solve-for", "dt", "--json")
     answer = json.loads(advised.stdout)
     assert answer["solve_for"] == "dt" and answer["reachable"] is True
     assert {"value", "damping", "settling_steps", "settling_seconds"} <= set(answer["solutions"][0])
-    plain = cli("advise", *case, "--damping", "0.35")
+    plain = typed("advise", *case, "--damping", "0.35")
     assert plain.returncode == 0 and plain.stdout.startswith("Set dt = ")
     assert "differs from continuum by" in plain.stdout
-    assert cli("damping", *case).stdout.startswith("At dt = 0.002 s the first axial mode")
-    refused = cli("advise", "figures-3-4", "--damping", "0.05")
+    assert typed("damping", *case).stdout.startswith("At dt = 0.002 s the first axial mode")
+    refused = typed("advise", "figures-3-4", "--damping", "0.05")
     assert refused.returncode == 2 and "time.step" in refused.stderr and refused.stderr.count("\n") == 1

@@ -53,7 +53,7 @@ def test_agreement_is_with_the_bar_and_the_time_error_is_the_bars() -> None:
     removed = 1 - math.sqrt((1e-2 + 1e-4 + 1e-6 + 1e-8) / 4)
     assert dict(alarm.values) == pytest.approx({"agreement": 0.02, "removed": removed, "time error": 0.5})
     assert alarm.sentence == (
-        "DDA agrees with the elastic block to 2 % because both are damped: damping took 95 % of the first mode's "
+        "DDA agrees with the elastic block to 2 % because both are damped: damping removed 95 % of the first mode's "
         "motion, and the time error is 50 %"
     )
     assert alarm.record()["values"]["removed"] == float(f"{removed:.4g}") != round(removed, 2)
@@ -88,8 +88,8 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> No
     }
     alarm = raised(SCENE, rows)[TENSION]
     assert alarm.sentence == (
-        "the locked contact pulls, in dda by 0.432 MPa at t = 0.0025 s and for 0.0375 s in all; "
-        "in bar by 1.25 MPa at t = 0.015 s and for 0.003 s in all"
+        "the locked contact carries tension, in dda by 0.432 MPa at t = 0.0025 s, for 0.0375 s in total; "
+        "in bar by 1.25 MPa at t = 0.015 s, for 0.003 s in total"
     )
     assert dict(alarm.values) == {
         "dda.minimum": -0.4321e6, "dda.time": 0.0025, "dda.duration": 0.0375,
@@ -104,7 +104,7 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> No
          "steps to fall to 1 %"),
         (-0.91, 0.98, "a root of the contact mode is -0.91: the contact force rings from step to step and takes 228 "
          "steps to fall to 1 %"),
-        (-1.0, 1.0, "a root of the contact mode is -1: the contact force rings from step to step and hardly ever "
+        (-1.0, 1.0, "a root of the contact mode is -1: the contact force rings from step to step and hardly "
          "decays"),
         (-0.89, 0.98, None),
     ],
@@ -122,7 +122,7 @@ def test_the_tables_of_alarms_hold_their_numbers_in_their_columns() -> None:
     values = {"dda.minimum": -1.234e6, "dda.time": 0.0567, "dda.duration": 0.0089}
     pulled = Alarm(TENSION, "s", "", values | {"bar.minimum": -2e5, "bar.time": 0.01, "bar.duration": 0.002}).record()
     table = tension_table([pulled], labels)
-    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "pulls for [ms]"]
+    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "tension for [ms]"]
     assert table.rows == (("dt = 1 s", "dda", "−1.23", "56.7", "8.9"), ("", "bar", "−0.200", "10", "2"))
     rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-1, 1))]
     assert [row[1:] for row in ringing_table(rings, labels).rows] == [

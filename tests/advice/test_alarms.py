@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import cli
+from conftest import typed
 
 from validation.advice.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
 from validation.engine.run import finish, run_study
@@ -75,7 +75,7 @@ def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path) -> None:
 
 
 def test_a_run_counts_its_alarms_and_warns_of_a_fixed_discount(tmp_path: Path) -> None:
-    done = cli("run", "discount-map", "--results", tmp_path)
+    done = typed("run", "discount-map", "--results", tmp_path)
     assert done.returncode == 0
     assert "warning: discount-map: dt is varied at a fixed gg = 0.98" in done.stderr
     assert "alarms: hidden tension in" in done.stdout

@@ -70,6 +70,21 @@ def test_damping_prints_the_first_modes_of_the_references(scene_file: Path) -> N
     assert [float(bar[1]), float(bar[2])] == pytest.approx([w, 100 * of_scheme(0.002 * w, 0.98)[0]], rel=1e-3)
 
 
+def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> None:
+    found = json.loads(typed("damping", scene_file, *OPTIONS, "--json").stdout)
+    w = frequencies()[0]
+    xi, radius, elongation = of_scheme(0.002 * w, 0.98)
+    own = of_scheme(0.002 * w, 1.0)[0]
+    assert (found["scene"], found["step"], found["gg"]) == ("small", 0.002, 0.98)
+    assert found["gg_rate"] == pytest.approx(-math.log(0.98) / 0.002)
+    first = {name: value for name, value in found["modes"][0].items() if name not in ("name", "least_root")}
+    assert first == pytest.approx({
+        "frequency": w, "damping": xi, "spectral_radius": radius, "omega_dt": 0.002 * w, "algorithmic": own,
+        "kinetic": xi - own, "period_elongation": elongation,
+    })  # fmt: skip
+    assert set(found["references"]) == {"fem", "bar"}
+
+
 def mode(**changes: Any) -> ModeDamping:
     values = {"name": "first axial", "frequency": 300.0, "damping": 0.05, "spectral_radius": 0.875, "omega_dt": 0.6,
               "algorithmic": 0.04, "kinetic": 0.01, "period_elongation": 0.1, "least_root": 0.1}  # fmt: skip
@@ -83,10 +98,10 @@ def mode(**changes: Any) -> ModeDamping:
         ({"kinetic": 0.0}, "is damped at 5 % of critical, all of it algorithmic"),
         ({"algorithmic": 0.0}, "is damped at 5 % of critical, all of it kinetic"),
         ({"damping": 1.5}, "is overdamped at 150 % of critical, 4 % algorithmic and 1 % kinetic"),
-        ({"least_root": -0.95, "omega_dt": 7.25}, "flips sign every step and keeps 87.5 % of itself per step "
+        ({"least_root": -0.95, "omega_dt": 7.25}, "flips sign every step and keeps 87.5 % of its amplitude per step "
          "(w dt = 7.25)"),
-        ({"damping": None}, "has no damping ratio (a root is not positive) and keeps 87.5 % of itself per step"),
-        ({"spectral_radius": 1.25}, "grows by 1.25 per step"),
+        ({"damping": None}, "has no damping ratio (a root is not positive) and keeps 87.5 % of its amplitude per step"),
+        ({"spectral_radius": 1.25}, "grows by a factor of 1.25 per step"),
         ({"damping": 0.0, "spectral_radius": 1.0}, "is not damped"),
     ],
 )  # fmt: skip
@@ -183,7 +198,7 @@ def test_a_rate_that_is_kept_is_named() -> None:
          "displacement settles within 40 steps (0.12 s); gg = 0.98 acts per step, so that refining dt at this gg does "
          "not converge."),
         ("gg", "Set gg = 0.003 per step (c = 10.15 1/s): the first axial mode of the DDA block is then damped at 5 % "
-         "of critical and the displacement settles within 40 steps (0.12 s); this gg belongs to dt = 0.003 s, at "
+         "of critical and the displacement settles within 40 steps (0.12 s); this gg is valid at dt = 0.003 s only, at "
          "another dt keep the rate c."),
         ("scheme", "Set delta = 0.003, alpha = 0.6: the first axial mode of the DDA block is then damped at 5 % of "
          "critical and the displacement settles within 40 steps (0.12 s)."),
@@ -197,7 +212,7 @@ def test_the_advice_names_the_solution_whose_contact_flips() -> None:
     flipping = mode(name="contact", least_root=-0.95, omega_dt=7.25)
     found = [solution(), solution(value=0.009, contact=flipping, settling_steps=9, settling_seconds=0.081)]
     text = advice._sentence(CASE, "dt", 0.05, found, (None, None, None, None))
-    assert text.startswith("Set dt = 0.003 s or dt = 0.009 s: ") and "by each of them" in text
+    assert text.startswith("Set dt = 0.003 s or dt = 0.009 s: ") and "in each case" in text
     assert "within 40 steps (0.12 s) or 9 steps (0.081 s), but the contact mode flips sign" in text
     assert "per step (w dt = 7.25) at dt = 0.009 s; gg" in text
 
@@ -205,8 +220,8 @@ def test_the_advice_names_the_solution_whose_contact_flips() -> None:
 @pytest.mark.parametrize(
     ("target", "words"),
     [
-        (0.5, "at 50 % of critical: the greatest that can be reached is 30 %, at dt = 0.02 s."),
-        (0.01, "at 1 % of critical: the least that can be reached is 2 %, at dt = 0.001 s."),
+        (0.5, "at 50 % of critical: the largest attainable value is 30 %, at dt = 0.02 s."),
+        (0.01, "at 1 % of critical: the smallest attainable value is 2 %, at dt = 0.001 s."),
     ],
 )
 def test_what_is_out_of_reach_is_told_with_where_the_end_is(target: float, words: str) -> None:

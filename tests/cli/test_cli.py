@@ -23,7 +23,7 @@ def test_solve_writes_a_history(scene_file: Path, tmp_path: Path) -> None:
 
 
 def test_fields_are_written_for_paraview(scene_file: Path, tmp_path: Path) -> None:
-    done = cli("solve", scene_file, "--solver", "fem", "--fields", tmp_path / "f.vtu")
+    done = typed("solve", scene_file, "--solver", "fem", "--fields", tmp_path / "f.vtu")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "f.vtu").stat().st_size > 1000
 
@@ -36,7 +36,7 @@ def test_a_run_prints_one_table_and_keeps_everything(scene_file: Path, tmp_path:
     assert all(word in passed.stdout for word in ("scene", "pair", "metric", "value", "band", "verdict", "seconds"))
     assert "1 PASS, 0 FAIL, 0 NOT RUN" in passed.stdout
     scene_file.write_text(SCENE + gate.format(0.0, 0.001))
-    failed = cli("run", scene_file, "--results", tmp_path / "r")
+    failed = typed("run", scene_file, "--results", tmp_path / "r")
     assert failed.returncode == 1
     assert "model form" in failed.stdout
     verdict = json.loads((tmp_path / "r" / "verdicts.json").read_text())[0]
@@ -45,7 +45,7 @@ def test_a_run_prints_one_table_and_keeps_everything(scene_file: Path, tmp_path:
 
 def test_full_gives_the_same_numbers(scene_file: Path, tmp_path: Path) -> None:
     for name, options in (("a", []), ("b", ["--full"])):
-        assert cli("solve", scene_file, "--solver", "fem", "--csv", tmp_path / name, *options).returncode == 0
+        assert typed("solve", scene_file, "--solver", "fem", "--csv", tmp_path / name, *options).returncode == 0
     a, b = (read_csv(tmp_path / name) for name in "ab")
     for column in ("displacement", "contact_pressure"):
         error = np.max(np.abs(a.columns[column] - b.columns[column]))
@@ -138,7 +138,7 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
         os.killpg(process.pid, signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said.strip() == "interrupted: finished rows are kept, the same command goes on from there"
+    assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
 def test_help_has_an_example_everywhere() -> None:

@@ -29,6 +29,7 @@ from validation.runs.run import Outcome
 from validation.studies.catalogue import get_study
 from validation.studies.paper.claims import page
 from validation.studies.paper.study import CLAIMS
+from validation.studies.work import record as work_record
 
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
 
@@ -44,6 +45,13 @@ def test_solve_prints_the_last_values_and_the_duration(scene_file: Path, tmp_pat
         f"contact_pressure {history.contact_pressure[-1]:.6g}; "
     )
     assert history.time[-1] == pytest.approx(0.1) and history.displacement[-1] != history.displacement[0]
+
+
+def test_a_run_that_overflows_leaves_no_history_behind(scene_file: Path, tmp_path: Path) -> None:
+    values = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    options = [part for value in values for part in ("--set", value)]
+    done = typed("solve", scene_file, *options, "--csv", tmp_path / "h.csv")
+    assert done.returncode == 3 and not (tmp_path / "h.csv").exists()
 
 
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
@@ -135,7 +143,7 @@ def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> N
 
 
 def test_a_baselines_other_studies_are_not_lost_gates(tmp_path: Path) -> None:
-    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 1.0, "other")]))
+    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 0.5, "other")]))
     assert [(c.kind, c.id) for c in against(tmp_path / "old.json", NEW[:3])] == [("worse", "a"), ("value", "b")]
 
 
@@ -195,6 +203,23 @@ def test_plot_draws_x_over_y_and_leaves_out_what_is_not_positive(
     assert (list(x), list(y)) == ([1, 10, 100], pytest.approx([0.3, 0.2, 0.1]))
     nothing = typed("plot", "made", "--y", "bar:pressure.l2", "--results", made.directory)
     assert nothing.returncode == 2 and "must be columns with positive numbers" in nothing.stderr
+
+
+@pytest.mark.parametrize(
+    ("error", "solves", "status"), [(1.015, 100, 0), (1.03, 100, 1), (1.0, 110, 0), (1.0, 120, 1), (0.5, 50, 0)]
+)
+def test_the_record_fails_on_two_per_cent_of_an_error_and_fifteen_of_a_count(
+    error: float, solves: int, status: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def entry(error: float, solves: int) -> dict[str, Any]:
+        return {"a fem": {"errors": {"displacement": 1e-3 * error}, "work": {"solves": solves}}}
+
+    monkeypatch.setattr("validation.engine.run.finish", lambda *a, **k: None)
+    monkeypatch.setattr(work_record, "measured", lambda *a: entry(error, solves))
+    monkeypatch.setattr(work_record, "load", lambda: {"cases": entry(1.0, 100)})
+    done = typed("record")
+    assert done.stdout == f"worst ratio to the record: errors {error:.3f}, work {solves / 100:.3f}\n"
+    assert done.returncode == status
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import cli
+from conftest import typed
 from oracles.shi_dda import Program, run, write_measured_point
 
 from dda.one_block.variants import Variant, histories
@@ -152,7 +152,7 @@ def test_steps_are_written_as_runs() -> None:
 
 @pytest.fixture(scope="module")
 def example() -> dict[str, object]:
-    done = cli("compare", EXAMPLE / "scene.toml", EXAMPLE / "ntdda-p1E-dt2ms_meas.m", "--json")
+    done = typed("compare", EXAMPLE / "scene.toml", EXAMPLE / "ntdda-p1E-dt2ms_meas.m", "--json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -249,19 +249,19 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     path = tmp_path / "theirs.csv"
     path.write_text("t;uy\n" + "\n".join(f"{t:.7g};{u:.7g}" for t, u in table))
     arguments = ["compare", "figures-3-4", path, "--set", "time.step=0.002", "--columns", "time=t,displacement=uy"]
-    done = cli(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--report", tmp_path / "a.pdf")
+    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--report", tmp_path / "a.pdf")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
-        "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); what"
+        "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); the"
     )
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF-")
-    slipped = cli(*arguments, "--json")
+    slipped = typed(*arguments, "--json")
     answer = json.loads(slipped.stdout)
     assert answer["causes"] == ["sign", "unit"]
     assert answer["departure"] == {"step": 1, "kind": "amplitude"}
 
 
 def test_bad_input_is_one_line(tmp_path: Path) -> None:
-    missing = cli("compare", "figures-3-4", tmp_path / "none.csv", "--set", "time.step=0.002")
+    missing = typed("compare", "figures-3-4", tmp_path / "none.csv", "--set", "time.step=0.002")
     assert missing.returncode == 2
     assert missing.stderr.count("\n") == 1 and "cannot be read" in missing.stderr

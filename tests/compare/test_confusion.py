@@ -5,22 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from faults import seams
 from oracles import confusion
 
 from dda.one_block.variants import Variant
-from validation.compare import causes, diagnosis
 from validation.compare.causes import CAUSES
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
 
 
 @pytest.fixture(scope="module")
-def judged():
-    return confusion.judge_all()
+def fifty():
+    return confusion.judge()
 
 
-def test_there_are_fifty_and_every_cause_is_among_them(judged) -> None:
-    assert len(judged) == 50
+@pytest.fixture(scope="module", params=["one of each cause", pytest.param("fifty", marks=pytest.mark.long)])
+def judged(request: pytest.FixtureRequest):
+    return request.getfixturevalue("fifty") if request.param == "fifty" else confusion.judge(first=True)
+
+
+@pytest.mark.long
+def test_there_are_fifty(fifty) -> None:
+    assert len(fifty) == 50
+
+
+def test_every_cause_is_among_them(judged) -> None:
     # weight and load are no slips of a code; the example of ntdda and the program of another make have weight
     assert {one.cause for one, _, _ in judged} == {confusion.SAME, *CAUSES} - {"own-weight", "load-factor"}
 
@@ -53,9 +62,11 @@ def test_a_departure_is_where_a_fault_is(judged) -> None:
             assert 1 <= answer.departure.step <= 3, i  # every fault here is there from the start
 
 
-def test_the_matrix_of_the_documentation_is_this_one(judged) -> None:
+@pytest.mark.long
+def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
     page = confusion.PAGE.read_text()
-    assert confusion.page_with(confusion.matrix(judged), page) == page, "run python tests/confusion.py"
+    found = confusion.page_with(confusion.matrix(fifty), page)
+    assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 
 def first(cause: str) -> tuple[int, confusion.Known]:
@@ -67,20 +78,20 @@ def without(unwanted: Callable[[Variant], bool]) -> Callable[..., Callable[..., 
     return lambda sound: lambda base: [start for start in sound(base) if not unwanted(start[0])]
 
 
-# what is patched, with what, and the history that is then misjudged
+# the seam, what is made of it, and the history that is then misjudged
 FAULTS = {
-    "no shift is tried": (causes, "_further", without(lambda v: v.shift != 0), "time-shift"),
-    "gg is in both formulas": (causes, "_further", without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
-    "every cause is earned": (causes, "better", lambda sound: lambda *a, **k: True, "same"),
-    "no cause is earned": (causes, "better", lambda sound: lambda *a, **k: False, "start"),
-    "no sign is turned": (diagnosis, "_factors", lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
+    "no shift is tried": (seams.CAUSES_FURTHER, without(lambda v: v.shift != 0), "time-shift"),
+    "gg is in both formulas": (seams.CAUSES_FURTHER, without(lambda v: v.discounted != "both"), "gg-in-one-formula"),
+    "every cause is earned": (seams.CAUSES_BETTER, lambda sound: lambda *a, **k: True, "same"),
+    "no cause is earned": (seams.CAUSES_BETTER, lambda sound: lambda *a, **k: False, "start"),
+    "no sign is turned": (seams.DIAGNOSIS_FACTORS, lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
 }
 
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    module, attribute, wrap, cause = FAULTS[name]
-    monkeypatch.setattr(module, attribute, wrap(getattr(module, attribute)))
+    seam, wrap, cause = FAULTS[name]
+    seam.wrap(monkeypatch, wrap)
     seed, one = first(cause) if cause != "same" else (3, list(confusion.known())[3])
     answer, _ = one.judged(seed)
     assert confusion.told(answer) != cause

@@ -64,14 +64,14 @@ def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str)
     np.testing.assert_allclose(found.displacement, [-0.0015, -0.0025, -0.003, -0.0035])
     assert found.pressure is not None
     np.testing.assert_allclose(found.pressure, [0.5e6, 1e6, 2e6, 2.5e6])
-    assert "the row at t = 0 is left out" in found.notes
+    assert "the row at t = 0 is ignored" in found.notes
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         ("", "empty"),
-        ("time,displacement\n1,2\n2,3\n3,4\n", "4 rows after t = 0 or more, got 3"),
+        ("time,displacement\n1,2\n2,3\n3,4\n", "at least 4 rows after t = 0, got 3"),
         ("time,uy\n1,2\n2,3\n3,4\n4,5\n", "no column 'displacement' for displacement; it has time, uy; name it with"),
         ("time,displacement\n1,2\n1,3\n3,4\n4,5\n", "time: must increase from row to row, got 1 in row 2"),
         (
@@ -109,14 +109,14 @@ def test_times_name_the_steps() -> None:
     np.testing.assert_array_equal(third[0].rows, 3 * np.arange(1, 9) - 1)
     assert "the program's step is 0.006" in third[1].note
     some = steppings(history_at(step * np.array([1, 2, 4, 7, 9])), step)[0]
-    assert "not uniform" in some.note
+    assert "non-uniform" in some.note
     np.testing.assert_array_equal(some.rows, [0, 1, 3, 6, 8])
     other = steppings(history_at(0.0005 * np.arange(1, 9)), step)[0]
     np.testing.assert_allclose(other.steps, 0.0005)
     assert "compared at the program's" in other.note
     free = steppings(history_at([0.001, 0.0021, 0.0033, 0.0041]), step)[0]
     np.testing.assert_allclose(free.steps, [0.001, 0.0011, 0.0012, 0.0008])
-    assert "each row is taken for one step" in free.note
+    assert "each row is taken as one step" in free.note
 
 
 def test_times_in_milliseconds_are_a_slip_of_units() -> None:

@@ -5,9 +5,10 @@ import sys
 
 import numpy as np
 import pytest
+from faults import seams
 
 from dda import COLUMNS, Block, Contact, Material, Scheme, TwoBlockModel, modal_form, one_step_operator, solve
-from dda.scheme import newmark, spectral
+from dda.scheme import spectral
 
 SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6)]
 
@@ -53,17 +54,18 @@ def test_central_differences_are_the_two_step_formula(gg):
 @pytest.mark.parametrize(
     ("piece", "fault"),
     [
-        ("predictor", lambda s, P, f: P + (0.5 - s.alpha) * f),
-        ("velocity_corrector", lambda s, P, f, f1: P + (1 - s.delta) * f + s.delta * f1),
-        ("acceleration_corrector", lambda F, k, D: F - 0.999 * k * D),
-        ("initial_acceleration", lambda s, F: F),
-        ("effective_matrix", lambda s, M, k: M + 1.001 * s.alpha * k),
+        (seams.DDA_PREDICTOR, lambda s, P, f: P + (0.5 - s.alpha) * f),
+        (seams.DDA_VELOCITY, lambda s, P, f, f1: P + (1 - s.delta) * f + s.delta * f1),
+        (seams.DDA_ACCELERATION, lambda F, k, D: F - 0.999 * k * D),
+        (seams.DDA_START, lambda s, F: F),
+        (seams.DDA_EFFECTIVE, lambda s, M, k: M + 1.001 * s.alpha * k),
     ],
+    ids=lambda value: getattr(value, "name", ""),
 )
 def test_every_named_piece_of_the_step_is_used(monkeypatch, piece, fault):
     scheme = Scheme(0.3025, 0.6, 0.95, 1e-3)
     right = solve(model(), scheme, 50).columns["displacement"]
-    monkeypatch.setattr(newmark, piece, fault)
+    piece.put(monkeypatch, fault)
     wrong = solve(model(), scheme, 50).columns["displacement"]
     assert np.max(np.abs(right - wrong)) > 1e-5 * np.max(np.abs(right))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, cli
+from conftest import SCENE, cli, typed
 
 from validation.errors import InputError
 from validation.runs.history import History
@@ -105,10 +105,10 @@ def test_a_write_that_fails_is_reported_and_costs_no_finished_row(tmp_path, monk
 
 def test_a_directory_that_cannot_be_written_is_one_line(scene_file, tmp_path):
     (tmp_path / "file").write_text("not a directory")
-    done = cli("run", scene_file, "--results", tmp_path / "file" / "r")
+    done = typed("run", scene_file, "--results", tmp_path / "file" / "r")
     assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1
     (tmp_path / "r" / "rows.jsonl").mkdir(parents=True)
-    done = cli("run", scene_file, "--results", tmp_path / "r")
+    done = typed("run", scene_file, "--results", tmp_path / "r")
     assert done.returncode == 2 and "Traceback" not in done.stderr
     assert "cannot be read" in done.stderr
 
@@ -122,12 +122,12 @@ def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp
     assert "cannot be written: File too large" in done.stderr
     assert len(rows_of(tmp_path / "r")) == 1
     assert len(list((tmp_path / "r" / "histories").iterdir())) == 1
-    assert cli("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
     assert len(rows_of(tmp_path / "r")) == 2
 
 
 def test_a_damaged_history_is_one_line(scene_file, tmp_path):
-    assert cli("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
     next((tmp_path / "r" / "histories").glob("*.npz")).write_bytes(b"PK\x03\x04 broken")
-    done = cli("run", scene_file, "--results", tmp_path / "r")
+    done = typed("run", scene_file, "--results", tmp_path / "r")
     assert done.returncode == 2 and "delete it and run again" in done.stderr

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from faults import seams
 from oracles.made_cases import made_history, made_row
 
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate
 from validation.engine.study import Study
-from validation.gates.gate import Gate
+from validation.gates.gate import Gate, Status, judge
+from validation.metrics import growth
 from validation.metrics import poles as pencil
 from validation.metrics.catalogue import pair, solo
 from validation.metrics.measurable import Measurable
@@ -161,6 +163,12 @@ def test_long_histories_are_thinned_without_changing_frequency_or_damping(size: 
     assert strongest.damping == pytest.approx(xi, rel=1e-6)
 
 
+def test_a_signal_that_its_poles_do_not_give_back_has_none() -> None:
+    n = np.arange(1, 120)
+    noise = 1e-3 * np.random.default_rng(5).standard_normal(n.size)
+    assert pencil.poles(np.cos(0.3 * n), 1.0) and pencil.poles(np.cos(0.3 * n) + noise, 1.0) == []
+
+
 def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> None:
     names = ("predicted_radius", "spectral_radius", "condition_number", "scaled_residual", "largest_omega")
     told = dict(zip(names, (0.91, 0.92, 3e5, 4e-16, 5.5), strict=True))
@@ -174,6 +182,35 @@ def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> No
         "stability.growth": "undefined",
         "stability.kind": "stable",
     }
+
+
+def test_the_drift_is_that_of_the_energy_the_square_of_the_amplitude() -> None:
+    n = np.arange(1, 2 * growth.WINDOW + 1)
+    shape = 1 + np.where(n <= growth.WINDOW, 0.5, 0.6) * np.cos(0.3 * n + 0.7)
+    turning = Mode(300.0, 1.0, (complex(np.exp(0.3j)), complex(np.exp(-0.3j))))
+    found = growth.drift(Measurable(made_history(0.1, -0.01 * shape), 0.1, {"displacement": -0.01}, (turning,)))
+    assert found == pytest.approx(0.36 / 0.25 - 1, rel=1e-9)
+
+
+def test_a_verdict_is_kept_with_its_gate_and_four_digits() -> None:
+    judged = Gate("s", ("dda", "bar"), "displacement.l2", 0.25, 0.75, "why", "other code", 0.125, 0.2)
+    assert judge(judged, 0.512345).record("study") == {
+        "id": "s:dda-bar:displacement.l2@0.2s",
+        "study": "study",
+        "scene": "s",
+        "pair": ["dda", "bar"],
+        "metric": "displacement.l2",
+        "value": 0.5123,
+        "band": [0.25, 0.75],
+        "verdict": "PASS",
+        "reason": "why",
+        "why": "",
+        "reference_kind": "other code",
+        "reference_uncertainty": 0.125,
+        "alarms": [],
+    }
+    edges = [judge(judged, value).status for value in (0.2499, 0.25, 0.75, 0.7501, math.nan)]
+    assert edges == [Status.FAIL, Status.PASS, Status.PASS, Status.FAIL, Status.FAIL]
 
 
 # ---- the reference pack -------------------------------------------------------------------------------------------
@@ -247,8 +284,8 @@ def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkey
 
     import scipy
 
-    monkeypatch.setattr(provenance, "_commit", lambda: "the commit")
-    monkeypatch.setattr(provenance, "_processor", lambda: "the processor")
+    seams.COMMIT.put(monkeypatch, lambda: "the commit")
+    seams.PROCESSOR.put(monkeypatch, lambda: "the processor")
     found = provenance.provenance()
     assert found["python"] == platform.python_version()
     assert (found["packages"]["numpy"], found["packages"]["scipy"]) == (np.__version__, scipy.__version__)

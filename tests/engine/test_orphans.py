@@ -111,7 +111,7 @@ def test_nothing_outlives_the_parent(
     assert "Traceback" not in said
     assert process.returncode == (-9 if number == signal.SIGKILL else 128 + number)
     if number != signal.SIGKILL:
-        assert said.strip() == "interrupted: finished rows are kept, the same command goes on from there"
+        assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
 @pytest.mark.parametrize("number", SIGNALS)

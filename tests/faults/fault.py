@@ -1,4 +1,4 @@
-"""Seeded faults: a named seam of solver code is replaced for the time of a run; production code has no switch."""
+"""Seeded faults: what stands in a seam of solver code is replaced for a run; production code has no switch."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from faults.seams import Seam
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A seeded fault: which solvers it reaches, and the attribute that it replaces."""
+    """A seeded fault: which solvers it reaches, the seam it enters by, and what it makes of the sound function."""
 
     name: str
     solvers: tuple[str, ...]
-    module: object
-    attribute: str
-    replacement: Callable[[Callable[..., object]], Callable[..., object]]
+    seam: Seam
+    replacement: Callable[[Callable[..., object]], object]
 
 
 def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[..., Callable[..., object]]:

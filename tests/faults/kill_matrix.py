@@ -27,10 +27,10 @@ class Overlay(Results):
 
     def __init__(self, directory: Path, sound: Results) -> None:
         super().__init__(directory)
-        self.sound = sound
+        self.unharmed = sound
 
     def history(self, key: str) -> History | None:
-        return super().history(key) or self.sound.history(key)
+        return super().history(key) or self.unharmed.history(key)
 
 
 def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
@@ -87,7 +87,7 @@ def killed(
         needed = {need for gate in some for need in study.needs(gate)}
         reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-            patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+            fault.seam.wrap(patch, fault.replacement)
             faulty = finish(reached, study, results)
         yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
 

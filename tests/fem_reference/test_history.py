@@ -5,6 +5,7 @@ from dataclasses import replace
 import meshio
 import numpy as np
 import pytest
+from faults import seams
 from oracles.elements import INCLINED, make
 
 from fem_reference import Bar, Scheme, highest_frequency, modes, solve
@@ -91,7 +92,7 @@ def test_first_axial_mode():
 def test_sparse_and_dense_modes_agree(monkeypatch):
     problem = make(poisson=0.45, p=2e10, elements=8)
     dense = modes(problem, CONSTANT)
-    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", 10)
+    seams.FEM_DENSE.put(monkeypatch, 10)
     sparse = modes(problem, CONSTANT)
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)

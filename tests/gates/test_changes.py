@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, cli
+from conftest import SCENE, typed
 
 from validation import solve
 from validation.errors import InputError
@@ -66,34 +66,35 @@ def test_only_what_differs_is_told_and_the_worse_first() -> None:
 def test_diff_is_a_table_and_a_status(tmp_path: Path) -> None:
     a = write(tmp_path / "a.json", verdict("one", "PASS"), verdict("two", "FAIL"))
     b = write(tmp_path / "b.json", verdict("one", "FAIL"), verdict("two", "PASS"))
-    done = cli("diff", a, b)
+    done = typed("diff", a, b)
     assert done.returncode == 1 and "2 gates differ: 1 worse, 1 better" in done.stdout
     assert any(line.split()[:3] == ["worse", "s", "one"] for line in done.stdout.splitlines())
-    done = cli("diff", a, a)
+    done = typed("diff", a, a)
     assert (done.returncode, done.stdout.strip()) == (0, "no gate differs")
     (tmp_path / "c.json").write_text('{"a": 1}')
-    done = cli("diff", a, tmp_path / "c.json")
+    done = typed("diff", a, tmp_path / "c.json")
     assert done.returncode == 2 and "must be a list of verdicts" in done.stderr
-    assert cli("diff", a, tmp_path / "absent.json").returncode == 2
+    assert typed("diff", a, tmp_path / "absent.json").returncode == 2
 
 
 def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file: Path, tmp_path: Path) -> None:
     summary, base = tmp_path / "summary.md", tmp_path / "base.json"
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "too | tight"\n')
     options = ("--results", tmp_path / "r", "--summary", summary)
-    assert cli("run", scene_file, *options).returncode == 1
+    assert typed("run", scene_file, *options).returncode == 1
     text = summary.read_text()
     assert text.startswith("## dda-validation: 0 PASS, 1 FAIL, 0 NOT RUN\n")
     assert "| `small:dda-bar:displacement.l2` |" in text and r"too \| tight" in text and "baseline" not in text
     base.write_bytes((tmp_path / "r/verdicts.json").read_bytes())
-    done = cli("run", scene_file, *options, "--baseline", base)
+    done = typed("run", scene_file, *options, "--baseline", base)
     assert done.returncode == 0 and "no gate differs" in done.stdout and "Nothing changed." in summary.read_text()
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1.0]\nreason = "wide"\n')
-    assert cli("run", scene_file, *options, "--baseline", base).returncode == 0
+    done = typed("run", scene_file, *options, "--baseline", base)
+    assert done.returncode == 1 and "1 worse" in done.stdout, "a band that lets pass more is no better gate"
     good = tmp_path / "good.json"
     good.write_bytes((tmp_path / "r/verdicts.json").read_bytes())
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "tight again"\n')
-    done = cli("run", scene_file, *options, "--baseline", good)
+    done = typed("run", scene_file, *options, "--baseline", good)
     assert done.returncode == 1 and "1 worse" in done.stdout
     assert "| worse | `small:dda-bar:displacement.l2` | PASS → FAIL |" in summary.read_text()
 

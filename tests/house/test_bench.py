@@ -1,6 +1,7 @@
 """The rivals of `make bench` give our answers, and the committed table holds what was asked for."""
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -41,3 +42,22 @@ def test_the_committed_table_holds_what_was_asked_for():
     lines = re.findall(r"\*\*(\d+)\*\* \| (\d+) \|", (ROOT / "docs" / "speed.md").read_text())
     assert len(lines) == 5
     assert all(int(ratio) >= int(asked) for ratio, asked in lines)
+
+
+@pytest.mark.long
+def test_each_part_of_the_bench_runs():
+    code = (
+        "import bench, bench_subblocks as b; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
+        "print(bench.grown('n', [1, 2, 4], lambda n: n**2)); "
+        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1))); print(b.measure(2, 1)[0])"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT / "reports", capture_output=True, text=True, timeout=300
+    )
+    assert told.returncode == 0, told.stderr
+    lines = told.stdout.splitlines()
+    assert lines[0].startswith("| fem, 4 x 4, mu = 0.25, 20 steps |")
+    assert "A sweep of 2 scenes by `fem` takes" in told.stdout
+    assert "| n | 1, 2, 4 | 1, 4, 16 | 2.00 |" in lines
+    assert "| numpy loop |" in told.stdout
+    assert lines[-1] == "24"

@@ -12,7 +12,8 @@ import pytest
 from conftest import beside
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("theory.md", "judge-your-code.md", "extending.md", "ci.md", "fenicsx.md")
+PAGES = ("theory.md", "extending.md")
+LONG = ("judge-your-code.md", "ci.md", "fenicsx.md")  # with gates, which build all studies
 BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 
@@ -32,7 +33,7 @@ def run_line(line: str, directory: Path) -> None:
     assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", [*PAGES, *(pytest.param(page, marks=pytest.mark.long) for page in LONG)])
 def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
         beside(finished_cases, tmp_path / name)

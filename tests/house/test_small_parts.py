@@ -71,7 +71,7 @@ def test_a_run_keeps_every_count_second_and_note_of_a_solver_under_its_name(scen
 def test_tension_is_reported_at_its_worst_instant() -> None:
     time = 0.5 * np.arange(1, 6)
     history = History(time, {"contact_pressure": np.array([1.0, -2.0, 5.0, -7.5e3, -3.0])})
-    assert pulls(history) == ("the locked contact pulls: -7500 Pa at t = 2 s",)
+    assert pulls(history) == ("the locked contact carries tension: -7500 Pa at t = 2 s",)
     assert pulls(History(time, {"contact_pressure": np.array([0.0, 1.0, 2.0, 3.0, 0.0])})) == ()
     assert pulls(History(time, {"displacement": -time})) == ()
     assert pulls(History(time, {"contact_pressure": np.array([1.0, -2.0, np.nan, 0.0, 0.0])})) == ()
@@ -247,9 +247,9 @@ def test_the_bar_takes_a_centred_pressure_alone(tmp_path: Path, changes: dict[st
         return problem_of(scene_of(**{f"load__{name}": value for name, value in load.items()}))
 
     assert applicable(problem()) is None
-    assert "centred pressure alone" in (applicable(problem(**changes)) or "")
+    assert "centred pressure only" in (applicable(problem(**changes)) or "")
     (tmp_path / "r.csv").write_text("time,y\n0,0\n1,1\n")
-    assert "centred pressure alone" in (applicable(problem(base_motion=str(tmp_path / "r.csv"))) or "")
+    assert "centred pressure only" in (applicable(problem(base_motion=str(tmp_path / "r.csv"))) or "")
 
 
 # ---- the scene reaches the solvers --------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ import pytest
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
-from validation.report.blocks import Callout, Column, FigureBlock, Heading, Math, PageBreak, Paragraph, Table
+from validation.report.blocks import Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.book import build, figures, ordered_studies
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import front as chapters_front
@@ -23,7 +23,7 @@ from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
-from validation.report.typesetting import _typeset
+from validation.report.typesetting import typeset
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row
@@ -403,7 +403,7 @@ def test_labels_that_would_read_alike_keep_their_steps():
     assert chapters_text.case_labels([c.name for c in cases], cases) == ["steps = 10", "steps = 20"]
 
 
-def test_figures_are_written_as_svg_and_png(small, tmp_path):
+def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
     paths = figures("mine", small, tmp_path / "new" / "out")
     assert sorted(p.name for p in paths) == [
         "my-scene-1-contact-pressure.png",
@@ -441,12 +441,11 @@ def test_every_kind_of_block_is_set(tmp_path):
     blocks = [
         Heading("One"),
         Paragraph("text", "lead"),
-        Math("a^2 / b"),
         Callout("careful", "warn"),
         PageBreak(),
         Table((Column("x", "decimal"), Column("id", "id")), (("1.5", "a:b[c=d]"),)),
     ]
-    assert _typeset(tmp_path, blocks).startswith(b"%PDF-")
+    assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 
 
 def test_the_core_study_comes_first(tmp_path):

@@ -151,6 +151,12 @@ def test_a_figure_compares_cases_over_the_time_that_all_of_them_run(drawn: dict[
     assert names_at(figure.axes[1])["dda"][0] == pytest.approx(-11)
 
 
+def test_pictures_take_differences_under_the_same_scheme_where_they_can() -> None:
+    history, names = made_history(0.1, [1.0]), ("dda", "continuum", "fem", "bar")
+    found = [made_case(BASE, {}, dict.fromkeys(names[:count], history)).reference for count in (4, 3, 2, 1)]
+    assert found == ["bar", "fem", "continuum", None]
+
+
 def test_the_drift_of_corner_springs_is_drawn_in_millimetres(drawn: dict[str, Figure], tmp_path: Path) -> None:
     cases = []
     for n, v in ((4, -0.02), (8, -0.025), (16, -0.03)):
@@ -249,8 +255,9 @@ def test_the_cost_of_a_solver_is_summed_over_its_own_runs(tmp_path: Path) -> Non
 def test_verdicts_are_counted_in_the_columns_of_their_words(tmp_path: Path) -> None:
     words = ["PASS"] * 3 + ["FAIL"] * 2 + ["NOT RUN"]
     results = Results(tmp_path)
-    results.write_verdicts("s", [{"id": str(i), "study": "s", "scene": "a[b=1]", "verdict": word, "value": 1.0}
-                                 for i, word in enumerate(words)])  # fmt: skip
+    rest = {"pair": ["dda"], "metric": "m", "reason": "r", "why": "", "reference_kind": "exact", "alarms": []}
+    rest |= {"study": "s", "scene": "a[b=1]", "value": 1.0, "band": [0.0, 1.0], "reference_uncertainty": 0.0}
+    results.write_verdicts("s", [rest | {"id": str(i), "verdict": word} for i, word in enumerate(words)])
     table = chapters_front.verdict_counts(results, ["s"])
     shown = dict(zip([c.title for c in table.columns], table.rows[0], strict=True))
     assert shown == {"Study": "s", "Scene": "all scenes", "PASS": "3", "FAIL": "2", "NOT RUN": "1"}

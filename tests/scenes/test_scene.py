@@ -47,7 +47,7 @@ REFUSED = [
     ({"block__vertices": SQUARE}, "block: side and vertices exclude each other, got both"),
     ({"block__base": 1}, "block: base and top go with vertices only"),
     ({"contact__stiffness": 0.0}, "contact.stiffness: must be greater than 0, got 0.0"),
-    ({"contact__shear_stiffness": -1.0}, "contact.shear_stiffness: must be greater than 0, got -1.0"),
+    ({"contact__shear_stiffness": -1.0}, "contact.shear_stiffness: must be greater than or equal to 0, got -1.0"),
     ({"load__pressure": math.inf}, "load.pressure: must be a finite number, got inf"),
     ({"block__pattern": "triangles"}, "block: pattern goes with subdivide only, got it alone"),
     ({"block__subdivide": [2, 0]}, "block.subdivide.1: must be greater than or equal to 1, got 0"),

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SCENE
-from oracles.second_code import ABSENT
 
 import dda
 import fem_reference
@@ -29,7 +28,7 @@ TIME = (0.0, 0.011, 0.02, 0.05)  # s
 X = (7e-4, -2e-3, 3e-3, -4e-4)  # m: first, last and what is between differ
 Y = (-9e-4, 1e-3, -2e-3, 5e-4)
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-SOLVERS = ["dda", "fem", pytest.param("fenicsx", marks=ABSENT)]
+SOLVERS = ["dda", "fem", pytest.param("fenicsx", marks=pytest.mark.fenicsx)]
 GLUE = 1e12  # over E: what it adds to a column's compliance is below 1e-11
 SCHEMES = {  # constant acceleration never uses the first acceleration, these do
     "average": (0.25, 0.5, 1.0, 5e-4),
@@ -126,7 +125,7 @@ def test_the_first_explicit_step_is_half_the_springs_pull(tmp_path: Path, solver
 
 @pytest.mark.parametrize(
     ("solver", "subdivide"),
-    [("dda", [3, 2]), ("dda", None), ("fem", None), pytest.param("fenicsx", None, marks=ABSENT)],
+    [("dda", [3, 2]), ("dda", None), ("fem", None), pytest.param("fenicsx", None, marks=pytest.mark.fenicsx)],
 )
 @pytest.mark.parametrize("loaded", [False, True])
 @pytest.mark.parametrize("poisson", [0.0, 0.3])

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from faults import seams
 
 from validation.engine.measure import completed
 from validation.engine.run import run_study
@@ -42,10 +43,8 @@ def jointed(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     feature = features.Feature(JOINTS, lambda scene: scene.block.density == 7.0, linear=False)
     monkeypatch.setattr(features, "FEATURES", (*features.FEATURES, feature))
     monkeypatch.setitem(registry.BUILT_IN, "jointed", f"{__name__}:Jointed")
-    monkeypatch.setattr(
-        registry,
-        "_imported",
-        lambda target, sound=registry._imported: Jointed if target.endswith(":Jointed") else sound(target),
+    seams.IMPORTED_SOLVER.wrap(
+        monkeypatch, lambda sound: lambda target: Jointed if target.endswith(":Jointed") else sound(target)
     )
     return load_scene(scene_file).with_values({"block.density": 7.0})
 
@@ -80,7 +79,11 @@ def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear
 
 
 def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
-    assert by_role("judged") == ["dda"] and by_role("reference") == ["bar", "fem"] and by_role("truth") == ["continuum"]
+    assert (
+        by_role("judged") == ["dda"]
+        and by_role("reference") == ["bar", "fem"]
+        and by_role("truth") == ["bar-events", "continuum"]
+    )
     assert role("fem:full") == "repeat" and role("jointed") == "other"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.rank("jointed") < registry.rank("dda")

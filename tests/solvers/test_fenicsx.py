@@ -2,22 +2,19 @@
 
 import os
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from types import SimpleNamespace
 
-import fem_reference.mesh.mesh.elasticity
 import meshio
 import numpy as np
 import pytest
-from conftest import SCENE, cli
+from conftest import SCENE, typed
+from faults import seams
 from faults.fault import Fault, late, no_discount, times, with_scheme
 from faults.kill_matrix import Overlay
 from oracles.elements import INCLINED
 
-import dda.one_block.gap_form
-import fem_reference.history.solver
-import fem_reference.mesh.elasticity
-import fem_reference.scheme.newmark
 from validation import solve
 from validation.engine.case import Case
 from validation.engine.finished import Finished
@@ -33,10 +30,8 @@ from validation.solvers import fenicsx as adapters_fenicsx
 from validation.solvers import worker
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, places
 from validation.solvers.registry import get_solver
-from validation.studies.second_fem_code import SAME, TWO_CODES
+from validation.studies.second_fem_code import POLYGONS, SAME, TWO_CODES
 
-PYTHON = interpreter()
-needs_fenicsx = pytest.mark.skipif(PYTHON is None, reason=adapters_fenicsx.NEEDED)
 pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
 
 
@@ -54,7 +49,7 @@ def error(scene: Scene, solver: str = "fenicsx") -> float:
 
 def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(VARIABLE, "/no/such/python")
-    alone = cli("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
+    alone = typed("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
     assert alone.returncode == 2
     assert alone.stderr.startswith(
         "error: NOT RUN: needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda"
@@ -62,9 +57,9 @@ def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.Monkey
     assert "/no/such/python, which DDA_VALIDATE_FENICSX_PYTHON names, has none" in alone.stderr
     gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
     scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
-    run = cli("run", scene_file, cwd=tmp_path)
+    run = typed("run", scene_file, cwd=tmp_path)
     assert run.returncode == 0 and "1 NOT RUN" in run.stdout and "needs FEniCSx" in run.stdout
-    assert cli("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
+    assert typed("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
 
 
 def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +97,7 @@ def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
 
 
 def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
-    done = cli("solve", scene_file, "--solver", "dda", "--ranks", 2)
+    done = typed("solve", scene_file, "--solver", "dda", "--ranks", 2)
     assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
 
 
@@ -111,13 +106,14 @@ def test_ranks_change_the_key_of_the_distributed_solver_only(scene: Scene) -> No
     assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
-    assert PYTHON is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
-    assert launcher(PYTHON) is not None
+    python = interpreter()
+    assert python is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
+    assert launcher(python) is not None
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 @pytest.mark.parametrize(
     "values",
     [
@@ -147,7 +143,7 @@ LOADS = {
 }
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 @pytest.mark.parametrize("values", LOADS.values(), ids=LOADS)
 def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, object], tmp_path: Path) -> None:
     record = tmp_path / "quake.csv"
@@ -169,7 +165,7 @@ def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, objec
         assert abs(static[0][name] - static[1][name]) <= SAME * scale, name
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 def test_what_the_worker_counts(scene: Scene) -> None:
     run = get_solver("fenicsx:2").solve(scene.with_values({"time.start": "consistent"}))
     assert dict(run.work) | {"nonzeros": 0} == {
@@ -183,13 +179,13 @@ def test_what_the_worker_counts(scene: Scene) -> None:
     assert run.notes[0].startswith("dolfinx ") and run.seconds.keys() == {"setup", "stepping"}
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 def test_what_it_does_not_do_is_said(scene: Scene) -> None:
     inside = scene.with_values({"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.31}})
     run = solve(inside, "fenicsx")
     assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
     within = solve(scene.with_values({"load.eccentricity": 0.31}), "fenicsx")
-    assert within.outcome is Outcome.NOT_APPLICABLE and "the pressed part ends inside" in within.notes[0]
+    assert within.outcome is Outcome.NOT_APPLICABLE and "the pressed part of the top ends inside" in within.notes[0]
     with pytest.raises(InputError, match=r"time.step: must not exceed"):
         solve(scene.with_values({"time.alpha": 0.0, "time.delta": 0.5}), "fenicsx")
     with pytest.raises(InputError, match=r"run\.columns"):
@@ -226,7 +222,7 @@ def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatc
         assert os.access(found["XDG_CACHE_HOME"], os.W_OK)
 
 
-@needs_fenicsx
+@pytest.mark.fenicsx
 @pytest.mark.parametrize("solver", ["fenicsx", "fenicsx:2"])
 def test_fenicsx_runs_without_a_home_and_from_any_path(
     scene: Scene, solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -234,7 +230,7 @@ def test_fenicsx_runs_without_a_home_and_from_any_path(
     path = tmp_path / "mit Blank und Ümläuten" / "worker.py"
     path.parent.mkdir()
     path.write_bytes(adapters_fenicsx.WORKER.read_bytes())
-    monkeypatch.setattr(adapters_fenicsx, "WORKER", path)
+    seams.FENICSX_WORKER.put(monkeypatch, path)
     monkeypatch.chdir(path.parent)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     for name, value in {"HOME": "/proc/none", "TMPDIR": "/proc/none", "LC_ALL": "POSIX", "PYTHONUTF8": "0"}.items():
@@ -255,29 +251,26 @@ WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is
     "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
 }
 OTHER_FAULTS = [
-    Fault("fem: gg missing in the predictor", ("fem:full",), fem_reference.scheme.newmark, "predictor", no_discount(1)),
-    Fault("fem: gg missing in the velocity", ("fem:full",), fem_reference.scheme.newmark, "velocity", no_discount(2)),
+    Fault("fem: gg missing in the predictor", ("fem:full",), seams.FEM_PREDICTOR, no_discount(1)),
+    Fault("fem: gg missing in the velocity", ("fem:full",), seams.FEM_VELOCITY, no_discount(2)),
     Fault(
         "fem: delta 1e-6 high",
         ("fem:full",),
-        fem_reference.scheme.newmark,
-        "velocity",
+        seams.FEM_VELOCITY,
         with_scheme(2, delta=lambda d: d * (1 + 1e-6)),
     ),
-    Fault("fem: foundation 1e-6 stiff", ("fem:full",), fem_reference.mesh.elasticity, "_carried", times(1 + 1e-6)),
-    Fault("fem: mass 1e-6 heavy", ("fem:full",), fem_reference.mesh.elasticity, "mass", times(1 + 1e-6)),
-    Fault("fem: load 2e-10 high", ("fem:full",), fem_reference.mesh.elasticity, "load", times(1 + 2e-10)),
-    Fault("dda: load 2e-10 high", ("dda",), dda.one_block.gap_form, "_load", times(1 + 2e-10)),
-    Fault("fem: one step late", ("fem:full",), fem_reference.history.solver, "run", late),
+    Fault("fem: foundation 1e-6 stiff", ("fem:full",), seams.FEM_FOUNDATION, times(1 + 1e-6)),
+    Fault("fem: mass 1e-6 heavy", ("fem:full",), seams.FEM_MASS, times(1 + 1e-6)),
+    Fault("fem: load 2e-10 high", ("fem:full",), seams.FEM_LOAD, times(1 + 2e-10)),
+    Fault("dda: load 2e-10 high", ("dda",), seams.DDA_LOAD, times(1 + 2e-10)),
+    Fault("fem: one step late", ("fem:full",), seams.FEM_RUN, late),
 ]
-GATES = TWO_CODES.gates()
-CASES = TWO_CODES.cases()
 EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
-FEW = "block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent"
+FEW = ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent", *POLYGONS)
 
 
 def failed(finished: Finished) -> set[str]:
-    return {gate.id for gate in GATES if evaluate(gate, finished).status is Status.FAIL}
+    return {gate.id for gate in TWO_CODES.gates() if evaluate(gate, finished).status is Status.FAIL}
 
 
 def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
@@ -289,35 +282,51 @@ def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
     return path
 
 
-@needs_fenicsx
-def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, finished_cases: Path) -> None:
-    sound = finish(CASES, TWO_CODES, Results(finished_cases))
+def kills_of(
+    names: Collection[str], everywhere: Collection[str], directory: Path, finished_cases: Path
+) -> dict[str, set[str]]:
+    """Return the gates that see each fault, on all scenes or on a few, and print how many; none fails without one."""
+    sound = finish(TWO_CODES.cases(), TWO_CODES, Results(finished_cases))
     assert not failed(sound)
-    kills: dict[str, set[str]] = {}
+    faults = {fault.name: fault for fault in OTHER_FAULTS}
     for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
-        path = faulty_worker(tmp_path, number, line, slip)
+        path = faulty_worker(directory, number, line, slip)
         solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
-        kills[name] = killed(
-            sound, Fault(name, solvers, adapters_fenicsx, "WORKER", lambda _, path=path: path), tmp_path
-        )
-    for fault in OTHER_FAULTS:
-        kills[fault.name] = killed(sound, fault, tmp_path)
+        faults[name] = Fault(name, solvers, seams.FENICSX_WORKER, lambda _, path=path: path)
+    kills = {name: killed(sound, faults[name], directory, name in everywhere) for name in names}
     for name, found in kills.items():
         print(f"{len(found):>3} gates see {name}")
     assert not [name for name, found in kills.items() if not found], "faults that no gate sees"
+    return kills
+
+
+@pytest.mark.fenicsx
+def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    ours = ("fem: load 2e-10 high", "dda: load 2e-10 high")
+    bitten = set().union(*kills_of([*ours, "fenicsx: load 2e-10 high"], ours, tmp_path, finished_cases).values())
+    assert bitten == {gate.id for gate in TWO_CODES.gates()}
+
+
+@pytest.mark.long
+@pytest.mark.fenicsx
+def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, finished_cases: Path) -> None:
+    names = [*WORKER_FAULTS, *(fault.name for fault in OTHER_FAULTS)]
+    kills = kills_of(names, [name for name in names if EDGE in name], tmp_path, finished_cases)
     for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
         bitten = set().union(*(found for name, found in kills.items() if name.startswith(code)))
-        judged = {gate.id for gate in GATES if any(name.startswith(solver) for name in gate.pair)}
+        judged = {gate.id for gate in TWO_CODES.gates() if any(name.startswith(solver) for name in gate.pair)}
         assert bitten == judged, "gates that no fault of this code bites"
 
 
-def killed(sound: Finished, fault: Fault, directory: Path) -> set[str]:
+def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> set[str]:
     """Return the gates that fail with a fault; only the solvers that it reaches run again."""
     reached = [
-        case for case in CASES if case.solver in fault.solvers and (EDGE in fault.name or FEW in case.scene.name)
+        case
+        for case in TWO_CODES.cases()
+        if case.solver in fault.solvers and (everywhere or any(word in case.scene.name for word in FEW))
     ]
     with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-        patch.setattr(fault.module, fault.attribute, fault.replacement(getattr(fault.module, fault.attribute)))
+        fault.seam.wrap(patch, fault.replacement)
         faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
     worker.close_all()
     return failed(Finished(sound.rows | faulty.rows, faulty.results))

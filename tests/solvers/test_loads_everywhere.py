@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.elements import make
-from oracles.second_code import ABSENT
 
 import dda
 import fem_reference
@@ -33,7 +32,9 @@ MODELS = {
     "fem": ("fem", {"fem.elements": 2}),
     "fenicsx": ("fenicsx", {"fem.elements": 2}),
 }
-EVERY = [pytest.param(*model, id=name, marks=[ABSENT] * (name == "fenicsx")) for name, model in MODELS.items()]
+EVERY = [
+    pytest.param(*model, id=name, marks=[pytest.mark.fenicsx] * (name == "fenicsx")) for name, model in MODELS.items()
+]
 PRESSED = [
     *EVERY,
     *(pytest.param(name, {}, id=name) for name in ("dda-textbook", "bar", "continuum", "dda-60", "bar-60")),

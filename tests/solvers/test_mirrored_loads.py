@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.second_code import ABSENT
 
 import dda
 from validation.scenes.scene import Scene, load_scene
@@ -21,7 +20,7 @@ MODELS = {  # all symmetric about the middle line; 0.31 ends the pressed part in
     "fem": ("fem", {"fem.elements": 4, "fem.degree": 1}, 0.31),
     "fem of degree 2": ("fem", {"fem.elements": 3, "fem.degree": 2}, 0.31),
 }
-WORKER = pytest.param(("fenicsx", {"fem.elements": 4}, 0.25), id="fenicsx", marks=ABSENT)
+WORKER = pytest.param(("fenicsx", {"fem.elements": 4}, 0.25), id="fenicsx", marks=pytest.mark.fenicsx)
 
 
 @pytest.mark.parametrize("model", [*(pytest.param(model, id=name) for name, model in MODELS.items()), WORKER])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults import seams
 from oracles.bars import OTHER, PAPER
 from oracles.elements import make
 from scipy.linalg import block_diag, eigh
@@ -138,7 +139,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
 
     Blocks w x h with joints of 2 g; the ends of n blocks spoil it by pi^2 / n^2 at most.
     """
-    monkeypatch.setattr("dda.system.solution._DENSE", dense)
+    seams.SYSTEM_DENSE.put(monkeypatch, dense)
     n, width, h, g = 60, 0.5, 0.1, 3e9
     block = dda.Block.rectangle(width, n * h, dda.Material(RHO, E, 0.0))
     system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(g), 5e6), 1, n, g)
@@ -149,7 +150,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("dense", [1, 10**6])
 @pytest.mark.parametrize("full", [False, True])
 def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense: int, full: bool) -> None:
-    monkeypatch.setattr("fem_reference.scheme.eigen.DENSE", dense)
+    seams.FEM_DENSE.put(monkeypatch, dense)
     case = make(poisson=0.3, elements=6, degree=1)
     equations = build(case, full)
     exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
@@ -238,16 +239,19 @@ def test_residuals_are_those_of_the_solution(monkeypatch: pytest.MonkeyPatch) ->
     case = dda.TwoBlockModel(block, dda.Contact(P), 5e6)
     assert dda.diagnostics(case, SCHEME).scaled_residual <= 1e-15
     assert diagnostics(make(elements=4), SAME).scaled_residual <= 1e-15
-    solve, factor = np.linalg.solve, fem_reference.scheme.newmark.Work.factor
+    solve = np.linalg.solve
     with monkeypatch.context() as patch:
         patch.setattr(np.linalg, "solve", lambda a, b: solve(a, b) * (1 + 1e-6))
         # S x - b is 1e-6 b; the scale is |S| |x| + |b|, some ten times |b|
         assert 1e-8 < dda.diagnostics(case, SCHEME).scaled_residual <= 5e-7
-    with monkeypatch.context() as patch:
 
-        def slack(work, matrix):  # type: ignore[no-untyped-def]
+    def slack(factor):  # type: ignore[no-untyped-def]
+        def factored(work, matrix):  # type: ignore[no-untyped-def]
             sound = factor(work, matrix)
             return lambda right: sound(right) * (1 + 1e-6)
 
-        patch.setattr("fem_reference.scheme.diagnostics.Work.factor", slack)
+        return factored
+
+    with monkeypatch.context() as patch:
+        seams.FEM_FACTOR.wrap(patch, slack)
         assert 1e-9 < diagnostics(make(elements=4), SAME).scaled_residual <= 5e-7

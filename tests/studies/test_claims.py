@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import cli
+from conftest import typed
+from faults import seams
 from faults.fault import soft_springs, with_scheme
 
-import dda.model.block
-import dda.one_block.gap_form
-import dda.scheme.newmark
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
@@ -64,23 +62,21 @@ def damped(delta: float) -> float:
     return delta + 0.05
 
 
-FAULTS = {  # patched line of code -> claims that it turns over
+FAULTS = {  # seam, what is made of it, and the claims that it turns over
     "velocity with another delta": (
-        dda.scheme.newmark,
-        "velocity_corrector",
+        seams.DDA_VELOCITY,
         with_scheme(0, delta=damped),
         {"C9", "C12", "S13"},
     ),
-    "springs half as stiff": (dda.one_block.gap_form, "_stiffness", soft_springs(0.5), {"C1"}),
-    "load reversed": (dda.model.block.Block, "segment_load", lambda sound: lambda *a: -sound(*a), {"S29"}),
+    "springs half as stiff": (seams.DDA_STIFFNESS, soft_springs(0.5), {"C1"}),
+    "load reversed": (seams.DDA_SEGMENT_LOAD, lambda sound: lambda *a: -sound(*a), {"S29"}),
     "average acceleration everywhere": (
-        dda.scheme.newmark,
-        "velocity_corrector",
+        seams.DDA_VELOCITY,
         with_scheme(0, delta=lambda delta: 0.5),
         {"C1", "C6", "C7", "C10"},
     ),
-    "gg 0.1 % low": (dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
-    "gg missing": (dda.scheme.newmark, "predictor", with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
+    "gg 0.1 % low": (seams.DDA_VELOCITY, with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
+    "gg missing": (seams.DDA_PREDICTOR, with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
 }
 
 
@@ -88,9 +84,9 @@ FAULTS = {  # patched line of code -> claims that it turns over
 def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
     """Gates that fail under each fault; all of them pass in the sound run."""
     found = {}
-    for fault, (module, attribute, replacement, _) in FAULTS.items():
+    for fault, (seam, replacement, _) in FAULTS.items():
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-            patch.setattr(module, attribute, replacement(getattr(module, attribute)))
+            seam.wrap(patch, replacement)
             faulty = run(tmp_path_factory.mktemp("faulty"))
             found[fault] = {gate.id for gate in PAPER.gates() if evaluate(gate, faulty).status is Status.FAIL}
     return found
@@ -98,7 +94,7 @@ def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[st
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_changed_code_turns_verdicts_over(fault: str, killed: dict[str, set[str]]) -> None:
-    turned = {f"{REGISTER}:{claim}:verdict" for claim in FAULTS[fault][3]}
+    turned = {f"{REGISTER}:{claim}:verdict" for claim in FAULTS[fault][2]}
     assert turned <= killed[fault], sorted(turned - killed[fault])
 
 
@@ -127,5 +123,5 @@ def test_the_page_in_docs_holds_no_digits_of_rounding() -> None:
 
 
 def test_the_command_needs_results(tmp_path: Path) -> None:
-    done = cli("claims", "--results", tmp_path)
+    done = typed("claims", "--results", tmp_path)
     assert done.returncode == 2 and "run paper" in done.stderr

@@ -9,22 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import beside
+from faults import seams
 from faults.fault import Fault, swapped, with_scheme
 from faults.kill_matrix import check_kill_matrix
 from typer.testing import CliRunner
 
-import dda.scheme.newmark
-import fem_reference.history.solver
-import fem_reference.mesh.elasticity
 from validation.cli.app import app
 from validation.engine.run import finish, run_study
 from validation.errors import InputError
 from validation.runs.results import Results
 from validation.studies.work import record as work_record
+from validation.studies.work import study as work_study
 from validation.studies.work.points import cheapest, floor, front, points
 from validation.studies.work.study import WORK_PRECISION, order, study_cases
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
 
 
@@ -47,16 +46,12 @@ def kept_velocity(gg):
 
 
 FAULTS = [
-    Fault("dda: a discount", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, gg=kept_velocity)),
-    Fault("dda: other start", ("dda",), dda.scheme.newmark, "initial_acceleration", with_scheme(0, start=swapped)),
-    Fault("dda: delta 1/2", ("dda",), dda.scheme.newmark, "velocity_corrector", with_scheme(0, delta=lambda d: 0.5)),
-    Fault(
-        "fem: column 0.1 % soft", ("fem",), fem_reference.mesh.model, "column", lambda sound: lambda p: sound(softer(p))
-    ),
-    Fault("fem: mass of first order", ("fem",), fem_reference.mesh.elasticity, "mass", heavier_on_coarse_meshes),
-    Fault(
-        "fem: stepped", ("fem",), fem_reference.history.solver, "_in_small_space", lambda sound: lambda *a: "a fault"
-    ),
+    Fault("dda: a discount", ("dda",), seams.DDA_VELOCITY, with_scheme(0, gg=kept_velocity)),
+    Fault("dda: other start", ("dda",), seams.DDA_START, with_scheme(0, start=swapped)),
+    Fault("dda: delta 1/2", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=lambda d: 0.5)),
+    Fault("fem: column 0.1 % soft", ("fem",), seams.FEM_COLUMN, lambda sound: lambda p: sound(softer(p))),
+    Fault("fem: mass of first order", ("fem",), seams.FEM_MASS, heavier_on_coarse_meshes),
+    Fault("fem: stepped", ("fem",), seams.FEM_SMALL_SPACE, lambda sound: lambda *a: "a fault"),
 ]
 
 
@@ -141,7 +136,7 @@ def test_the_command_refuses_to_compare_with_nothing(results, tmp_path, monkeypa
     if text is not None:
         path.write_text(text)
     monkeypatch.setattr(work_record, "PATH", path)
-    monkeypatch.setattr("validation.work_precision.WORK_PRECISION", COARSE)
+    monkeypatch.setattr(work_study, "WORK_PRECISION", COARSE)
     done = CliRunner().invoke(app, ["record", "--results", str(results.directory)])
     assert isinstance(done.exception, InputError) and words in str(done.exception)
     assert "worst ratio" not in done.output

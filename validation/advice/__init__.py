@@ -1,4 +1,4 @@
-"""What damping a scene really runs, what to choose instead, and alarms.
+"""The damping that a scene really has, what to choose instead, and alarms.
 
 Closed forms of the scheme and finished rows come in; nothing that runs a study.
 """

@@ -11,10 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
+from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -23,8 +24,6 @@ from validation.advice.spectra import (
     mode_damping,
     mode_names,
     percent,
-    radii,
-    ratios,
     runs,
 )
 from validation.errors import InputError
@@ -33,24 +32,24 @@ from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
-SolveFor = Literal["dt", "gg", "scheme"]
-KINDS = ("dt", "gg", "scheme")
+KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
+Reach = tuple[float | None, float | None, float | None, float | None]  # least xi and where, greatest xi and where
 GAIN = 3.0  # a mode's amplitude over its static share, at most: 1 at rest, more where roots collide
 
 
 @dataclass(frozen=True)
 class Solution:
-    """One answer, with what it brings along."""
+    """One solution: the settings, and the damping and settling that follow from them."""
 
     value: float  # dt [s], gg [1] or delta [1]
     damping: float  # xi of the first axial mode there [1]
     settling_steps: int | None  # displacement within 1 % of static for ever after; None if never
-    settling_seconds: float | None
+    settling_seconds: float | None  # the same [s]
     settling_from: str  # "history", or "envelope" where the history would be too long
-    alpha: float
-    delta: float
+    alpha: float  # weight of the new acceleration in the displacement [1]
+    delta: float  # and in the velocity [1]
     step: float  # dt [s]
     gg: float  # per step
     gg_rate: float | None  # c = -ln(gg) / dt [1/s]
@@ -60,17 +59,17 @@ class Solution:
 
 @dataclass(frozen=True)
 class Advice:
-    """The answer: solutions with increasing value, what can be reached at all, and one plain sentence."""
+    """The answer: all solutions in increasing order, the attainable range, and one sentence."""
 
     scene: str
     solve_for: str
-    target: float
+    target: float  # xi that is wanted [1]
     reachable: bool
     solutions: tuple[Solution, ...]
-    least: float | None  # smallest and greatest xi that can be reached, and where
-    least_at: float | None
-    greatest: float | None
-    greatest_at: float | None
+    least: float | None  # smallest xi that can be reached [1], None where none is defined
+    least_at: float | None  # dt [s], gg [1] or delta [1] there
+    greatest: float | None  # greatest xi [1]
+    greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
 
     def as_dict(self) -> dict[str, Any]:
@@ -99,8 +98,8 @@ def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
 
 def _stable(omega: Array, alpha: float, delta: float, gg: Array | float, highest: float) -> Array:
     """Return xi over Omega, NaN where the highest mode grows."""
-    radius = radii(omega * highest, alpha, delta, gg)
-    return np.where(radius <= 1 + 1e-12, ratios(omega, alpha, delta, gg), np.nan)
+    radius = spectral_radius(omega * highest, alpha, delta, gg)
+    return np.where(radius <= 1 + 1e-12, damping_ratio(omega, alpha, delta, gg), np.nan)
 
 
 def _over_gg(scene: Scene, frequency: float, highest: float) -> Search:
@@ -126,7 +125,7 @@ def _over_scheme(scene: Scene, frequency: float, highest: float) -> Search:
 
     return Search(
         grid,
-        lambda s: ratios(np.full_like(s, omega), alpha(s), s, gg),
+        lambda s: damping_ratio(np.full_like(s, omega), alpha(s), s, gg),
         lambda s: s,
         lambda s: {"time.alpha": float(alpha(s)), "time.delta": s},
     )
@@ -170,27 +169,18 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     if not values and _everywhere(search, damping):
         values = [_own(search, scene, solve_for, modes[0].frequency)]
     solutions = sorted((_solution(scene, search, s) for s in values), key=lambda found: found.value)
-    ends = search.extremes()
-    least, greatest = (search.at(s) for s in ends) if ends else (None, None)
-    least_at, greatest_at = (search.value(s) for s in ends) if ends else (None, None)
-    text = _sentence(scene, solve_for, damping, solutions, (least, least_at, greatest, greatest_at))
-    return Advice(
-        scene.name,
-        solve_for,
-        float(damping),
-        bool(solutions),
-        tuple(solutions),
-        least,
-        least_at,
-        greatest,
-        greatest_at,
-        text,
-    )
+    reach: Reach = (None, None, None, None)
+    if ends := search.ends():
+        least, greatest = min(ends, key=search.at), max(ends, key=search.at)
+        reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
+    text = _sentence(scene, solve_for, damping, solutions, reach)
+    return Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
 
 
 def _everywhere(search: Search, target: float) -> bool:
-    """Whether xi is the target whatever the value (average acceleration without discount has none at any dt)."""
-    return bool(search.pieces) and all(abs(search.at(s) - target) < 1e-15 for piece in search.pieces for s in piece)
+    """Whether every value gives the target (average acceleration without discount has xi = 0 at any dt)."""
+    ends = search.ends()
+    return bool(ends) and all(abs(search.at(s) - target) < 1e-15 for s in ends)
 
 
 def _own(search: Search, scene: Scene, solve_for: str, frequency: float) -> float:
@@ -259,7 +249,7 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
     found: dict[str, Any] = {"window": steps * case.time.step}
     for name in ("fem", "continuum"):
         reference = get_solver(name)
-        if reason := reference.applicable(case):
+        if reason := reference.refusal(case):
             found[name] = {"not applicable": reason}
             continue
         try:
@@ -274,18 +264,16 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
 
 # ---- the sentence -------------------------------------------------------------------------------------------------
 
-Reach = tuple[float | None, float | None, float | None, float | None]
-
 
 def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[Solution], reach: Reach) -> str:
-    """Return the answer in one plain sentence that can be acted on."""
+    """Return the answer in one sentence: what to set, and what follows from it."""
     if not solutions:
         return _unreachable(scene, solve_for, target, reach)
     first = solutions[0]
     answers = " or ".join(_answer(solve_for, s) for s in solutions)
     text = f"Set {answers}: the first axial mode of the DDA block is then damped at {percent(target)} of critical"
     if len(solutions) > 1:
-        text += " by each of them"
+        text += " in each case"
     settles = [f"{s.settling_steps} steps ({s.settling_seconds:.4g} s)" for s in solutions if s.settling_steps]
     if settles:
         text += f" and the displacement settles within {' or '.join(settles)}"
@@ -313,20 +301,17 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        return f"; this gg belongs to dt = {solution.step:g} s, at another dt keep the rate c"
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c"
     return ""
 
 
 def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> str:
-    names = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
     least, least_at, greatest, greatest_at = reach
-    wanted = f"No {names[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
+    wanted = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
     if greatest is None or least is None or greatest_at is None or least_at is None:
         return f"{wanted}: the mode has no damping ratio here, since a root of the step is not positive."
     unit = " s" if solve_for == "dt" else ""
     name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
     if target > greatest:
-        return (
-            f"{wanted}: the greatest that can be reached is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
-        )
-    return f"{wanted}: the least that can be reached is {percent(least)}, at {name} = {least_at:.6g}{unit}."
+        return f"{wanted}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
+    return f"{wanted}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

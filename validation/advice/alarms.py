@@ -3,7 +3,7 @@
 agreement by damping
     DDA and its reference agree better than either of them agrees with the motion, because both are damped out.
 hidden tension
-    A locked contact pulls; a real one would open.
+    A locked contact carries tension; a real one would open.
 contact ringing
     A root of the contact mode lies next to -1: it flips sign every step and hardly decays.
 fixed discount
@@ -116,15 +116,15 @@ def _agreement(scene: Scene, finished: Cases) -> Iterator[Alarm]:
     if found is None or found["removed"] < REMOVED or found["agreement"] >= found["time error"]:
         return
     said = (
-        f"DDA agrees with the elastic block to {100 * found['agreement']:.2g} % because both are damped: damping took "
-        f"{100 * found['removed']:.0f} % of the first mode's motion, and the time error is "
+        f"DDA agrees with the elastic block to {100 * found['agreement']:.2g} % because both are damped: damping "
+        f"removed {100 * found['removed']:.0f} % of the first mode's motion, and the time error is "
         f"{100 * found['time error']:.2g} %"
     )
     yield Alarm(AGREEMENT, scene.name, said, found)
 
 
 def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
-    """Yield one alarm for the solvers whose contact pulls; runs that repeat another are left out."""
+    """Yield one alarm for the solvers whose contact carries tension; runs that repeat another are not listed."""
     values: dict[str, float] = {}
     said = []
     for solver, row in solvers.items():
@@ -137,9 +137,9 @@ def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
         ):
             continue
         values |= {f"{solver}.minimum": least, f"{solver}.time": when, f"{solver}.duration": duration}
-        said.append(f"in {solver} by {-least / 1e6:.3g} MPa at t = {when:.4g} s and for {duration:.3g} s in all")
+        said.append(f"in {solver} by {-least / 1e6:.3g} MPa at t = {when:.4g} s, for {duration:.3g} s in total")
     if said:
-        yield Alarm(TENSION, scene.name, f"the locked contact pulls, {'; '.join(said)}", values)
+        yield Alarm(TENSION, scene.name, f"the locked contact carries tension, {'; '.join(said)}", values)
 
 
 def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
@@ -150,7 +150,7 @@ def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     if not (isinstance(root, float) and isinstance(radius, float)) or root > FLIPPING:
         return
     steps = math.log(100) / -math.log(radius) if 0 < radius < 1 else math.inf
-    decays = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly ever decays"
+    decays = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
     said = f"a root of the contact mode is {root:.4g}: the contact force rings from step to step and {decays}"
     yield Alarm(RINGING, scene.name, said, {"root": root, "radius": radius})
 

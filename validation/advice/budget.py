@@ -1,16 +1,19 @@
-"""The damping budget of a scene: what damping its modes get over dt, and where the limits lie.
+"""The damping budget of a scene: the damping of its modes over dt, and where the limits lie.
 
 The curves are computed when a study runs and kept in its manifest, so that the report draws them without a solver.
 """
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from validation.advice.spectra import CONTACT, FIRST, dda_modes, radii, ratios
+from dda.scheme.spectral import damping_ratio, spectral_radius
+from validation.advice.spectra import CONTACT, FIRST, dda_modes
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.runs.case_name import scene_of
@@ -28,14 +31,11 @@ def budgets(scenes: Iterable[Scene]) -> Iterator[BudgetRecord]:
     """Yield one budget for each setting of a scene apart from its time steps and meshes."""
     settings: dict[str, dict[str, list[Scene]]] = {}
     for scene in scenes:
-        group = settings.setdefault(scene_of(scene.name), {})
-        group.setdefault(_setting(scene), []).append(scene)
+        settings.setdefault(scene_of(scene.name), {}).setdefault(_setting(scene), []).append(scene)
     for group in settings.values():
-        for cases in list(group.values())[:VARIANTS]:
-            try:
+        for cases in itertools.islice(group.values(), VARIANTS):
+            with contextlib.suppress(InputError, ValueError):  # a scene that DDA cannot take has no budget
                 yield budget(cases)
-            except (InputError, ValueError):  # a scene that DDA cannot take has no budget
-                continue
 
 
 def _setting(scene: Scene) -> str:
@@ -84,9 +84,9 @@ def discounts(scene: Scene, dt: Array) -> Array:
 
 def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
     t = scene.time
-    total = ratios(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    own = ratios(frequency * dt, t.alpha, t.delta, 1.0)
-    radius = radii(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
+    total = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
+    own = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
+    radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     return {
         "total": _listed(total),
         "algorithmic": _listed(own),
@@ -99,7 +99,7 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     """Return the dt of the limits that exist within the range [s]."""
     t = scene.time
     fine = np.geomspace(dt[0], dt[-1], 20_001)
-    total = ratios(first * fine, t.alpha, t.delta, discounts(scene, fine))
+    total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
     found = {}
     if np.isnan(total).any() and np.isfinite(total[0]):
         found["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])

@@ -21,9 +21,9 @@ class Search:
     """A one-parameter search: the damping ratio xi over a coordinate s, and the scene's settings there."""
 
     grid: Array  # coordinates, increasing
-    xi: Callable[[Array], Array]  # NaN where a root is not positive
-    value: Callable[[float], float]
-    settings: Callable[[float], dict[str, float]]
+    xi: Callable[[Array], Array]  # damping ratios [1], NaN where a root is not positive
+    value: Callable[[float], float]  # dt [s], gg [1] or delta [1] at a coordinate
+    settings: Callable[[float], dict[str, float]]  # for Scene.with_values
     flat: float = FLAT  # relative size of turns that are rounding
 
     @cached_property
@@ -40,16 +40,11 @@ class Search:
         """Cut the grid where xi is not defined; the cuts are found to the last bit."""
         ok = np.isfinite(self.xi(self.grid))
         cuts = np.flatnonzero(ok[1:] != ok[:-1])
-        parts = np.split(self.grid, cuts + 1)
-        edges = {int(i): self._edge(float(self.grid[i]), float(self.grid[i + 1]), bool(ok[i])) for i in cuts}
-        found, start = [], 0
-        for part in parts:
-            stop = start + len(part) - 1
-            if ok[start]:
-                before = [edges[start - 1]] if start else []
-                after = [edges[stop]] if stop in edges else []
-                found.append(np.unique(np.array([*before, *part, *after])))
-            start = stop + 1
+        edges = [self._edge(float(self.grid[i]), float(self.grid[i + 1]), bool(ok[i])) for i in cuts]
+        found = []
+        for k, part in enumerate(np.split(self.grid, cuts + 1)):
+            if bool(ok[0]) == (k % 2 == 0):  # defined and undefined parts take turns
+                found.append(np.unique([*edges[max(k - 1, 0) : k], *part, *edges[k : k + 1]]))
         return found
 
     def _edge(self, a: float, b: float, defined_at_a: bool) -> float:
@@ -86,10 +81,9 @@ class Search:
                     found.append(root)
         return found
 
-    def extremes(self) -> tuple[float, float] | None:
-        """Return where xi is least and where it is greatest, or None where it is nowhere defined."""
-        ends = [s for piece in self.pieces for s in piece]
-        return (min(ends, key=self.at), max(ends, key=self.at)) if ends else None
+    def ends(self) -> list[float]:
+        """Return the ends of all pieces, where xi is least and greatest; none where it is nowhere defined."""
+        return list(itertools.chain(*self.pieces))
 
 
 def _turning_points(y: Array, flat: float) -> list[int]:

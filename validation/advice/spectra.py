@@ -1,4 +1,4 @@
-"""What damping a scene really runs: total, algorithmic and kinetic, mode by mode.
+"""The damping that a scene really has: total, algorithmic and kinetic, mode by mode.
 
 The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`) are evaluated at the frequencies
 of the DDA block. The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that
@@ -17,8 +17,8 @@ import numpy as np
 from dda.scheme import spectral
 from validation.errors import InputError
 from validation.metrics.modes import operator_damping
-from validation.runs.history import Array
 from validation.runs.modes import Mode, contact_index
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import Solver
@@ -77,7 +77,7 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
 
 
 def mode_names(modes: Sequence[Mode]) -> list[str]:
-    """Name modes: the first axial one, the contact mode (see `history.contact_index`), the rest numbered."""
+    """Name modes: the first axial one, the contact mode (see `runs.modes.contact_index`), the others by number."""
     contact = contact_index(modes)
     return [FIRST if i == 0 else CONTACT if i == contact else f"mode {i + 1}" for i in range(len(modes))]
 
@@ -113,6 +113,9 @@ def single(scene: Scene) -> Scene:
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if not features.linear(scene):
+        has = ", ".join(features.of(scene))
+        raise InputError(f"{scene.name}: modes and damping ratios exist for linear scenes only, got one with {has}")
     return scene
 
 
@@ -135,7 +138,7 @@ def checked(solver: str, scene: Scene) -> Solver:
 
 
 def damping(scene: Scene, references: bool = False) -> Damping:
-    """Return what damping a scene really runs, per mode.
+    """Return the damping that a scene really has, mode by mode.
 
     Parameters
     ----------
@@ -168,7 +171,7 @@ def damping(scene: Scene, references: bool = False) -> Damping:
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     """Return frequency and damping of a reference's first axial mode; empty where it does not apply."""
     chosen = get_solver(solver)
-    if chosen.applicable(scene):
+    if chosen.refusal(scene):
         return {}
     mode = checked(solver, scene).modes(scene)[0]
     xi = operator_damping(mode.eigenvalues)
@@ -179,7 +182,7 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
 
 
 def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
-    """Return one plain sentence on what a scene runs."""
+    """Return one sentence on the damping that a scene has."""
     first, rest = modes[0], [mode for mode in modes if mode.name == CONTACT]
     text = f"At dt = {scene.time.step:g} s the first axial mode ({first.frequency:.4g} rad/s) {runs(first)}"
     return f"{text}{''.join(f'; the contact mode {runs(mode)}' for mode in rest)}."
@@ -187,9 +190,9 @@ def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
 
 def runs(mode: ModeDamping) -> str:
     """Say in words how a mode is damped."""
-    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of itself per step"
+    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of its amplitude per step"
     if mode.spectral_radius > 1 + 1e-12:
-        return f"grows by {mode.spectral_radius:.4g} per step"
+        return f"grows by a factor of {mode.spectral_radius:.4g} per step"
     if mode.flips:
         return f"flips sign every step and {keeps} (w dt = {mode.omega_dt:.3g})"
     if mode.damping is None:
@@ -215,16 +218,3 @@ def parts(mode: ModeDamping) -> str:
     if abs(mode.algorithmic) <= small:
         return "all of it kinetic"
     return f"{percent(mode.algorithmic)} algorithmic and {percent(mode.kinetic)} kinetic"
-
-
-# ---- the scheme's closed forms over arrays ------------------------------------------------------------------------
-
-
-def ratios(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
-    """Return xi over Omega = w dt, for parameters that may vary with it; NaN where a root is not positive."""
-    return spectral.damping_ratio(omega, alpha, delta, gg)
-
-
-def radii(omega: Array, alpha: Array | float, delta: Array | float, gg: Array | float) -> Array:
-    """Return max |lambda| over Omega = w dt, for parameters that may vary with it."""
-    return spectral.spectral_radius(omega, alpha, delta, gg)

@@ -18,25 +18,27 @@ SHOWN = 6  # lines of the ranking
 
 @app.command()
 def compare(
-    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file: what the program was to compute.")],
+    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file: what the program was asked to compute.")],
     history: Annotated[
         Path, typer.Argument(help="The history: a table under a header, or a measured-point file of ntdda (.m).")
     ],
     columns: Annotated[
         str | None,
-        typer.Option(help="Their column names, or numbers, for ours.", metavar="time=T,displacement=UY"),
+        typer.Option(help="Column names or numbers in the file.", metavar="time=T,displacement=UY"),
     ] = None,
     scale: Annotated[
         str | None,
-        typer.Option(help="Factors that make their numbers SI, upwards positive.", metavar="displacement=-1e-3"),
+        typer.Option(
+            help="Factors that convert the file's values to SI, upwards positive.", metavar="displacement=-1e-3"
+        ),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="Write a page.", metavar="FILE.pdf")] = None,
+    report: Annotated[Path | None, typer.Option(help="Write a one-page report.", metavar="FILE.pdf")] = None,
     assignments: SetOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
 ) -> None:
     """Judge another program's history: same model and scheme, or where and how it departs, and why.
 
-    The scene states what the program was to compute; the history's own time step is used.
+    The scene states what the program was asked to compute; the history's own time step is used.
 
     Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
     --scale displacement=-1e-3[/bold]
@@ -59,7 +61,7 @@ def compare(
 def _print(answer: Answer) -> None:
     """Print the sentence first, then what it rests on."""
     from validation.compare.causes import CAUSES
-    from validation.compare.sentences import told_lines
+    from validation.compare.sentences import cleaned, per_cent, told_lines
 
     typer.echo(answer.sentence)
     if answer.causes:
@@ -70,8 +72,8 @@ def _print(answer: Answer) -> None:
         typer.echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
     typer.echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
     for row in answer.ranking[:SHOWN]:
-        soft = "-" if row["compliance"] is None else f"{100 * row['compliance']:.3g}"
+        soft = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
         name = row["name"] or ("exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}")
-        typer.echo(f"  {row['model']:<10} {name:<24} {100 * row['misfit']:>10.3g} {soft:>14}")
+        typer.echo(f"  {row['model']:<10} {name:<24} {per_cent(row['misfit']):>10} {soft:>14}")
     for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
         typer.echo(line)

@@ -1,4 +1,4 @@
-"""The commands ``damping`` and ``advise``: what damping a scene runs, and what gives the damping that is wanted."""
+"""The commands ``damping``, ``advise`` and ``claims``: damping, settings for a target, the paper's claims."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file
 
 @app.command()
 def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOption = False) -> None:
-    """Tell what damping a scene really runs, per mode: total, algorithmic and kinetic.
+    """Show the damping that a scene really has, mode by mode: total, algorithmic and kinetic.
 
     Example: [bold]dda-validate damping figures-3-4 --set time.step=0.002[/bold]
     """
@@ -37,15 +37,20 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
 def advise(
     scene: SceneArgument,
     damping: Annotated[
-        float, typer.Option("--damping", help="Wanted damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0)
+        float, typer.Option("--damping", help="Target damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0)
     ],
     solve_for: Annotated[
-        str, typer.Option("--solve-for", help="dt, gg or scheme (delta, alpha = (1/2 + delta)^2 / 4).", metavar="NAME")
+        str,
+        typer.Option(
+            "--solve-for",
+            help="What to vary: dt, gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
+            metavar="NAME",
+        ),
     ] = "dt",
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Find the time step, discount or scheme that gives a wanted damping ratio.
+    """Find the time step, discount or scheme that gives a target damping ratio.
 
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
     """
@@ -81,7 +86,7 @@ def claims(
 
     rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
     if not rows:
-        raise InputError(f"{results}: no results of the study paper here; run `dda-validate run paper` first")
+        raise InputError(f"{results}: no results of the study paper; run it first: dda-validate run paper")
     measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
     for claim in CLAIMS:
         verdict = measured.get(claim.id)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 
 import typer
 
 from validation.cli import compare, damping, report, run, verdicts, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
+from validation.cli.output import prepare, silence
 from validation.cli.signals import caught, interruption
 from validation.errors import InputError
+from validation.runs.text import printable
 
 COMMANDS = (run, report, damping, compare, verdicts, work)  # importing them declares their commands
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
@@ -19,25 +22,34 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no
 @caught()
 def main() -> None:
     """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
-    try:
-        status = app(standalone_mode=False)
-    except InputError as error:
-        _stop(f"error: {error}", BAD_INPUT)
-    except USAGE_ERROR as error:
-        text = " ".join(error.format_message().split())  # type: ignore[attr-defined]
-        _stop(f"error: {text} (see dda-validate --help)", BAD_INPUT)
-    except (KeyboardInterrupt, typer.Abort):
-        status = INTERRUPTED
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = PASSED
+    prepare()
+    status = _guarded(lambda: app(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        typer.echo("interrupted: finished rows are kept, the same command goes on from there", err=True)
-        sys.stdout.flush()
+        typer.echo("interrupted: finished rows are kept; run the same command again to continue", err=True)
+        _guarded(sys.stdout.flush)
         os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
-    sys.exit(status or PASSED)
+    sys.exit(_guarded(sys.stdout.flush) or status)
 
 
-def _stop(line: str, status: int) -> None:
+def _guarded(act: Callable[[], object]) -> int:
+    """Return the status of a command, or of an error, which is one line."""
+    try:
+        status = act()
+        return status if isinstance(status, int) else PASSED
+    except InputError as error:
+        return _said(f"error: {printable(str(error))}")
+    except USAGE_ERROR as error:
+        return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
+    except (KeyboardInterrupt, typer.Abort):
+        return INTERRUPTED
+    except BrokenPipeError:  # what decides a status has been said before
+        silence()
+        return PASSED
+    except OSError as error:
+        silence()
+        return _said(f"error: {error.filename or 'standard output'}: {error.strerror or error}")
+
+
+def _said(line: str) -> int:
     typer.echo(line, err=True)
-    sys.exit(status)
+    return BAD_INPUT

@@ -11,7 +11,8 @@ RanksOption = Annotated[
     int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
 SummaryOption = Annotated[
-    Path | None, typer.Option("--summary", help="Write the verdicts as Markdown, for a job's page.", metavar="FILE")
+    Path | None,
+    typer.Option("--summary", help="Write the verdicts as Markdown, for the summary page of a CI job.", metavar="FILE"),
 ]
 BaselineOption = Annotated[
     Path | None,

@@ -14,7 +14,7 @@ from validation.cli.app import RESULTS, ResultsOption, app
 
 @app.command()
 def report(
-    out: Annotated[Path, typer.Option(help="The PDF.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
+    out: Annotated[Path, typer.Option(help="PDF file to write.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
@@ -29,7 +29,7 @@ def report(
 
 @app.command()
 def figures(
-    study: Annotated[str, typer.Argument(help="A study or scene whose results are there.")],
+    study: Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")],
     out: Annotated[Path, typer.Option(help="Directory for the SVG and PNG files.", metavar="DIR")] = Path("figures"),
     results: ResultsOption = RESULTS,
 ) -> None:

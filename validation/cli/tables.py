@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 from rich import box
-from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from validation.advice.alarms import DISCOUNT
+from validation.cli.output import console
 from validation.gates.gate import Verdict, said
-from validation.runs.records import VerdictRecord
+from validation.runs.records import Judged, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.runs.text import printable
 
 if TYPE_CHECKING:
     from validation.gates.changes import Change
@@ -36,9 +38,9 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
     colours = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
     for v in verdicts:
         g, word = v.gate, str(v.status)
-        spent = seconds.get((g.scene, g.pair[0]))
+        spent = seconds.get(g.cases[0])
         table.add_row(
-            g.scene.replace("[", r"\["),
+            escape(printable(g.scene)),
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
             said(v.value),
@@ -46,13 +48,19 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             f"[{colours[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
         )
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    console.print(table)
+    printer = console()
+    printer.print(table)
     for v in verdicts:
         if v.status != "PASS":
-            console.print(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}", markup=False)
+            printer.print(printable(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}"), markup=False)
     words = [str(v.status) for v in verdicts]
-    console.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+    printer.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+
+
+def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
+    """Return how the cases of a study ended, by (scene, solver)."""
+    rows = results.rows()
+    return {(c["scene"], c["solver"]): rows[c["key"]].outcome for c in results.whole(study)["cases"]}
 
 
 def print_failures(results: Results, studies: list[str]) -> bool:
@@ -63,9 +71,8 @@ def print_failures(results: Results, studies: list[str]) -> bool:
             row = rows[case["key"]]
             refused = refused or row.outcome is Outcome.REFUSED
             if row.outcome is not Outcome.COMPLETED:
-                typer.echo(
-                    f"{case['scene']} {row.solver}: {row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
-                )
+                said = f"{row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
+                typer.echo(printable(f"{case['scene']} {case['solver']}: {said}"))
     return refused
 
 
@@ -82,40 +89,43 @@ def print_alarms(results: Results, studies: list[str]) -> None:
         typer.echo(f"alarms: {said} (see the report)")
 
 
-def after_run(records: list[VerdictRecord], summary: Path | None, baseline: Path | None) -> bool | None:
-    """Write the summary and compare with the baseline; return whether something got worse, None without a baseline."""
+def after_run(
+    records: list[VerdictRecord], studies: Sequence[str], summary: Path | None, baseline: Sequence[Judged] | None
+) -> list[Change] | None:
+    """Write the summary; return what changed since the baseline in the studies, None without a baseline."""
     from validation.gates.changes import against, markdown
     from validation.runs.files import write_atomically
 
-    since = None if baseline is None else against(baseline, records)
+    since = None if baseline is None else against(baseline, records, studies)
     if summary is not None:
-        text = markdown(records, since)
+        text = printable_lines(markdown(records, since))
         write_atomically(summary, lambda stream: stream.write(text.encode()))
-    if since is None:
-        return None
-    print_changes(since)
-    return any(change.worse for change in since)
+    return since
+
+
+def printable_lines(text: str) -> str:
+    """Return lines without lone surrogates, which no encoding takes."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def print_changes(found: list[Change]) -> None:
     """Print one table: change, study, gate, verdict and value before and after."""
-    from rich import box
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
-
-    from validation.gates.gate import said
+    from validation.gates.changes import band_said
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("change", "study", "gate", "before", "after"):
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}
     for c in found:
-        values = (f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after)))
-        table.add_row(f"[{colours.get(c.kind, 'default')}]{c.kind}[/]", c.study, escape(c.id), *values)
-    console = Console(width=None if sys.stdout.isatty() else 150)
+        values = [f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after))]
+        if c.rebanded:
+            bands = (band_said(band) for band in (c.band_before, c.band_after))
+            values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]
+        kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"
+        table.add_row(kind, *map(escape, (c.study, c.id, *values)))
+    printer = console()
     if found:
-        console.print(table)
+        printer.print(table)
     kinds = [c.kind for c in found]
     words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
-    console.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)
+    printer.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)

@@ -22,17 +22,19 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
+    from validation.cli.output import heard
     from validation.cli.tables import print_changes
     from validation.gates.changes import changes, read_verdicts
 
     found = changes(read_verdicts(before), read_verdicts(after))
-    print_changes(found)
+    with heard():
+        print_changes(found)
     raise typer.Exit(GATE_FAILED if any(change.worse for change in found) else PASSED)
 
 
 @app.command("export-pack")
 def export_pack(
-    directory: Annotated[Path, typer.Argument(help="Directory to make.", metavar="DIR")],
+    directory: Annotated[Path, typer.Argument(help="Directory to create.", metavar="DIR")],
 ) -> None:
     """Write a reference pack: scenes, exact histories as CSV, bands and a README, for codes in any language.
 

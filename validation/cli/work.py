@@ -11,7 +11,7 @@ import typer
 
 from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
 
-StudyArgument = Annotated[str, typer.Argument(help="A study or scene whose results are there.")]
+StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
 
 
 def _table(study: str, results: Path) -> list[dict[str, Any]]:
@@ -22,13 +22,13 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
     kept = Results(results)
     if study not in kept.studies():
         raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
-    return table(kept, kept.manifest(study))
+    return table(kept, kept.whole(study))
 
 
 @app.command()
 def rows(
     study: StudyArgument,
-    out: Annotated[Path, typer.Option("--csv", help="The table.", metavar="FILE.csv")] = Path("rows.csv"),
+    out: Annotated[Path, typer.Option("--csv", help="CSV file to write.", metavar="FILE.csv")] = Path("rows.csv"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
@@ -52,7 +52,7 @@ def plot(
     study: StudyArgument,
     x: Annotated[str, typer.Option(help="Column of the table for the x axis.", metavar="COLUMN")] = "seconds.total",
     y: Annotated[str, typer.Option(help="Column for the y axis.", metavar="COLUMN")] = "continuum:displacement.l2",
-    out: Annotated[Path, typer.Option(help="The figure.", metavar="FILE.svg")] = Path("plot.svg"),
+    out: Annotated[Path, typer.Option(help="SVG file to write.", metavar="FILE.svg")] = Path("plot.svg"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Draw one column of a study's table against another, both logarithmic, a line for each solver.
@@ -78,8 +78,10 @@ def plot(
 
 @app.command()
 def record(
-    update: Annotated[bool, typer.Option("--update-record", help="Write the record from this run.")] = False,
-    reason: Annotated[str, typer.Option(help="Why the record changes; needed to write it.", metavar="TEXT")] = "",
+    update: Annotated[bool, typer.Option("--update-record", help="Replace the committed record by this run.")] = False,
+    reason: Annotated[
+        str, typer.Option(help="Why the record changes; required with --update-record.", metavar="TEXT")
+    ] = "",
     results: ResultsOption = RESULTS,
 ) -> None:
     """Run the study work-precision and compare its errors and work counts with the committed record.
@@ -100,10 +102,11 @@ def record(
         work_record.update(finished, study_cases(), reason)
         typer.echo(f"wrote {work_record.PATH}")
         return
-    found = work_record.ratios(work_record.measured(finished, study_cases()), then)
-    if not found:
-        raise InputError(f"{work_record.PATH}: holds no case of the study work-precision; nothing was compared")
+    try:
+        found = work_record.compare(finished, study_cases(), then)
+    except ValueError as error:
+        raise InputError(f"{work_record.PATH}: {error}") from None
     said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
     typer.echo(f"worst ratio to the record: {said}")
-    if any(value > 1 + work_record.SLACK[part] for part, value in found.items()):
+    if not all(value <= 1 + work_record.SLACK[part] for part, value in found.items()):
         raise typer.Exit(GATE_FAILED)

@@ -2,7 +2,7 @@
 
 The search begins with every named scheme, with and without opening and moving geometry, each with one free
 compliance. The best few take on one more cause at a time as long as it earns its place; then every cause whose
-absence costs nothing is taken out again.
+absence costs nothing is removed again.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SAME_NUMBER = 2e-3  # relative: a discount or a load closer than this is not ano
 
 @dataclass(frozen=True)
 class Cause:
-    """A cause by its id, in words, and whether it leaves the integrator and the contact law alone."""
+    """A cause: its id, its description, and whether integrator and contact law are as they should be."""
 
     id: str
     words: str
@@ -45,17 +45,17 @@ class Cause:
 CAUSES = {
     cause.id: cause
     for cause in (
-        Cause("sign", "a sign slip: upwards is positive here"),
-        Cause("unit", "a slip of units"),
-        Cause("scheme", "another scheme"),
-        Cause("gg", "another discount gg of the velocity"),
-        Cause("gg-in-one-formula", "gg stands in one of the two formulas (6), (7) only"),
-        Cause("start", "the other initial acceleration"),
+        Cause("sign", "a sign error: upwards is positive here"),
+        Cause("unit", "a unit error"),
+        Cause("scheme", "a different scheme"),
+        Cause("gg", "a different velocity discount gg"),
+        Cause("gg-in-one-formula", "gg is applied in only one of the formulas (6) and (7)"),
+        Cause("start", "the other initial acceleration (zero or consistent)"),
         Cause("time-shift", "the rows are shifted by one step"),
-        Cause("springs-factor", "contact springs a factor off"),
-        Cause("load-factor", "a load or a displacement a factor off"),
+        Cause("springs-factor", "contact stiffness wrong by a factor"),
+        Cause("load-factor", "load or displacement wrong by a factor"),
         Cause("contact-opened", "the contact opened"),
-        Cause("base-compliance", "a base that gives way a little", benign=True),
+        Cause("base-compliance", "a slightly compliant base", benign=True),
         Cause("own-weight", "the block's own weight", benign=True),
         Cause("geometry-updated", "geometry updated at every step", benign=True),
     )
@@ -72,7 +72,7 @@ def compliance(target: Target, variant: Variant) -> float:
 
 
 def benign_springs(target: Target, variant: Variant) -> bool:
-    """Whether the springs are the scene's, on a base that gives way a little or is seen to swing."""
+    """Whether the springs are the scene's, on a slightly compliant base or one that is seen to swing."""
     soft = compliance(target, variant)
     return -BENIGN_COMPLIANCE / 5 <= soft <= BENIGN_COMPLIANCE * (1 if variant.base == 0 else 4)
 
@@ -153,7 +153,7 @@ def _own_scheme(target: Target, found: Fit, scene: Variant) -> Fit:
 
 
 def _unnamed(free: Fit, close: Fit) -> bool:
-    """Whether a scheme without a name is worth believing in."""
+    """Whether a scheme without a name is sufficiently supported by the data."""
     apart = max(abs(free.variant.alpha - close.variant.alpha), abs(free.variant.delta - close.variant.delta))
     return apart > APART and close.misfit > FACTOR * free.misfit and better(free, close, 2, FLOOR, FAULT)
 
@@ -298,7 +298,7 @@ def opened(target: Target, found: Fit) -> list[int]:
 
 
 def contact_force(target: Target, variant: Variant) -> Array | None:
-    """Return the contact pressure that the displacements themselves ask for [Pa], model or no model.
+    """Return the contact pressure that follows from the displacements alone [Pa], without a contact model.
 
     With the scheme known, (6) gives the acceleration of each step from the displacements, and the block's momentum
     balance the mean pressure P = q + rho h (A + g): zero in free flight, whatever the springs are. None where rows

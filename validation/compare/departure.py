@@ -30,7 +30,7 @@ class Departure:
 def expected(target: Target, found: Fit, scene: Variant) -> Array:
     """Return the displacement of the scene's own scheme with what a program may add without fault [m].
 
-    Weight, moving geometry and a base that gives way a little are taken over from the fit.
+    Weight, moving geometry and a slightly compliant base are taken over from the fit.
     """
     v = found.variant
     soft = v.softness if benign_springs(target, v) else 0.0

@@ -1,4 +1,4 @@
-"""What another program's history says of that program: same model, same scheme, or where and how it departs."""
+"""Judgement of another program by its history: same model, same scheme, or where and how it departs."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from validation.compare.reading import Foreign, Stepping, steppings
 from validation.compare.rectangle import rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
+from validation.scenes import features
 from validation.scenes.scene import Scene
 
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
@@ -28,7 +29,7 @@ MUCH = 0.7  # of a misfit: what a less likely reading has to come below
 PLAIN = 0.05  # relative L2 below which a reading is right
 RIVAL = 0.5  # share of DDA's misfit below which another solver is the model
 RIVALS = ("bar", "continuum")
-MODEL_WORDS = {"dda": "one strain a block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+MODEL_WORDS = {"dda": "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,7 @@ class Answer:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """A history as it is read: its steps, and the slips of sign and unit taken out."""
+    """A history as it is read: its steps, with errors of sign and unit corrected."""
 
     stepping: Stepping
     displacement: Array  # [m]
@@ -76,12 +77,16 @@ def compare(scene: Scene, foreign: Foreign) -> Answer:
     Raises
     ------
     InputError
-        The scene has a sweep, no load, or the history cannot be one of it.
+        The scene has a sweep or is not linear, or the history is zero throughout or does not fit the scene.
     """
+    if not features.linear(scene):
+        raise InputError(
+            f"{scene.name}: compare takes linear scenes only, got one with {', '.join(features.of(scene))}"
+        )
     if scene.sweep:
         raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
     if not np.any(foreign.displacement):
-        raise InputError(f"{scene.name}: displacement: must not be zero throughout, got nothing that moves")
+        raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
     column = rectangle_of(scene)
     if column is None:
         return _without_rectangle(scene, foreign)
@@ -133,7 +138,7 @@ def _best_reading(readings: Sequence[Reading], column: Column, own: Variant) -> 
         if best[2].misfit < PLAIN:
             break
     if best is None:
-        raise InputError("steps: must fit the times of the history in some way, got none")
+        raise InputError("time: must be the ends of time steps, got times that fit no steps")
     return best
 
 
@@ -315,5 +320,8 @@ def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
     if not every:
         raise InputError(f"{scene.name}: the times of the history are not uniform, which this scene needs")
     reading, others = min(every, key=lambda pair: pair[1][0].misfit)
-    noted = replace(foreign, notes=(*foreign.notes, "no upright rectangle: opening and moving geometry are not tried"))
+    noted = replace(
+        foreign,
+        notes=(*foreign.notes, "the block is not an upright rectangle: opening and updated geometry are not tried"),
+    )
     return _answer_of_rival(scene, noted, reading, others)

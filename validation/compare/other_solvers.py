@@ -80,7 +80,7 @@ class Goal:
 
 def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
     """Return a solver at its best compliance, None where it does not apply."""
-    if get_solver(name).applicable(scene) is not None:
+    if get_solver(name).refusal(scene) is not None:
         return None
     wanted, softness = goal.scaled(goal.displacement, goal.pressure), 0.0
     try:

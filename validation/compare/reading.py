@@ -25,7 +25,7 @@ LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 @dataclass(frozen=True, eq=False)
 class Foreign:
-    """A history as another program gave it, in SI units, the first row after t = 0.
+    """A history of another program in SI units, from the first row after t = 0 on.
 
     `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
     (None if not given); `steps` [s] are the program's own time steps where it states them.
@@ -99,7 +99,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
     found = reader(text, path, columns)
@@ -179,7 +179,7 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     kept = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
     if not kept or len(kept) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
-            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} others"
+            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} other rows"
         )
     step, time, dt, _, y, size, _, vy, _ = np.array(kept).T
     summed = np.cumsum(vy * dt)
@@ -199,7 +199,7 @@ def _bounded(rows: int, path: Path) -> None:
 
 
 def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
-    return () if PRESSURE in found else ("no contact pressure in the file: displacement alone is judged",)
+    return () if PRESSURE in found else ("no contact pressure in the file: only the displacement is judged",)
 
 
 # ---- checks -------------------------------------------------------------------------------------------------------
@@ -221,9 +221,9 @@ def _checked(found: Mapping[str, Array], dt: Array | None, path: Path, notes: tu
         raise InputError(f"{path}: time: must not be negative, got {time[0]:g} in row 1")
     keep = time > 0
     if int(np.sum(keep)) < LEAST_ROWS:
-        raise InputError(f"{path}: must hold {LEAST_ROWS} rows after t = 0 or more, got {int(np.sum(keep))}")
+        raise InputError(f"{path}: must hold at least {LEAST_ROWS} rows after t = 0, got {int(np.sum(keep))}")
     if not np.all(keep):
-        notes = (*notes, "the row at t = 0 is left out")
+        notes = (*notes, "the row at t = 0 is ignored")
     pressure = found.get(PRESSURE)
     return Foreign(
         time[keep],
@@ -266,7 +266,7 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     slip = _unit_slip(usual / step) if foreign.steps is None else None
     if slip:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
-        said = f"the times are {slip:g} times those of the scene: a slip of units"
+        said = f"the times are {slip:g} times those of the scene: a unit error"
         return [Stepping(inner.steps, inner.rows, said, slip)]
     found = []
     if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
@@ -291,9 +291,11 @@ def _multiples(gaps: Array, step: float) -> list[Stepping]:
     counts = whole.astype(int)
     every = np.diff(counts, prepend=0)
     kind = (
-        f"every {every[0]} steps" if np.all(every == every[0]) else "some of the steps, at times that are not uniform"
+        f"one row every {every[0]} steps"
+        if np.all(every == every[0])
+        else "rows for some of the steps, at non-uniform times"
     )
-    note = "" if np.all(every == 1) else f"the rows show {kind}"
+    note = "" if np.all(every == 1) else f"the file has {kind}"
     return [Stepping(np.full(int(counts[-1]), step), counts - 1, note)]
 
 
@@ -301,13 +303,13 @@ def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
     """Return the reading that every row is a step of the program's own."""
     if np.all(np.abs(gaps - usual) <= SAME_STEP * usual):
         mean = float(np.mean(gaps))
-        note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's"
+        note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's step"
         return [Stepping(np.full(len(gaps), mean), np.arange(len(gaps)), note)]
     first = gaps[0] / usual
     if np.all(np.abs(gaps[1:] - usual) <= SAME_STEP * usual) and first > 1 and abs(first - round(first)) < SAME_STEP:
         inner = _multiples(gaps, usual)
         return [Stepping(s.steps, s.rows, f"the rows begin at step {s.rows[0] + 1}") for s in inner]
-    return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken for one step")]
+    return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken as one step")]
 
 
 def _unit_slip(ratio: float) -> float | None:

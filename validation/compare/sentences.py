@@ -1,4 +1,4 @@
-"""The answer of `compare` in words: one plain sentence."""
+"""The answer of `compare` in words."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from dda.one_block.variants import Variant
 from validation.compare.causes import CAUSES
 from validation.compare.fit import named
+from validation.gates.gate import ROUNDING
 
 if TYPE_CHECKING:
     from validation.compare.departure import Departure
@@ -23,7 +24,7 @@ def scheme_words(alpha: float | None, delta: float | None, gg: float | None) -> 
         return "exact in time"
     numbers = f"alpha = {alpha:.4g}, delta = {delta:.4g}, gg = {gg:.5g}"
     name = named(alpha, delta)
-    return f"{name} ({numbers})" if name else f"no named scheme ({numbers})"
+    return f"{name} ({numbers})" if name else f"an unnamed scheme ({numbers})"
 
 
 def span(steps: Sequence[int]) -> str:
@@ -51,16 +52,16 @@ def sentence(
     own = scheme_words(variant.alpha, variant.delta, gg)
     faults = [name for name in causes if not CAUSES[name].benign]
     benign = [_benign_words(name, variant, compliance) for name in causes if CAUSES[name].benign]
-    allowed = f", given {_listed(benign)}" if benign else ""
-    left = f"what is left differs by {100 * misfit:.2g} %"
+    allowed = f", allowing for {_listed(benign)}" if benign else ""
+    left = f"the remaining difference is {per_cent(misfit, 2)} %"
     if not faults and gone is None:
         return f"Same model, same scheme: {own}{allowed}; {left}."
     where = f" from step {gone.step} on, mainly in {gone.kind}" if gone else ""
     if not faults:
-        return f"Departs{where}, by no known cause; nearest is {own}{allowed}; {left}."
+        return f"Departs{where}, for no known reason; the closest match is {own}{allowed}; {left}."
     said = _listed([_fault_words(name, variant, gg, scene, open_steps, compliance) for name in faults])
     if set(faults) & set(INTEGRATOR):
-        return f"Departs{where}: {said}; the history is that of {own}{allowed}; {left}."
+        return f"Departs{where}: {said}; the history matches {own}{allowed}; {left}."
     model = "" if set(faults) & {"contact-opened", "springs-factor", "load-factor"} else ", same model"
     return f"Same scheme{model}: {own}, but departs{where}: {said}{allowed}; {left}."
 
@@ -70,22 +71,37 @@ def rival_sentence(
 ) -> str:
     """Return the first line where another solver explains the history best."""
     own, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
-    left = f"what is left differs by {100 * best.misfit:.2g} %"
+    left = f"the remaining difference is {per_cent(best.misfit, 2)} %"
     said = "".join(f"; {CAUSES[name].words}" for name in causes)
     if gone is None:
         return f"Same model as {best.model} ({model}), same scheme: {own}{said}; {left}."
     where = f"departs from step {gone.step} on, mainly in {gone.kind}"
-    scheme = "same scheme" if same_scheme else "another scheme"
-    return f"Nearest is {best.model} ({model}), {scheme}: {own}; {where}{said}; {left}."
+    scheme = "same scheme" if same_scheme else "a different scheme"
+    return f"Closest match: {best.model} ({model}), {scheme}: {own}; {where}{said}; {left}."
 
 
 def told_lines(told: Mapping[str, Interval], untold: Sequence[Mapping[str, float]]) -> list[str]:
-    """Return the fitted numbers with their intervals, and the directions that the history does not tell."""
-    lines = [f"fitted {name} = {found.value:.7g} +- {found.half_width:.2g} (95 %)" for name, found in told.items()]
+    """Return the fitted numbers with their intervals, and the directions that the history does not determine."""
+    lines = [f"fitted {name} = {_fitted(found)} (95 %)" for name, found in told.items()]
     return lines + [
-        "not told apart: " + ", ".join(f"{part:+.2f} {name}" for name, part in direction.items())
+        "not determined by the data: " + ", ".join(f"{part:+.2f} {name}" for name, part in direction.items())
         for direction in untold
     ]
+
+
+def cleaned(value: float) -> float:
+    """Return a number, zero where it is rounding."""
+    return value if abs(value) > ROUNDING else 0.0
+
+
+def per_cent(value: float, digits: int = 3) -> str:
+    """Return a fraction in per cent, without its unit; rounding is not written as digits."""
+    return f"{100 * value:.{digits}g}" if abs(value) > ROUNDING else f"below {100 * ROUNDING:g}"
+
+
+def _fitted(found: Interval) -> str:
+    width = f"+- {found.half_width:.2g}" if found.half_width > ROUNDING else f"+- less than {ROUNDING:g}"
+    return f"{cleaned(found.value):.7g} {width}"
 
 
 def _listed(parts: Sequence[str]) -> str:
@@ -105,16 +121,16 @@ def _fault_words(
 ) -> str:
     """Return a cause with its number."""
     if name == "scheme":
-        return f"another scheme, not the scene's {scheme_words(scene.alpha, scene.delta, scene.gg)}"
+        return f"a different scheme from the scene's {scheme_words(scene.alpha, scene.delta, scene.gg)}"
     if name == "gg":
         return f"gg = {gg:.5g} where the scene has {scene.gg:.5g}"
     if name == "gg-in-one-formula":
         formula = {"velocity": "velocity (7)", "displacement": "displacement (6)"}[variant.discounted]
-        return f"gg stands in the formula of the {formula} only"
+        return f"gg is applied only in the formula for the {formula}"
     if name == "start":
         return f'the initial acceleration is "{variant.start}", not "{scene.start}"'
     if name == "time-shift":
-        return f"the rows come {abs(variant.shift)} step {'late' if variant.shift > 0 else 'early'}"
+        return f"the rows are {abs(variant.shift)} step {'late' if variant.shift > 0 else 'early'}"
     if name == "springs-factor":
         return f"the contact springs are {2.718281828459045**-variant.softness:.4g} times the scene's"
     if name == "load-factor":

@@ -11,11 +11,10 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as
 from contextlib import contextmanager
 
 from validation.engine.case import Case
-from validation.engine.measure import execute
+from validation.engine.measure import execute, failed_row, said
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
-from validation.runs.run import Outcome
 from validation.solvers.guard import DEATH_SIGNAL, control
 
 LOOK = 0.25  # s between two looks whether the parent lives
@@ -27,39 +26,44 @@ def executed(
     """Run the pending cases, in this process where one worker or one case is all there is."""
     if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
-            yield _named(case, key, study.name)
+            yield _checked(case, key, study.name)
         return
     lost = []
     with _pool(executor, min(jobs, len(pending))) as pool:
-        futures = {pool.submit(_named, case, key, study.name): key for key, case in pending.items()}
+        futures = {pool.submit(_checked, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
-            if isinstance(future.exception(), BrokenExecutor):
-                lost.append(futures[future])
+            error, key = future.exception(), futures[future]
+            if isinstance(error, BrokenExecutor):
+                lost.append(key)
+            elif error is not None:  # on its way there or back: what a worker runs never raises
+                yield failed_row(pending[key], key, study.name, said(error)), None
             else:
                 yield future.result()
     for key in lost:
         yield _alone(pending[key], key, study)
 
 
-def _named(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case; what fails outside the solver, memory included, is a named outcome as well."""
+def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
+    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers.
+
+    What fails outside the solver, memory included, is a named outcome as well.
+    """
     try:
+        if case.key() != key:
+            return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
         return execute(case, key, study)
     except Exception as error:
-        return _raised(case, key, study, f"{type(error).__name__}: {error}")
-
-
-def _raised(case: Case, key: str, study: str, note: str) -> tuple[Row, None]:
-    return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,)), None
+        return failed_row(case, key, study, said(error)), None
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with _pool(None, 1) as pool:
         try:
-            return pool.submit(_named, case, key, study.name).result()
+            return pool.submit(_checked, case, key, study.name).result()
         except BrokenExecutor:
-            return _raised(case, key, study.name, "worker killed (out of memory or a signal)")
+            note = "worker killed (out of memory or a signal)"
+            return failed_row(case, key, study.name, note), None
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
+from validation.runs.text import printable
 
 
 @dataclass(frozen=True)
@@ -54,8 +55,9 @@ class Finished:
                 return Row("", "", scene, name, outcome, {}, notes=(f"needs {need[1]} on {need[0]}",))
         try:
             return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
-        except (ArithmeticError, LookupError, ValueError) as error:  # numbers that a faulty run leaves without meaning
-            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(f"{type(error).__name__}: {error}",))
+        except Exception as error:  # numbers that a faulty run leaves without meaning
+            note = printable(f"{type(error).__name__}: {error}")
+            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(note,))
 
     def history(self, scene: str, solver: str) -> History | None:
         """Return the history of a case, or None."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from validation.engine.finished import Finished
 from validation.gates.gate import Gate, Status, Verdict, judge, rounded
 from validation.metrics.catalogue import CATALOGUE, PAIRS, pair
-from validation.metrics.values import ratio
+from validation.metrics.values import UNDEFINED, finite, ratio
 from validation.runs.history import History
 from validation.runs.records import ComparisonRecord
 from validation.runs.row import Row, Value
@@ -43,7 +43,7 @@ def _comparison(
     finished: Finished, scene: str, solver: str, reference: str, histories: Mapping[str, History]
 ) -> ComparisonRecord:
     history, against, static = histories[solver], histories[reference], finished.rows[scene, solver].metrics
-    values = {m: plain(pair(m, history, against, static)) for m in PAIRS}
+    values = {m: plain(_paired(m, history, against, static)) for m in PAIRS}
     return {
         "scene": scene,
         "solver": solver,
@@ -53,8 +53,17 @@ def _comparison(
     }
 
 
+def _paired(metric: str, history: History, reference: History, static: Mapping[str, Value]) -> Value:
+    """Return a metric of a pair; undefined where the numbers leave its arithmetic."""
+    try:
+        return pair(metric, history, reference, static)
+    except (ArithmeticError, ValueError):  # LinAlgError is one
+        return UNDEFINED
+
+
 def plain(value: Value) -> Value:
-    """Return a value as it is kept: six digits, well above the last bits."""
+    """Return a value as it is kept: six digits, well above the last bits; no number beyond the range of numbers."""
+    value = finite(value)
     return rounded(value, 6) if isinstance(value, float) else value
 
 
@@ -97,7 +106,7 @@ def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Valu
         if len(histories) < 2 or histories[0] is None or histories[1] is None:
             return None
         first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
-        return pair(gate.metric, first, second, finished.rows[names[0]].metrics)
+        return _paired(gate.metric, first, second, finished.rows[names[0]].metrics)
     rows = [finished.row(*name) for name in names]
     values = [None if row is None else row.metrics.get(gate.metric) for row in rows]
     return values[0] if len(values) == 1 else ratio(values[0], values[1])

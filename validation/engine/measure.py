@@ -10,14 +10,16 @@ from typing import TypeVar
 
 import numpy as np
 
-from validation.engine import stability
+from validation.engine import origin, stability
 from validation.engine.case import Case
 from validation.errors import InputError
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
+from validation.runs.results import KEPT
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
+from validation.runs.text import printable
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
@@ -27,12 +29,30 @@ Part = TypeVar("Part")
 
 
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case; whatever a solver does ends as a named outcome.
+    """Run a case; whatever happens in it ends as a named outcome.
 
     Returns
     -------
     The row with the metrics of the run itself, and the history where there is one.
     """
+    try:
+        return _executed(case, key, study)
+    except Exception as error:  # of one case, which must not end the others
+        return failed_row(case, key, study, said(error)), None
+
+
+def failed_row(case: Case, key: str, study: str, note: str) -> Row:
+    """Return the row of a case that ended by an error."""
+    made = origin.of_row(case.make_solver())
+    return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,), provenance=made)
+
+
+def said(error: BaseException) -> str:
+    """Return an error as a note: its type and its text in characters that every file and terminal takes."""
+    return printable(f"{type(error).__name__}: {error}").removesuffix(":")
+
+
+def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver, scene = case.make_solver(), case.scene
     prepared, run = attempt(solver, scene, case.full)
     run = _repeated(check(run, scene), solver, case)
@@ -52,10 +72,24 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         metrics=measured,
         work=dict(run.work),
         seconds={k: round(v, 6) for k, v in run.seconds.items()},
-        notes=(*run.notes, *failed),
+        notes=tuple(map(printable, (*run.notes, *failed))),
         estimate=run.estimate if run.estimate is not None and math.isfinite(run.estimate) else None,
+        provenance=origin.of_row(solver),
     )
-    return row, run.history if run.outcome is Outcome.COMPLETED or run.outcome is Outcome.UNSTABLE else None
+    row.line()  # what cannot be kept is found here
+    return row, _asked(run.history, scene) if run.outcome in KEPT else None
+
+
+def _asked(history: History | None, scene: Scene) -> History | None:
+    """Return a history with the columns that the scene asks for and no others, which nobody has checked."""
+    if history is None:
+        return None
+    return History(history.time, {name: x for name, x in history.columns.items() if name in scene.run.columns})
+
+
+def columns_of(case: Case) -> tuple[str, ...]:
+    """Return the columns that the history of a completed case holds."""
+    return tuple(_columns(case.make_solver(), case.scene)[0].run.columns)
 
 
 def _repeated(run: Run, solver: Solver, case: Case) -> Run:
@@ -84,8 +118,12 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
         return prepared, Run(Outcome.REFUSED, notes=(str(error),))
+    except OSError as error:
+        if fields is None:
+            return prepared, Run(Outcome.RAISED, notes=(said(error),))
+        return prepared, Run(Outcome.REFUSED, notes=(f"--fields: cannot be written: {error.strerror or error}",))
     except Exception as error:  # a solver may be anybody's code: its failure is a row, not the end of the study
-        return prepared, Run(Outcome.RAISED, notes=(f"{type(error).__name__}: {error}",))
+        return prepared, Run(Outcome.RAISED, notes=(said(error),))
 
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
@@ -143,7 +181,18 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         _reported(prepared.switches, None, failed) if "switches" in asked else None,
         lambda: stability.limit(solver, case.scene),
     )
-    return solo(seen, asked)
+    return _solo(seen, asked, failed)
+
+
+def _solo(seen: Measurable, asked: set[str], failed: list[str]) -> dict[str, Value]:
+    """Return the metrics of the parts that are asked for; a part whose arithmetic fails is noted and has none."""
+    found: dict[str, Value] = {}
+    for part in sorted(asked):
+        try:
+            found |= solo(seen, (part,))
+        except Exception as error:  # numbers at the edge of the range, of which a library makes an error
+            failed.append(f"{part} not measured: {said(error)}")
+    return found
 
 
 def _measures(case: Case, run: Run) -> set[str]:
@@ -165,5 +214,5 @@ def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part
     except NotReported:
         return absent
     except Exception as error:  # anybody's code, as in `attempt`; the history is sound and is kept
-        failed.append(f"{part.__name__} not reported: {type(error).__name__}: {error}")
+        failed.append(f"{part.__name__} not reported: {said(error)}")
         return absent

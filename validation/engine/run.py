@@ -10,10 +10,11 @@ from validation.engine.case import Case
 from validation.engine.executor import executed
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate, existing, plain
+from validation.engine.measure import columns_of, said
+from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
 from validation.runs.case_name import scene_of
-from validation.runs.provenance import provenance
 from validation.runs.records import (
     AlarmRecord,
     Annotations,
@@ -26,9 +27,11 @@ from validation.runs.records import (
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.solvers import memory
+from validation.scenes.scene import Scene
 
 Progress = Callable[[int, int, str], None]
+# What was not installed then may be installed now; memory, time and files that were wanting may be there.
+AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 
 
 def run_study(
@@ -63,11 +66,11 @@ def run_study(
     cases = study.cases(full, ranks)
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
     scenes = list({case.scene.name: case.scene for case in cases}.values())
-    said = study.annotate(scenes, finished)
-    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), said)
+    told = _annotated(study, scenes, finished)
+    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), told)
     verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
     results.write_json(f"studies/{study.name}.json", manifest)
-    results.write_verdicts(study.name, [_record(verdict, study, said["alarms"]) for verdict in verdicts])
+    results.write_verdicts(study.name, [_record(verdict, study, told["alarms"]) for verdict in verdicts])
     return verdicts
 
 
@@ -82,13 +85,7 @@ def finish(
 ) -> Finished:
     """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
     keyed = [(case, case.key()) for case in cases]
-    known = {} if study.timed else {key: row for key, row in results.rows().items() if results.has(row)}
-    # What was not installed then may be installed now, and what raised or was refused may have wanted memory.
-    known = {key: row for key, row in known.items() if row.outcome not in (Outcome.NOT_RUN, Outcome.RAISED)}
-    known = {key: row for key, row in known.items() if not memory.refused(row.notes)}
-    for case, key in keyed:
-        if not case.make_solver().cached:
-            known.pop(key, None)
+    known = {} if study.timed else _kept(keyed, results)
     pending = {key: case for case, key in keyed if key not in known}
     done = len(keyed) - len(pending)
     for row, history in executed(pending, study, jobs, executor):
@@ -101,9 +98,43 @@ def finish(
     return Finished(rows, results, study.recipes())
 
 
+def _kept(keyed: Sequence[tuple[Case, str]], results: Results) -> dict[str, Row]:
+    """Return the rows of the results directory that need not be made again."""
+    rows = results.rows()
+    found = {key: (case, rows[key]) for case, key in keyed if key in rows}
+    return {key: row for key, (case, row) in found.items() if _served(case, row, results)}
+
+
+def _served(case: Case, row: Row, results: Results) -> bool:
+    """Whether a kept row stands for its case: it says what made it, and its history is whole."""
+    if row.outcome in AGAIN or not row.provenance or not case.make_solver().cached:
+        return False
+    return results.sound(row, case.scene.time.steps, columns_of(case))
+
+
 def _named(row: Row, case: Case, study: Study) -> Row:
     """Give a row that another scene or study has brought the names of this one."""
-    return replace(row, scene=case.scene.name, study=study.name)
+    return replace(row, scene=case.scene.name, study=study.name, solver=case.solver)
+
+
+def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
+    """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
+    left, failed = list(scenes), dict[str, str]()
+    try:
+        return study.annotate(left, finished)
+    except Exception:  # which scene it was is found one by one
+        for scene in scenes:
+            try:
+                study.annotate([scene], finished)
+            except Exception as error:
+                failed[scene.name] = said(error)
+    left = [scene for scene in scenes if scene.name not in failed]
+    found = study.annotate(left, finished)
+    own: list[AlarmRecord] = [
+        {"kind": "not examined", "scene": name, "sentence": f"alarms and damping budget: {why}", "values": {}}
+        for name, why in failed.items()
+    ]
+    return {"alarms": [*found["alarms"], *own], "budgets": found["budgets"]}
 
 
 def _record(verdict: Verdict, study: Study, alarms: Sequence[AlarmRecord]) -> VerdictRecord:
@@ -136,7 +167,7 @@ def _manifest(
     cases: Sequence[Case],
     finished: Finished,
     comparisons: list[ComparisonRecord],
-    said: Annotations,
+    told: Annotations,
 ) -> Manifest:
     return {
         "study": study.name,
@@ -146,7 +177,7 @@ def _manifest(
         "comparisons": comparisons,
         "derived": [_derived_record(finished, *name) for name in finished.derived],
         "data": dict(study.data()),
-        "budgets": said["budgets"],
-        "alarms": said["alarms"],
-        "provenance": provenance(),
+        "budgets": told["budgets"],
+        "alarms": told["alarms"],
+        "provenance": of_rows(finished.rows.values()),
     }

@@ -38,7 +38,7 @@ def named(run: Run, prepared: Prepared, scene: Scene) -> Run:
         return _unseen(run, scene, radius)
     # A slower mode may hold so much more of the motion that it leads until the last step.
     radius = min((radius, *(mode.spectral_radius for mode in prepared.modes())), key=lambda r: abs(r - seen))
-    said = f"predicted growth {radius:.9g} a step, seen {seen:.9g}"
+    said = f"predicted growth {radius:.9g} per step, measured {seen:.9g}"
     if abs(seen / radius - 1) > AGREED:
         return replace(run, outcome=Outcome.MISPREDICTED, notes=(*run.notes, said))
     ended = Outcome.OVERFLOW if run.outcome is Outcome.OVERFLOW else Outcome.UNSTABLE
@@ -50,7 +50,7 @@ def _unseen(run: Run, scene: Scene, radius: float) -> Run:
     slow = scene.time.steps * math.log10(radius) < 3 * math.log10(DEVELOPED)
     still = run.history is None or not np.any(first_column(run.history))
     outcome = run.outcome if slow or still or run.outcome is Outcome.OVERFLOW else Outcome.MISPREDICTED
-    said = f"predicted growth {radius:.9g} a step; too few steps to measure growth"
+    said = f"predicted growth {radius:.9g} per step; too few steps to measure growth"
     return replace(run, outcome=outcome, notes=(*run.notes, said))
 
 

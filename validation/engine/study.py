@@ -10,6 +10,7 @@ from validation.engine.case import MEASURES, Case
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.runs.records import Annotations
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 
 REPEATS = 3  # of each case of a study of timings
@@ -61,6 +62,8 @@ class Study:
         The comparisons that are kept; every solver with every later one where None.
     annotate
         Function of the scenes and the finished cases that returns alarms and damping budgets.
+    expects
+        The outcomes beside completion that are no failure here, where how a run ends is the question.
     long
         Whether the gates are left to `dda-validate run`; the tests judge the others.
     """
@@ -79,6 +82,7 @@ class Study:
     measures: tuple[str, ...] = MEASURES
     pairs: tuple[tuple[str, str], ...] | None = None
     annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
+    expects: tuple[Outcome, ...] = ()
     long: bool = False
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
 from validation.gates.gate import said
-from validation.runs.records import VerdictRecord
+from validation.runs import strict
+from validation.runs.records import Baseline, Judged, VerdictRecord
 
-Record = VerdictRecord
+Record = Judged
+Edges = tuple[float, float]
+LAST_DIGIT = 1.5e-11  # of the larger edge: edges are kept with twelve digits, the last of which is 1e-11 of 1.00
 WORDS = ("PASS", "FAIL", "NOT RUN")
 RANK = {"PASS": 0, "NOT RUN": 1, "FAIL": 2}
 ABSENT = "absent"
+ADVICE = "name the verdicts.json that a run leaves with its results"
 
 
 @dataclass(frozen=True)
@@ -27,10 +30,28 @@ class Change:
     after: str
     value_before: object
     value_after: object
+    band_before: Edges | None = None
+    band_after: Edges | None = None
+
+    @property
+    def rebanded(self) -> bool:
+        """Whether the gate is there in both runs, with another band."""
+        return ABSENT not in (self.before, self.after) and not same_band(self.band_before, self.band_after)
+
+    @property
+    def widened(self) -> bool:
+        """Whether the band lets pass what it did not before."""
+        if self.band_before is None or self.band_after is None:
+            return False
+        (low, high), (new_low, new_high) = self.band_before, self.band_after
+        last = LAST_DIGIT * max(map(abs, (low, high)))
+        return new_low < low - last or new_high > high + last
 
     @property
     def worse(self) -> bool:
-        """Whether the gate fails or is no longer run, and did better before; a new gate that fails counts."""
+        """Whether the gate fails or is no longer run, and did better before; a new gate that fails, a wider band."""
+        if self.widened:
+            return True
         if self.after == ABSENT:
             return self.before == "PASS"
         return RANK[self.after] > RANK.get(self.before, 1 if self.after == "FAIL" else 2)
@@ -44,30 +65,34 @@ class Change:
             return "new"
         if self.after == ABSENT:
             return "gone"
-        return "value" if self.before == self.after else "better"
+        if self.before != self.after:
+            return "better"
+        return "band" if self.rebanded else "value"
 
 
-def read_verdicts(source: Path | str) -> list[VerdictRecord]:
+def read_verdicts(source: Path | str) -> list[Judged]:
     """Return the verdicts of a ``verdicts.json`` or of a results directory.
 
     Raises
     ------
     InputError
-        There is no such file, or it holds no verdicts.
+        There is no such file, it holds no verdicts, two of one gate, or one that its own value belies.
     """
     path = Path(source)
     path = path / "verdicts.json" if path.is_dir() else path
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; a run leaves it with its results") from None
-    except ValueError as error:
-        raise InputError(f"{path}: must be JSON: {error}") from None
-    if not isinstance(found, list) or not all(
-        isinstance(v, dict) and {"id", "study", "verdict", "value"} <= v.keys() and v["verdict"] in WORDS for v in found
-    ):
-        raise InputError(f"{path}: must be a list of verdicts with id, study, verdict and value")
+        found: list[Judged] = strict.read(path, Baseline, ADVICE, "a list of verdicts")
+    except FileNotFoundError:
+        raise InputError(f"{path}: cannot be read: there is no such file; {ADVICE}") from None
     return found
+
+
+def same_band(before: Edges | None, after: Edges | None) -> bool:
+    """Whether two bands are one, their last digits apart."""
+    if before is None or after is None:
+        return before == after
+    last = LAST_DIGIT * max(map(abs, (*before, *after)))
+    return all(abs(new - old) <= last for old, new in zip(before, after, strict=True))
 
 
 def changes(before: Iterable[Record], after: Iterable[Record]) -> list[Change]:
@@ -75,10 +100,13 @@ def changes(before: Iterable[Record], after: Iterable[Record]) -> list[Change]:
     old, new = ({(v["study"], v["id"]): v for v in verdicts} for verdicts in (before, after))
     found = []
     for key in dict.fromkeys([*old, *new]):
-        was, now = _said(old.get(key)), _said(new.get(key))
-        if was != now:
-            found.append(Change(*key, was[0], now[0], was[1], now[1]))
-    order = ("worse", "better", "new", "gone", "value")
+        was, now = old.get(key), new.get(key)
+        bands = _band(was), _band(now)
+        differs = was is None or now is None or _said(was) != _said(now) or not same_band(*bands)
+        if differs:
+            (word, value), (new_word, new_value) = _said(was), _said(now)
+            found.append(Change(*key, word, new_word, value, new_value, *bands))
+    order = ("worse", "better", "new", "gone", "band", "value")
     return sorted(found, key=lambda c: (order.index(c.kind), c.study, c.id))
 
 
@@ -87,19 +115,29 @@ def _said(v: Record | None) -> tuple[str, object]:
     return (ABSENT, None) if v is None else (v["verdict"], v["value"])
 
 
-def against(baseline: Path | str, records: Sequence[Record]) -> list[Change]:
-    """Return what changed since a baseline in the studies that were run."""
-    studies = {v["study"] for v in records}
-    return changes([v for v in read_verdicts(baseline) if v["study"] in studies], records)
+def _band(v: Record | None) -> Edges | None:
+    return None if v is None else (v["band"][0], v["band"][1])
 
 
-def counted(records: Iterable[Record]) -> str:
+def against(
+    baseline: Path | str | Iterable[Record], records: Sequence[Record], studies: Iterable[str] | None = None
+) -> list[Change]:
+    """Return what changed since a baseline in the studies that were run (those of the records unless they are given).
+
+    A study that was run and has no gate left has lost all of the baseline's.
+    """
+    before = read_verdicts(baseline) if isinstance(baseline, Path | str) else baseline
+    names = {v["study"] for v in records} if studies is None else set(studies)
+    return changes([v for v in before if v["study"] in names], records)
+
+
+def counted(records: Iterable[VerdictRecord]) -> str:
     """Return the counts of the three verdicts in words."""
     words = [v["verdict"] for v in records]
     return ", ".join(f"{words.count(word)} {word}" for word in WORDS)
 
 
-def markdown(records: Sequence[Record], since: Sequence[Change] | None = None) -> str:
+def markdown(records: Sequence[VerdictRecord], since: Sequence[Change] | None = None) -> str:
     """Return a summary: counts, what failed, what was not run, and what changed since a baseline."""
     lines = [f"## dda-validation: {counted(records)}", ""]
     lines += _table(("study", *WORDS), _rows_of_studies(records))
@@ -107,21 +145,33 @@ def markdown(records: Sequence[Record], since: Sequence[Change] | None = None) -
         rows = [_row(v) for v in records if v["verdict"] == word]
         lines += [f"### {word}", "", *_table(("gate", "value", "band", "why"), rows)] if rows else []
     if since is not None:
-        rows = [[c.kind, _code(c.id), _step(c.before, c.after), _step(c.value_before, c.value_after)] for c in since]
+        rows = [_row_of_change(c) for c in since]
         lines += ["### Since the baseline", ""]
         lines += _table(("change", "gate", "verdict", "value"), rows) if rows else ["Nothing changed.", ""]
     return "\n".join(lines)
 
 
-def _rows_of_studies(records: Sequence[Record]) -> list[list[str]]:
+def _rows_of_studies(records: Sequence[VerdictRecord]) -> list[list[str]]:
     studies = dict.fromkeys(v["study"] for v in records)
     words = {study: [v["verdict"] for v in records if v["study"] == study] for study in studies}
     return [[study, *(str(words[study].count(word)) for word in WORDS)] for study in studies]
 
 
-def _row(v: Record) -> list[str]:
+def _row(v: VerdictRecord) -> list[str]:
     band = " .. ".join(f"{edge:.4g}" for edge in v.get("band", ()))
     return [_code(v["id"]), said(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
+
+
+def _row_of_change(c: Change) -> list[str]:
+    value = _step(c.value_before, c.value_after)
+    if c.rebanded:
+        value += f"; band {band_said(c.band_before)} → {band_said(c.band_after)}"
+    return [c.kind, _code(c.id), _step(c.before, c.after), value]
+
+
+def band_said(band: Edges | None) -> str:
+    """Return a band as text."""
+    return "-" if band is None else " .. ".join(f"{edge:.4g}" for edge in band)
 
 
 def _step(before: object, after: object) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
+LARGEST = 1.7976931348623157e308
 ROUNDING = 1e-12  # a number of this size or less is rounding, and differs from processor to processor
 
 
@@ -114,8 +115,8 @@ class Verdict:
 
 
 def _edge(value: float) -> float:
-    """Return an edge of a band without its last bits, which depend on the processor."""
-    return float(f"{value:.12g}")
+    """Return an edge of a band without its last bits, which depend on the processor; JSON knows no infinity."""
+    return max(-LARGEST, min(LARGEST, float(f"{value:.12g}")))
 
 
 def judge(gate: Gate, value: Value) -> Verdict:
@@ -146,7 +147,7 @@ def settled(value: float) -> float:
 def rounded(value: float, digits: int = 4) -> float:
     """Round well above the last bits: fewer digits for small values, below 1e-12 the next power of ten."""
     if value == 0 or not math.isfinite(value):
-        return value if math.isfinite(value) else math.copysign(1.7976931348623157e308, value)
+        return value if math.isfinite(value) else math.copysign(LARGEST, value)
     if abs(value) < 1e-12:
         return math.copysign(10.0 ** math.ceil(math.log10(abs(value))), value)
     return float(f"{value:.{(digits if abs(value) >= 1e-9 else 2) - 1}e}")

@@ -93,9 +93,9 @@ def _of_stability() -> Iterator[Metric]:
         ("omega", "largest_omega", "largest w dt"),
     ):
         yield Metric(f"stability.{name}", "1", says, asked, partial(growth.diagnosed, key=key), "stability")
-    rate = "factor a step by which an unstable run grew"
+    rate = "growth factor per step of an unstable run"
     yield Metric("stability.growth", "1", rate, frozenset({HISTORY}), growth.growth_of_run, "stability")
-    largest = "largest w dt that is stepped without growth"
+    largest = "largest w dt without growth (stability limit)"
     yield Metric("stability.limit", "1", largest, asked, growth.limit, "limit")
     change = "largest relative change of a mode's energy over the run"
     yield Metric("energy.drift", "1", change, frozenset({HISTORY, STATIC, MODES}), growth.drift, "energy")
@@ -110,7 +110,12 @@ def _of_switches() -> Iterator[Metric]:
 
 
 KIND = Metric(
-    "stability.kind", "word", "what the step makes of a run", frozenset({DIAGNOSTICS}), growth.kind_of_run, "stability"
+    "stability.kind",
+    "word",
+    "stability of the run: stable, marginal, unstable or overflow",
+    frozenset({DIAGNOSTICS}),
+    growth.kind_of_run,
+    "stability",
 )  # a word, which no gate can bound
 
 

@@ -28,7 +28,7 @@ def final(m: Measurable, column: str) -> Value:
 
 
 def minimum(m: Measurable, column: str) -> Value:
-    """Least value."""
+    """Smallest value."""
     x = m.column(column)
     return NOT_REPORTED if x is None else float(np.min(x))
 
@@ -39,7 +39,7 @@ def peak(m: Measurable, column: str) -> Value:
 
 
 def peak_time(m: Measurable, column: str) -> Value:
-    """Time of that value [s]."""
+    """Time of the first peak [s]."""
     return _at_first_peak(m, column, m.history.time)
 
 
@@ -69,7 +69,7 @@ def _settling(m: Measurable, column: str, tolerance: float) -> Value:
 
 
 def settling_step(x: Array, static: float, tolerance: float = SETTLED) -> Value:
-    """First step n >= 1 from which |x_n / x_static - 1| <= tolerance for ever after; undefined if never."""
+    """First step n >= 1 from which |x_n / x_static - 1| <= tolerance from then on; undefined if never."""
     if static == 0 or len(x) == 0:
         return UNDEFINED
     outside = np.nonzero(~(np.abs(x / static - 1) <= tolerance))[0]
@@ -90,7 +90,7 @@ def first_peak(x: Array, static: float) -> int | None:
 
 
 def minimum_time(m: Measurable) -> Value:
-    """When a locked contact pulls most [s]; undefined where it never does."""
+    """Time of the largest tension in a locked contact [s]; undefined where there is none."""
     x, pulls = m.column(PRESSURE), _pulls(m)
     if x is None or pulls is None:
         return NOT_REPORTED
@@ -98,7 +98,7 @@ def minimum_time(m: Measurable) -> Value:
 
 
 def tension_time(m: Measurable) -> Value:
-    """For how long a locked contact pulls in all [s]; undefined where it never does."""
+    """Total time a locked contact is in tension [s]; undefined where there is none."""
     pulls = _pulls(m)
     if pulls is None:
         return NOT_REPORTED

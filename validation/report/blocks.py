@@ -40,6 +40,11 @@ class Column:
     group: str = ""
 
 
+def columns(kind: Literal["text", "decimal", "fill"], *titles: str, group: str = "") -> tuple[Column, ...]:
+    """Return columns of one kind."""
+    return tuple(Column(title, kind, group) for title in titles)
+
+
 @dataclass(frozen=True)
 class Table:
     """A table; a row of one cell spans all columns as a remark on the rows below it.
@@ -76,16 +81,9 @@ class Callout:
 
 
 @dataclass(frozen=True)
-class Math:
-    """A displayed formula in typst's mathematics."""
-
-    source: str
-
-
-@dataclass(frozen=True)
 class PageBreak:
     """The rest starts on a new page (nothing happens at the top of a page)."""
 
 
-Block = Heading | Paragraph | Table | FigureBlock | Callout | Math | PageBreak
+Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak
 Chapter = Callable[[Results, Manifest, Path], list[Block]]

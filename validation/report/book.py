@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, FigureBlock, PageBreak
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
 from validation.report.chapters.registry import chapter_of
-from validation.report.typesetting import _png, write_document
+from validation.report.names import Readable, escaped, unescaped
+from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
+from validation.runs.text import printable
 
 
 def ordered_studies(results: Results) -> list[str]:
@@ -34,24 +37,49 @@ def build(results: Results, out: Path) -> Path:
     InputError
         There are no results, or the file cannot be written.
     """
+    results = Readable(results)
     studies = ordered_studies(results)
     return write_document(out, lambda root: _all_blocks(results, studies, root))
 
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters import front as chapters_front
+    from validation.report.chapters.front import front_matter, provenance
 
-    chapters = [
-        block
-        for study in studies
-        for block in (PageBreak(), *chapter_of(study)(results, results.manifest(study), figures))
-    ]
-    return [
-        *chapters_front.front_matter(results, studies, figures),
-        *chapters,
-        PageBreak(),
-        *chapters_front.provenance(results, studies),
-    ]
+    chapters: list[Block] = []
+    for study in studies:
+        chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
+    with _told(results, "the first and the last page"):
+        return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
+
+
+def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
+    manifest = results.whole(study, histories=True)
+    with _told(results, f"the chapter of {unescaped(study)}"):
+        return chapter_of(study)(results, manifest, figures)
+
+
+def _chapter_or_why(results: Results, study: str, figures: Path) -> list[Block]:
+    """Return a study's chapter; one that cannot be drawn says so, and does not cost the others."""
+    try:
+        return _chapter(results, study, figures)
+    except _Undrawn as error:
+        return [Heading(study), Callout(f"{error}.", "fail")]
+
+
+class _Undrawn(InputError):
+    """A part of the report that its results give no numbers for."""
+
+
+@contextmanager
+def _told(results: Results, what: str) -> Iterator[None]:
+    """Name what cannot be written from results that are damaged in a way of which no check has told."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        said = printable(f"{type(error).__name__}: {error}")
+        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({said})") from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
@@ -62,6 +90,7 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     InputError
         The directory has no such study, or cannot be made.
     """
+    results, study = Readable(results), escaped(study)
     if study not in results.studies():
         known = ", ".join(results.studies()) or "none"
         raise InputError(f"study: must be one of those in {results.directory} ({known}), got {study!r}")
@@ -69,6 +98,10 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
-    blocks = chapter_of(study)(results, results.manifest(study), out)
-    drawn = [out / block.file for block in blocks if isinstance(block, FigureBlock)]
-    return [path for svg in drawn for path in (svg, _png(svg))]
+    blocks = _chapter(results, study, out)
+    paths: list[Path] = []
+    for block in blocks:
+        if isinstance(block, FigureBlock):
+            svg = out / block.file
+            paths += [svg, png_of(svg)]
+    return paths

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, NotRequired
 
+from pydantic import AfterValidator, Field
 from typing_extensions import TypedDict
 
 from validation.runs.row import Value
@@ -43,7 +44,7 @@ class AlarmRecord(TypedDict):
     kind: str
     scene: str
     sentence: str
-    values: dict[str, float]
+    values: NotRequired[dict[str, float]]
 
 
 BudgetRecord = TypedDict(
@@ -69,10 +70,13 @@ class Annotations(TypedDict):
     budgets: list[BudgetRecord]
 
 
-class Manifest(TypedDict):
-    """A study as it was run."""
-
+class _Study(TypedDict):
     study: str
+
+
+class Manifest(_Study, total=False):
+    """A study as it was run; one that another version has written may lack parts."""
+
     title: str
     purpose: str
     cases: list[CaseRecord]
@@ -84,19 +88,83 @@ class Manifest(TypedDict):
     provenance: dict[str, Any]
 
 
-class VerdictRecord(TypedDict):
-    """One gate's verdict; values are rounded well above the last bits, and no seconds stand in it."""
+class Named(TypedDict):
+    """A verdict of which no more is asked than whose it is."""
+
+    study: str
+    id: str
+
+
+def _ordered(band: list[float]) -> list[float]:
+    if not band[0] <= band[1]:
+        raise ValueError(f"must be [low, high] with low <= high, got {band}")
+    return band
+
+
+Word = Annotated[str, Field(pattern="^(PASS|FAIL|NOT RUN)$")]
+Band = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_ordered)]
+
+
+class Judged(TypedDict):
+    """What two runs are compared by, gate by gate."""
 
     id: str
     study: str
+    value: Value
+    band: Band
+    verdict: Word
+
+
+class VerdictRecord(Judged):
+    """One gate's verdict; values are rounded well above the last bits, and no seconds stand in it."""
+
     scene: str
     pair: list[str]
     metric: str
-    value: Value
-    band: list[float]
-    verdict: str
     reason: str
     why: str
     reference_kind: str
     reference_uncertainty: float
     alarms: list[str]
+
+
+def sound(record: Judged) -> Judged:
+    """Return a verdict that its own value and band bear out; the value has four digits, two where it is small.
+
+    Raises
+    ------
+    ValueError
+        It passes without a number, or its word is not that of its value.
+    """
+    value, (low, high), word = record["value"], record["band"], record["verdict"]
+    inside = outside = True
+    if isinstance(value, int | float):
+        slack = (6e-4 if abs(value) >= 1e-9 else 6e-2) * min(abs(value), 1e300) + 1e-12
+        inside = low - slack <= value <= high + slack
+        outside = not low + slack < value < high - slack
+    elif word == "PASS":
+        inside = False
+    if (word == "PASS" and not inside) or (word == "FAIL" and not outside):
+        raise ValueError(f"{record['id'][:200]} says {word}, got {value!r} in [{low:g}, {high:g}]")
+    return record
+
+
+def unique(records: list[Judged]) -> list[Judged]:
+    """Return verdicts of which no two are of one gate.
+
+    Raises
+    ------
+    ValueError
+        A study has two of one id.
+    """
+    met = set()
+    for record in records:
+        name = (record["study"], record["id"])
+        if name in met:
+            raise ValueError(f"{record['id'][:200]} stands twice in the study {record['study'][:200]}")
+        met.add(name)
+    return records
+
+
+Verdicts = Annotated[list[Annotated[VerdictRecord, AfterValidator(sound)]], AfterValidator(unique)]
+Baseline = Annotated[list[Annotated[Judged, AfterValidator(sound)]], AfterValidator(unique)]

@@ -20,12 +20,15 @@ from typing import IO, Any
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs import strict
 from validation.runs.files import write_atomically
-from validation.runs.history import History
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.history import Array, History
+from validation.runs.records import Manifest, Named, VerdictRecord, Verdicts
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 
+ADVICE = "delete it and run again"
+KEPT = (Outcome.COMPLETED, Outcome.UNSTABLE)  # outcomes whose history is kept
 _parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
 
 
@@ -85,61 +88,125 @@ class Results:
 
         def write(stream: IO[bytes]) -> None:  # np.savez means other things by its options from version to version
             with zipfile.ZipFile(stream, "w") as kept:
+                kept.comment = key.encode()  # a file that stands in another's place is seen
                 for name, values in columns.items():
                     with kept.open(f"{name}.npy", "w", force_zip64=True) as part:
-                        np.lib.format.write_array(part, values, allow_pickle=False)
+                        np.lib.format.write_array(part, np.asarray(values, np.float64), allow_pickle=False)
 
         write_atomically(self._make("histories", f"{key}.npz"), write)
 
     def history(self, key: str) -> History | None:
-        """Return the kept history of a case, or None where the case has none."""
-        path = self.directory / "histories" / f"{key}.npz"
+        """Return the kept history of a case, or None where the case has none.
+
+        Raises
+        ------
+        InputError
+            The file is damaged, belongs to another case, or holds no history.
+        """
+        path = self._history_file(key)
         if not path.exists():
             return None
-        try:
-            with np.load(path) as data:
-                columns = {name: data[name] for name in data.files}
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
-            raise InputError(f"{path}: cannot be read as a history; delete it and run again") from None
+        owner, columns = _kept_columns(path)
+        defect = "belongs to another case" if owner != key else _defect(columns)
+        if defect:
+            raise InputError(f"{path}: {defect}; {ADVICE}")
         return History(columns.pop("time"), columns)
+
+    def sound(self, row: Row, steps: int, columns: Iterable[str]) -> bool:
+        """Whether a row's kept history is there, its own, finite, of so many steps and with all these columns.
+
+        Raises
+        ------
+        InputError
+            The file is damaged.
+        """
+        path = self._history_file(row.key)
+        if row.outcome not in KEPT:
+            return True
+        if not path.exists():
+            return False
+        owner, found = _kept_columns(path)
+        return owner == row.key and _defect(found) is None and len(found["time"]) == steps and {*columns} <= {*found}
+
+    def _history_file(self, key: str) -> Path:
+        return self.directory / "histories" / f"{key}.npz"
 
     def has(self, row: Row) -> bool:
         """Whether the row's history is there as well (a completed case always keeps one)."""
-        return row.outcome is not Outcome.COMPLETED or (self.directory / "histories" / f"{row.key}.npz").exists()
+        return row.outcome is not Outcome.COMPLETED or self._history_file(row.key).exists()
 
     def write_json(self, name: str, data: object) -> None:
         """Write a JSON file of the directory atomically."""
         text = json.dumps(data, indent=1, allow_nan=False) + "\n"
         write_atomically(self._make(*name.split("/")), lambda stream: stream.write(text.encode()))
 
-    def read_json(self, name: str, default: Any = None) -> Any:
-        """Return a JSON file of the directory, or the default where it is absent."""
-        path = self.directory / name
+    def read_json(self, name: str, default: Any = None, kind: Any = Any) -> Any:
+        """Return a JSON file of the directory, whose content is of a type, or the default where it is absent."""
         try:
-            return json.loads(path.read_text(encoding="utf-8"))
+            return strict.read(self.directory / name, kind, ADVICE)
         except FileNotFoundError:
             return default
-        except (OSError, ValueError) as error:
-            raise InputError(f"{path}: cannot be read as JSON: {error}; delete it and run again") from None
 
     def studies(self) -> list[str]:
         """Return the names of the studies whose results are here."""
         return sorted(path.stem for path in self.directory.glob("studies/*.json"))
 
     def manifest(self, study: str) -> Manifest:
-        """Return a study's manifest: title, cases (scene, solver, key, definition) and comparisons."""
-        found: Manifest = self.read_json(f"studies/{study}.json", {})
+        """Return a study's manifest: title, cases (scene, solver, key, definition) and comparisons.
+
+        Raises
+        ------
+        InputError
+            The file is damaged, or is that of another study.
+        """
+        name = f"studies/{study}.json"
+        found: Manifest | None = self.read_json(name, None, Manifest)
+        if found is None:
+            return {"study": study}
+        if found["study"] != study:
+            raise InputError(f"{self.directory / name}: holds the study {found['study']!r}; {ADVICE}")
         return found
+
+    def whole(self, study: str, histories: bool = False) -> Manifest:
+        """Return a study's manifest where every row that it lists is here, and where asked every history.
+
+        Raises
+        ------
+        InputError
+            The manifest, a row or a history is lost.
+        """
+        manifest, rows = self.manifest(study), self.rows()
+        for case in manifest.get("cases", []):
+            row = rows.get(case["key"])
+            gone = row is not None and row.outcome in KEPT and not self._history_file(row.key).exists()
+            if row is None or (histories and gone):
+                lost = "row" if row is None else "history"
+                raise InputError(
+                    f"{self.directory}: the {lost} of {case['scene']} {case['solver']} is lost; run {study} again"
+                )
+        return manifest
+
+    def check(self) -> None:
+        """Read what a run will add to, so that what cannot be read is told before anything runs.
+
+        Raises
+        ------
+        InputError
+            Rows or verdicts cannot be read.
+        """
+        self.rows()
+        self.verdicts()
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [])
+        kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
         return [v for v in kept if study is None or v["study"] == study]
 
     def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
         with self._alone():
-            others = [v for v in self.verdicts() if v["study"] != study]
+            kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+            others = [v for v in kept if v["study"] != study]
             self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
 
     @contextmanager
@@ -160,3 +227,26 @@ class Results:
             yield
         finally:
             os.close(handle)
+
+
+def _kept_columns(path: Path) -> tuple[str, dict[str, Array]]:
+    """Return the key that a history was kept under, and its columns."""
+    try:
+        with zipfile.ZipFile(path) as kept:
+            columns = {}
+            for name in kept.namelist():
+                with kept.open(name) as part:
+                    columns[name.removesuffix(".npy")] = np.lib.format.read_array(part, allow_pickle=False)
+            return kept.comment.decode(errors="replace"), columns
+    except Exception:  # what a damaged file may raise is no closed list
+        raise InputError(f"{path}: cannot be read as a history; {ADVICE}") from None
+
+
+def _defect(columns: dict[str, Array]) -> str | None:
+    """Say what a history lacks: times, or one finite number a time in every column."""
+    if "time" not in columns:
+        return "holds no column time"
+    for name, values in columns.items():
+        if values.dtype != np.float64 or values.shape != (len(columns["time"]),) or not np.isfinite(values).all():
+            return f"{name} must hold one finite number a step"
+    return None

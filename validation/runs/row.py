@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from typing import Any
 
 from validation.runs.run import Outcome
 
@@ -15,7 +17,8 @@ Value = float | str | None  # a number, or "undefined", or "not reported"
 class Row:
     """One finished case: what was run, how it ended, what it measured and what it cost.
 
-    `metrics` holds numbers, ``"undefined"`` (no meaning here) or ``"not reported"`` (the column is absent).
+    `metrics` holds numbers, ``"undefined"`` (no meaning here) or ``"not reported"`` (the column is absent);
+    `provenance` the versions and the commit that made the row.
     """
 
     key: str
@@ -28,16 +31,24 @@ class Row:
     seconds: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     estimate: float | None = None
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def line(self) -> str:
-        """Return the row as one line of JSON."""
-        return json.dumps(asdict(self), allow_nan=False)
+        """Return the row as one line of JSON, with a digest of what it says."""
+        data = asdict(self)
+        return json.dumps(data | {"digest": _digest(data)}, allow_nan=False)
 
     @classmethod
     def parse(cls, line: str) -> Row | None:
-        """Return the row of a line, or None where the line is not whole (a run was killed while writing)."""
+        """Return the row of a line, or None where it is not as it was written (cut by a kill, damaged, edited)."""
         try:
             data = json.loads(line)
+            if data.pop("digest") != _digest(data):
+                return None
             return cls(**data | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return None
+
+
+def _digest(data: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]

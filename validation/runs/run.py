@@ -19,6 +19,8 @@ class Outcome(enum.StrEnum):
     NOT_A_NUMBER = "not a number"
     WRONG_SHAPE = "wrong shape"
     WRONG_UNITS = "wrong units"
+    NO_CONTACT_STATE = "no consistent contact state"
+    SEVERAL_CONTACT_STATES = "several consistent contact states"
     RAISED = "raised"
     TIMEOUT = "timeout"
     REFUSED = "refused"
@@ -39,6 +41,8 @@ _SENTENCES = {
     Outcome.NOT_A_NUMBER: "The history holds values that are not numbers.",
     Outcome.WRONG_SHAPE: "The history does not hold one value for each step of the scene.",
     Outcome.WRONG_UNITS: "The history is in other units or has another sign.",
+    Outcome.NO_CONTACT_STATE: "No state of the contacts fits the step, not even a hundredth of it; use a smaller step.",
+    Outcome.SEVERAL_CONTACT_STATES: "Several states of the contacts fit a hundredth of the step; use a smaller step.",
     Outcome.RAISED: "The solver raised an error.",
     Outcome.TIMEOUT: "The solver did not finish within its time limit.",
     Outcome.REFUSED: "The scene asks for what the solver must refuse.",

@@ -21,13 +21,14 @@ class Feature:
 
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
-UNILATERAL = "unilateral contact"
+UNILATERAL, DEAD_BAND = "unilateral contact", "dead bands"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
     Feature(WEIGHT, lambda scene: scene.load.gravity != 0),
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
+    Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
 )
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them

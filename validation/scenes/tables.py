@@ -136,12 +136,16 @@ class ContactSection(Section):
     law: Literal["locked", "unilateral"] = "locked"
     stiffness: Positive  # p, N/m per corner spring
     shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
-    gap: NonNegative = 0.0  # m, between block and springs at t = 0; for unilateral contact only
+    gap: NonNegative = 0.0  # m, between block and springs at t = 0
+    band: tuple[NonNegative, NonNegative] = (0.0, 0.0)  # m: closes below -band[0], opens above band[1]
+    solve_limit: Count = 6  # solves of the open-close iteration before every contact state is tried
+    cut: Annotated[Real, Field(gt=0, lt=1)] = 0.3  # length of a step that is repeated, over the failed one
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.law == "locked" and self.gap:
-            raise ValueError(f'gap goes with law = "unilateral" only, got {self.gap:g}')
+        alone = sorted(self.model_fields_set & {"gap", "band", "solve_limit", "cut"})
+        if self.law == "locked" and alone:
+            raise ValueError(f'{alone[0]} goes with law = "unilateral" only, got it with a locked contact')
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self

@@ -58,7 +58,7 @@ class NewmarkBar(Prepared):
 
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: the bar has no matrix and modes without end."""
-        raise NotReported("bar: an exact bar has no matrix, and its frequencies have no largest one")
+        raise NotReported("bar: the exact bar has no matrix and no largest frequency")
 
 
 class ExactBar(Solver):
@@ -83,7 +83,7 @@ class ExactBar(Solver):
 
         return bar.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar."""
         return NewmarkBar(scene, self.name)
 
@@ -122,6 +122,6 @@ class Continuum(ExactBar):
         stopped = "gg = 0 has no rate -ln(gg) / dt" if scene.time.discount == 0 else None
         return bar.applicable(problem_of(scene)) or stopped
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar."""
         return ContinuousBar(scene, self.name)

@@ -84,7 +84,7 @@ class Solver:
     5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
        with those of higher rank) and its look in figures.
     6. `applicable(scene)`: None, or the reason in words why it cannot run this scene, apart from features.
-    7. `prepare(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
+    7. `build(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
        A solver of one function overrides `solve(scene, full, fields)` instead.
     8. `columns()`: the columns that it has; a scene's further columns are not asked of it.
@@ -119,8 +119,12 @@ class Solver:
 
     def refusal(self, scene: Scene) -> str | None:
         """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
-        unknown = [name for name in features.of(scene) if name not in self.handles]
+        unknown = self.unhandled(scene)
         return f"it does not handle {', '.join(unknown)}" if unknown else self.applicable(scene)
+
+    def unhandled(self, scene: Scene) -> list[str]:
+        """Return the features of a scene that the solver does not handle."""
+        return [name for name in features.of(scene) if name not in self.handles]
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
@@ -131,9 +135,21 @@ class Solver:
         return {}
 
     def prepare(self, scene: Scene, full: bool = False) -> Prepared:
-        """Build the scene's model once; `full` switches the numerical savings off."""
+        """Build the scene's model once; `full` switches the numerical savings off.
+
+        Raises
+        ------
+        InputError
+            The scene has a feature that the solver does not handle: nothing is asked of it as if that were absent.
+        """
+        if unknown := self.unhandled(scene):
+            raise InputError(f"{scene.name}: solver {self.name} does not handle {', '.join(unknown)}")
+        return self.build(scene, full)
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Build the model of a scene whose features the solver handles; what a solver of models overrides."""
         if type(self).solve is Solver.solve:
-            raise NotImplementedError(f"{type(self).__name__} must define prepare or solve")
+            raise NotImplementedError(f"{type(self).__name__} must define build or solve")
         return PreparedByFunction(self, scene, full)
 
     def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:

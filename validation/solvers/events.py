@@ -172,12 +172,12 @@ class BlockEvents(Solver):
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
         if features.UNILATERAL not in features.of(scene):
-            return 'it is written for contact.law = "unilateral"'
+            return 'it requires contact.law = "unilateral"'
         if rectangle(scene) is None:
-            return "the block is no upright rectangle on its lower edge"
+            return "the block is not an upright rectangle on its lower edge"
         return None if scene.time.discount == 1 else "the exact motion has no kinetic damping, and gg is below 1"
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BlockMotion(scene, self.name)
 
@@ -197,9 +197,9 @@ class BarEvents(BlockEvents):
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for the scene."""
         if scene.block.poisson != 0:
-            return "lines do not move alike for Poisson's ratio other than 0"
+            return "the bar is exact at Poisson's ratio 0 only"
         return super().applicable(scene)
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BarMotion(scene, self.name)

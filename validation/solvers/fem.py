@@ -8,14 +8,15 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.runs.modes import Mode
+from validation.errors import InputError
+from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import check_step
-from validation.solvers.translation import check_columns, naming, to_run
+from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -135,11 +136,41 @@ class Mesh(Prepared):
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
 
+class OpeningMesh(Prepared):
+    """A block on a foundation that carries no tension, point by point of its base."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        from fem_reference.history.unilateral import Unilateral
+
+        self.scene, self.full = scene, full
+        self.problem, self.scheme = problem_of(scene), scheme_of(scene)
+        c = scene.contact
+        glue = "glued" if c.shear else "frictionless"
+        with naming(scene):
+            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        from fem_reference.history.unilateral import UNILATERAL_COLUMNS, solve_unilateral
+
+        no_fields("fem with unilateral contact", self.scene, fields)
+        check_columns(self.scene, UNILATERAL_COLUMNS)
+        with naming(self.scene):
+            found = solve_unilateral(self.problem, self.scheme, self.scene.time.steps, self.contact, self.full)
+        self.pressed = found.columns["contact_pressure"] > 0
+        self.time = found.time
+        return opened_run(self.scene, found, found.columns)
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the switches of the whole base between the steps: no point of it presses, or some do."""
+        return flips({"base": self.pressed.astype(float)}, self.time)
+
+
 class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
     sections: tuple[str, ...] = MESH_SECTIONS
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
@@ -150,9 +181,21 @@ class FiniteElements(Solver):
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         import fem_reference
+        from fem_reference.history.unilateral import UNILATERAL_COLUMNS
 
-        return fem_reference.COLUMNS
+        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS)))
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
-        """Mesh the block."""
-        return Mesh(scene, full)
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or what does not go together with unilateral contact."""
+        if features.UNILATERAL not in features.of(scene):
+            return None
+        if features.BASE_MOTION in features.of(scene):
+            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+        spread = scene.fem.foundation == "distributed"
+        return None if spread else f"unilateral contact needs a distributed foundation, not {scene.fem.foundation!r}"
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Mesh the block, on locked springs or on a base that opens."""
+        if reason := self.applicable(scene):
+            raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

@@ -167,7 +167,7 @@ class FEniCSx(Solver):
         python = interpreter()
         return {} if python is None else {"dolfinx": dolfinx_version(python)}
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene; its model is built where dolfinx is."""
         return RemoteMesh(self, scene)
 

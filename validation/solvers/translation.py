@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.history import PRESSURE, History
+from validation.runs.history import PRESSURE, Array, History
+from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 
@@ -40,6 +41,24 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
     )
 
 
+def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: float = 0.0) -> Run:
+    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name."""
+    history = History(result.time, {name: columns[name] for name in scene.run.columns})
+    counted = ("unknowns", "nonzeros", "factorisations", "solves")
+    work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
+    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
+    return Run(Outcome(result.outcome), history, work, seconds, result.notes)
+
+
+def flips(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
+    """Return the switches between the steps of contacts, 1 where closed and 0 where open, in the order of time."""
+    found = []
+    for corner, state in closed.items():
+        steps = np.flatnonzero(np.diff(state)) + 1
+        found += [Switch(float(time[n]), corner, bool(state[n] < 0.5)) for n in steps]
+    return tuple(sorted(found, key=lambda switch: switch.time))
+
+
 @contextmanager
 def naming(scene: Scene) -> Iterator[None]:
     """Give what a solver package refuses, a ValueError, the name of the scene: an InputError."""
@@ -57,7 +76,7 @@ def pulls(history: History) -> tuple[str, ...]:
     if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
         return ()
     least = int(np.argmin(pressure))
-    return (f"the locked contact pulls: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
+    return (f"the locked contact carries tension: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
 
 
 def check_columns(scene: Scene, known: tuple[str, ...]) -> None:

@@ -48,7 +48,11 @@ class UserSolver(Solver):
         """Return None: what the solver handles is known in its own process only, which says so."""
         return None
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def unhandled(self, scene: Scene) -> list[str]:
+        """Return nothing, see `refusal`."""
+        return []
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene; the solver sees it when it is run."""
         return Asked(self, scene)
 

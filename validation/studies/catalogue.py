@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import METRICS, PAIRS
 from validation.scenes.scene import Scene, load_scene, scene_names
+from validation.scenes.tables import GateSection
 from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
-
-if TYPE_CHECKING:
-    pass
-from validation.engine.finished import Derived
 from validation.studies.declaration import Study
 
 STUDIES = {
@@ -30,6 +27,7 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
+T = TypeVar("T")
 
 
 @functools.cache
@@ -56,16 +54,29 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     check_words(scene, source)
-    own = tuple(gate for case in scene.expand() for gate in own_gates(case))
+    own: list[Gate] = []
+    for case in scene.expand():
+        own += [Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate]
     return Study(
         scene.name,
         scene.title or scene.name,
         f"The scene {scene.name}.",
         [scene],
-        extra=built_in_extra(scene),
-        gates=lambda: own + built_in_gates(scene),
-        derived=lambda: built_in_derived(scene),
+        extra=_of_suite(scene, lambda study: study.extra, lambda pair: pair[0]),
+        gates=lambda: (*own, *_of_suite(scene, lambda study: study.gates(), lambda gate: gate.scene)),
+        derived=lambda: _of_suite(scene, lambda study: study.derived(), lambda row: row.scene),
     )
+
+
+def _of_suite(scene: Scene, part: Callable[[Study], Iterable[T]], case_of: Callable[[T], str]) -> tuple[T, ...]:
+    """Return what the suite's studies hold of the cases of a scene, where it is the built-in one unchanged."""
+    if scene.name not in scene_names() or scene != load_scene(scene.name):
+        return ()
+    names = {case.name for case in scene.expand()}
+    found: list[T] = []
+    for study in judged_studies():
+        found += [item for item in part(get_study(study)) if case_of(item) in names]
+    return tuple(found)
 
 
 def check_words(scene: Scene, source: str) -> None:
@@ -79,58 +90,38 @@ def check_words(scene: Scene, source: str) -> None:
     for name in scene.run.solvers:
         if not is_solver(name.removesuffix(FULL)):
             raise InputError(f"{source}: run.solvers: must be among {', '.join(solver_names())}, got {name!r}")
-    known = [get_solver(name.removesuffix(FULL)).columns() for name in scene.run.solvers]
-    served = dict.fromkeys(column for columns in known for column in columns or scene.run.columns)
+    served: dict[str, None] = {}
+    for name in scene.run.solvers:
+        served |= dict.fromkeys(get_solver(name.removesuffix(FULL)).columns() or scene.run.columns)
     for column in scene.run.columns:
         if column not in served:
             raise InputError(f"{source}: run.columns: must be among {', '.join(served)}, got {column!r}")
-    _check_gates(scene, source)
-
-
-def _check_gates(scene: Scene, source: str) -> None:
+    _check_repeats(scene, source)
     for number, section in enumerate(scene.gate):
-        if section.metric not in METRICS:
+        _check_gate(section, scene.run.solvers, f"{source}: gate.{number}")
+
+
+def _check_repeats(scene: Scene, source: str) -> None:
+    met = set()
+    for number, section in enumerate(scene.gate):
+        if (section.pair, section.metric) in met:
             raise InputError(
-                f"{source}: gate.{number}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}"
+                f"{source}: gate.{number}: must not repeat pair and metric of another gate, got "
+                f"{', '.join(section.pair)} and {section.metric}"
             )
-        missing = [name for name in section.pair if name not in scene.run.solvers]
-        if missing:
-            raise InputError(
-                f"{source}: gate.{number}.pair: must be solvers that run.solvers lists, got {missing[0]!r}"
-            )
-        if section.metric in PAIRS and len(section.pair) < 2:
-            raise InputError(
-                f"{source}: gate.{number}.pair: must name a solver and a reference for {section.metric}, "
-                f"got {list(section.pair)}"
-            )
+        met.add((section.pair, section.metric))
 
 
-def own_gates(case: Scene) -> tuple[Gate, ...]:
-    """Return the gates that a scene file states for one of its cases."""
-    return tuple(Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate)
-
-
-def is_built_in(scene: Scene) -> bool:
-    """Whether a scene is a built-in one, unchanged."""
-    return scene.name in scene_names() and scene == load_scene(scene.name)
-
-
-def built_in_gates(scene: Scene) -> tuple[Gate, ...]:
-    """Return the suite's own gates for the cases of a scene, where it is the built-in one unchanged."""
-    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(gate for study in judged_studies() for gate in get_study(study).gates() if gate.scene in names)
-
-
-def built_in_derived(scene: Scene) -> tuple[Derived, ...]:
-    """Return the derived rows of the cases of a scene, where it is the built-in one unchanged."""
-    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(row for study in judged_studies() for row in get_study(study).derived() if row.scene in names)
-
-
-def built_in_extra(scene: Scene) -> tuple[tuple[str, str], ...]:
-    """Return the further runs that the suite's gates on a built-in scene compare with."""
-    names = {case.name for case in scene.expand()} if is_built_in(scene) else set()
-    return tuple(pair for study in judged_studies() for pair in get_study(study).extra if pair[0] in names)
+def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> None:
+    if section.metric not in METRICS:
+        raise InputError(f"{place}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}")
+    missing = [name for name in section.pair if name not in solvers]
+    if missing:
+        raise InputError(f"{place}.pair: must be solvers that run.solvers lists, got {missing[0]!r}")
+    if section.metric in PAIRS and len(section.pair) < 2:
+        raise InputError(
+            f"{place}.pair: must name a solver and a reference for {section.metric}, got {list(section.pair)}"
+        )
 
 
 def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:
@@ -139,19 +130,31 @@ def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None
     Raises
     ------
     InputError
-        A name is neither, or values are set on a study.
+        A name is neither, values are set on a study, or two of them go by one name.
     """
-    studies = []
-    for target in STUDIES if list(targets) == ["all"] else targets:
-        if target in STUDIES and not assignments:
-            studies.append(get_study(target))
-        elif target in STUDIES:
-            raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
-        elif target in scene_names() or target.endswith(".toml"):
-            studies.append(scene_study(target, assignments))
-        else:
+    studies: dict[str, tuple[str, Study]] = {}
+    for target in STUDIES if list(targets) == ["all"] else dict.fromkeys(targets):
+        study = _resolved(target, assignments)
+        if study.name in studies:
             raise InputError(
-                f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
-                f"({', '.join(scene_names())}) or a scene file ending in .toml"
+                f"{target}: must not have the name of {studies[study.name][0]}, whose verdicts it would replace; "
+                "rename the file, or run it into another directory with --results"
             )
-    return studies
+        studies[study.name] = target, study
+    return [study for _, study in studies.values()]
+
+
+def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
+    if target in STUDIES and not assignments:
+        return get_study(target)
+    if target in STUDIES:
+        raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
+    if target not in scene_names() and not target.endswith(".toml"):
+        raise InputError(
+            f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
+            f"({', '.join(scene_names())}) or a scene file ending in .toml"
+        )
+    study = scene_study(target, assignments)
+    if study.name.casefold() in STUDIES and target not in scene_names():
+        raise InputError(f"{target}: must not have the name of the study {study.name}, whose results it would replace")
+    return study

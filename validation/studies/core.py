@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
-from validation.scenes.scene import Scene, load_scene
 from validation.studies import core_damping
+from validation.studies.bands import OTHER, OWN, about, cases, decimals, near, printed
 from validation.studies.declaration import Study
 
 SCENES = (
@@ -23,7 +23,6 @@ SCENES = (
     "corner-springs",
 )
 EXACT_BAR = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9", "model-form")
-OTHER = "other code"  # the kind of a reference that an independent program computed
 FULL_MODEL = "figures-3-4[time.step=0.002]"
 
 # Numbers of an independent computation outside this project, as printed there: half a unit of the last digit is
@@ -48,24 +47,6 @@ TENSION = (
 )  # Pa, half a unit of the last digit
 
 
-def cases(*names: str) -> Iterator[Scene]:
-    """Yield the single cases of built-in scenes."""
-    for name in names:
-        yield from load_scene(name).expand()
-
-
-def near(value: float, relative: float) -> tuple[float, float]:
-    """Band of a relative half width about a value."""
-    half = abs(value) * relative
-    return value - half, value + half
-
-
-def decimals(text: float) -> float:
-    """Half a unit of the last printed digit of a number."""
-    digits = f"{text:g}".partition(".")[2]
-    return 0.5 * 10.0 ** -len(digits)
-
-
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the core study."""
     return (
@@ -84,144 +65,81 @@ def gates() -> tuple[Gate, ...]:
 
 def statics() -> Iterator[Gate]:
     """Yield the gates on equilibrium and on what the histories tend to."""
-    rounding = "closed form of static equilibrium; the band is rounding: 1e4 eps, conditioning of the static system"
+    metric = "displacement.static"
+    why = "closed form of static equilibrium; the band is rounding: 1e4 eps, conditioning of the static system"
     for scene in cases("figures-5-6", "poisson-statics"):
         value = closed_forms.static_displacement(scene)
-        yield Gate(scene.name, ("dda",), "displacement.static", *near(value, 1e4 * closed_forms.EPS), rounding)
+        yield Gate(scene.name, ("dda",), metric, *near(value, 1e4 * closed_forms.EPS), why)
+    why = "mu = 0: every mesh holds the linear static field; band: rounding of a sparse solution"
     for scene in cases("figures-5-6"):
-        value = closed_forms.static_displacement(scene)
-        yield Gate(
-            scene.name,
-            ("fem",),
-            "displacement.static",
-            *near(value, 1e-9),
-            "mu = 0: every mesh holds the linear static field; band: rounding of a sparse solution",
-        )
+        yield Gate(scene.name, ("fem",), metric, *near(closed_forms.static_displacement(scene), 1e-9), why)
+    why = "independent program, four digits: half a unit of the last"
     for scene in cases("poisson-statics"):
-        value = FE_STATICS[f"{scene.contact.stiffness:g}"]
-        yield Gate(
-            scene.name,
-            ("fem",),
-            "displacement.static",
-            value - 5e-7,
-            value + 5e-7,
-            "independent program, four digits: half a unit of the last",
-            reference_kind=OTHER,
-            reference_uncertainty=5e-7,
-        )
+        yield printed(scene.name, ("fem",), metric, FE_STATICS[f"{scene.contact.stiffness:g}"], 5e-7, why)
+    why = (
+        "the contact pressure tends to q: what damping has left of the motion at the last step, exp(-xi w t), twice "
+        "for the second mode"
+    )
     for scene in cases("figures-3-4"):
         left = closed_forms.remaining_motion(scene)
-        yield Gate(
-            scene.name,
-            ("dda",),
-            "pressure.final",
-            *near(scene.load.pressure, 2 * left + 1e-9),
-            "the contact pressure tends to q: what damping has left of the motion at the last step, "
-            "exp(-xi w t), twice for the second mode",
-        )
+        yield Gate(scene.name, ("dda",), "pressure.final", *near(scene.load.pressure, 2 * left + 1e-9), why)
 
 
 def settling() -> Iterator[Gate]:
     """Yield the gates on settling steps, which are whole numbers."""
+    why = "first step from which the value stays within 1 % of static; independent program, whole number"
     for name, steps in SETTLING.items():
         for quantity, count in zip(("displacement", "pressure"), steps, strict=True):
-            yield Gate(
-                name,
-                ("dda",),
-                f"{quantity}.settling_step",
-                count,
-                count,
-                "first step from which the value stays within 1 % of static; independent program, whole number",
-                reference_kind=OTHER,
-            )
+            yield Gate(name, ("dda",), f"{quantity}.settling_step", count, count, why, OTHER)
 
 
 def frequencies() -> Iterator[Gate]:
     """Yield the gates on the first axial frequency: DDA, bar, elements, and the model form between them."""
+    block = "root of the two-unknown frequency equation; band: rounding"
+    elements = (
+        "quadratic elements overestimate by the interpolation error's energy (closed_forms.mesh_frequency_error); "
+        "a tenth for the next order, 2e-11 for the eigenvalue solver"
+    )
+    form = "model form, physics: one strain against a wave; ratio of the two closed forms"
     for scene in cases("figures-5-6"):
         w_dda, w_bar = closed_forms.dda_frequency(scene), closed_forms.bar_frequency(scene)
         error = closed_forms.mesh_frequency_error(scene)
-        yield Gate(
-            scene.name,
-            ("dda",),
-            "mode1.frequency",
-            *near(w_dda, 1e-12),
-            "root of the two-unknown frequency equation; band: rounding",
-        )
-        yield Gate(scene.name, ("bar",), "mode1.frequency", *near(w_bar, 1e-12), "b tan b = 2p/E; band: rounding")
-        yield Gate(
-            scene.name,
-            ("fem", "bar"),
-            "mode1.frequency",
-            0.9 * error - 2e-11,
-            1.1 * error + 2e-11,
-            "quadratic elements overestimate by the interpolation error's energy (closed_forms.mesh_frequency_error); "
-            "a tenth for the next order, 2e-11 for the eigenvalue solver",
-        )
-        yield Gate(
-            scene.name,
-            ("dda", "bar"),
-            "mode1.frequency",
-            *near(w_dda / w_bar - 1, 1e-10),
-            "model form, physics: one strain against a wave; ratio of the two closed forms",
-        )
+        name, metric = scene.name, "mode1.frequency"
+        yield Gate(name, ("dda",), metric, *near(w_dda, 1e-12), block)
+        yield Gate(name, ("bar",), metric, *near(w_bar, 1e-12), "b tan b = 2p/E; band: rounding")
+        yield Gate(name, ("fem", "bar"), metric, 0.9 * error - 2e-11, 1.1 * error + 2e-11, elements)
+        yield Gate(name, ("dda", "bar"), metric, *near(w_dda / w_bar - 1, 1e-10), form)
 
 
 def damping() -> Iterator[Gate]:
     """Yield the gates on the damping ratio of the first axial mode, from the operator and from the history."""
+    operator = "trace and determinant of one step at the closed-form frequency; band: rounding of the logarithm"
     for scene in cases(*EXACT_BAR):
-        for solver, frequency in (
-            ("dda", closed_forms.dda_frequency(scene)),
-            ("bar", closed_forms.bar_frequency(scene)),
-        ):
+        frequency_of = {"dda": closed_forms.dda_frequency(scene), "bar": closed_forms.bar_frequency(scene)}
+        for solver, frequency in frequency_of.items():
             value = closed_forms.damping_ratio(scene, frequency)
-            if abs(closed_forms.roots(scene, frequency)[0].imag) < 1e-6:
-                continue
-            slack = 1e-10 * abs(value) + 1e-12
-            yield Gate(
-                scene.name,
-                (solver,),
-                "mode1.damping",
-                value - slack,
-                value + slack,
-                "trace and determinant of one step at the closed-form frequency; band: rounding of the logarithm",
-            )
+            if abs(closed_forms.roots(scene, frequency)[0].imag) >= 1e-6:
+                yield Gate(scene.name, (solver,), "mode1.damping", *about(value, 1e-10 * abs(value) + 1e-12), operator)
+    history = "matrix pencil on the displacement: the history holds the ratio that the operator has, to 1e-6"
     for scene in cases("figures-3-4", "figure-8", "figure-9"):
         value = closed_forms.damping_ratio(scene, closed_forms.dda_frequency(scene))
         if scene.time.step < 0.01:
-            yield Gate(
-                scene.name,
-                ("dda",),
-                "mode1.measured_damping",
-                value - 1e-6,
-                value + 1e-6,
-                "matrix pencil on the displacement: the history holds the ratio that the operator has, to 1e-6",
-            )
+            yield Gate(scene.name, ("dda",), "mode1.measured_damping", *about(value, 1e-6), history)
 
 
 def mesh() -> Iterator[Gate]:
     """Yield the gates on finite elements against the bar, which they converge to."""
+    why = (
+        "quadratic elements, 32 a side, constant acceleration, dt >= 1e-3: the front is resolved and the error is of "
+        "fourth order in h; two programs never agree to the last bit"
+    )
     for scene in cases("figures-3-4", "figures-5-6"):
         for metric in ("displacement.max", "pressure.max"):
-            yield Gate(
-                scene.name,
-                ("fem", "bar"),
-                metric,
-                1e-15,
-                1e-6,
-                "quadratic elements, 32 a side, constant acceleration, dt >= 1e-3: the front is resolved and the "
-                "error is of fourth order in h; two programs never agree to the last bit",
-            )
+            yield Gate(scene.name, ("fem", "bar"), metric, 1e-15, 1e-6, why)
     yield from dispersion()
+    why = "one column of elements is exact where nothing depends on x; band: rounding of the full model"
     for metric in ("displacement.max", "pressure.max"):
-        yield Gate(
-            FULL_MODEL,
-            ("fem", "fem:full"),
-            metric,
-            0,
-            1e-11,
-            "one column of elements is exact where nothing depends on x; band: rounding of the full model",
-        )
+        yield Gate(FULL_MODEL, ("fem", "fem:full"), metric, 0, 1e-11, why)
 
 
 def dispersion() -> Iterator[Gate]:
@@ -229,112 +147,69 @@ def dispersion() -> Iterator[Gate]:
     for scene in cases("figure-7", "figure-8", "figure-9", "mesh-convergence"):
         if scene.time.alpha == 0.5 and scene.time.step >= 1e-3:
             continue  # the figure's constant acceleration: damped within the window, judged with Figures 3 to 6
-        front = closed_forms.elements_per_front(scene)
+        why = (
+            f"closed_forms.mesh_error: every mode b turns (b/n)^4 / 1440 too fast, "
+            f"{closed_forms.elements_per_front(scene):.3g} elements per c dt; the shapes' own error, of the next "
+            "order, takes up to a quarter off"
+        )
         for quantity in ("displacement", "pressure"):
             value = closed_forms.mesh_error(scene.name, quantity)
-            yield Gate(
-                scene.name,
-                ("fem", "bar"),
-                f"{quantity}.l2",
-                0.75 * value,
-                1.1 * value,
-                f"closed_forms.mesh_error: every mode b turns (b/n)^4 / 1440 too fast, {front:.3g} elements per c dt; "
-                "the shapes' own error, of the next order, takes up to a quarter off",
-            )
+            yield Gate(scene.name, ("fem", "bar"), f"{quantity}.l2", 0.75 * value, 1.1 * value, why)
 
 
 def model_form() -> Iterator[Gate]:
     """Yield the gates on what a block with one strain cannot do, over a fixed window."""
+    why = (
+        "model form, physics, over 0.2 s: independent program, half a unit of its last digit; agreement grows with dt "
+        "because both are damped"
+    )
     for scene in cases("model-form"):
         percents = MODEL_FORM[f"{scene.time.step:g}"]
         for quantity, percent in zip(("displacement", "pressure"), percents, strict=True):
             half = decimals(percent)
-            yield Gate(
-                scene.name,
-                ("dda", "bar"),
-                f"{quantity}.l2",
-                (percent - half) / 100,
-                (percent + half) / 100,
-                "model form, physics, over 0.2 s: independent program, half a unit of its last digit; agreement "
-                "grows with dt because both are damped",
-                reference_kind=OTHER,
-                until=0.2,
-                reference_uncertainty=half / 100,
-            )
+            edges = (percent - half) / 100, (percent + half) / 100
+            yield Gate(scene.name, ("dda", "bar"), f"{quantity}.l2", *edges, why, OTHER, half / 100, until=0.2)
+    why = "the locked contact carries tension: independent program, half a unit of its last digit"
     for name, solver, value, half in TENSION:
-        yield Gate(
-            name,
-            (solver,),
-            "pressure.minimum",
-            value - half,
-            value + half,
-            "the locked contact pulls: independent program, half a unit of its last digit",
-            reference_kind=OTHER,
-            reference_uncertainty=half,
-        )
+        yield printed(name, (solver,), "pressure.minimum", value, half, why)
 
 
 def poisson() -> Iterator[Gate]:
     """Yield the gates at Poisson's ratio 0.25, where the finest mesh is the reference."""
     coarse, middle, fine = (scene.name for scene in cases("poisson"))
+    why = (
+        "distance from the finest mesh: it falls five to six times a halving, the corners' singular stress keeps it "
+        "from sixteen; so the finest mesh is within a quarter of the middle one's distance"
+    )
     for quantity, steps in (("displacement", (1.3e-4, 2.2e-5)), ("pressure", (2.4e-5, 4.4e-6))):
         for name, value in zip((coarse, middle), steps, strict=True):
-            yield Gate(
-                name,
-                ("fem", "fem"),
-                f"{quantity}.l2",
-                value / 1.5,
-                value * 1.5,
-                "distance from the finest mesh: it falls five to six times a halving, the corners' singular stress "
-                "keeps it from sixteen; so the finest mesh is within a quarter of the middle one's distance",
-                reference_kind="own last value",
-                against=fine,
-            )
+            yield Gate(name, ("fem", "fem"), f"{quantity}.l2", value / 1.5, value * 1.5, why, OWN, against=fine)
+    why = "model form, physics, at mu = 0.25: both meshes that are finer than four give this to its last digit"
     for quantity, percent in (("displacement", 2.753), ("pressure", 2.958)):
-        yield Gate(
-            fine,
-            ("dda", "fem"),
-            f"{quantity}.l2",
-            (percent - 0.01) / 100,
-            (percent + 0.01) / 100,
-            "model form, physics, at mu = 0.25: both meshes that are finer than four give this to its last digit",
-            reference_kind="own last value",
-            reference_uncertainty=6e-6,
-        )
+        edges = (percent - 0.01) / 100, (percent + 0.01) / 100
+        yield Gate(fine, ("dda", "fem"), f"{quantity}.l2", *edges, why, OWN, 6e-6)
 
 
 def code() -> Iterator[Gate]:
     """Yield the gates on the robust form against the printed recursion, which has the same solution at mu = 0."""
+    why = (
+        "same equations, rounding apart: 10 eps per step, times 1 + 2p/E lost in the spring force and 1/Omega^2 lost "
+        "in the increment"
+    )
     for scene in cases("figures-3-4", "figures-5-6", "figure-8", "figure-9"):
         omega2 = (closed_forms.dda_frequency(scene) * scene.time.step) ** 2
         soft = 1 + 2 * scene.contact.stiffness / scene.block.young
         high = 10 * closed_forms.EPS * scene.time.steps * soft * max(1.0, 1 / omega2)
         for metric in ("displacement.max", "pressure.max"):
-            yield Gate(
-                scene.name,
-                ("dda", "dda-textbook"),
-                metric,
-                0,
-                high,
-                "same equations, rounding apart: 10 eps per step, times 1 + 2p/E lost in the spring force and "
-                "1/Omega^2 lost in the increment",
-            )
+            yield Gate(scene.name, ("dda", "dda-textbook"), metric, 0, high, why)
 
 
 def drift() -> Iterator[Gate]:
     """Yield the gates on corner point springs, whose answer drifts with log h and has no limit."""
+    why = "no fine-mesh limit under point springs: independent program, three digits"
     for scene in cases("corner-springs"):
         value = CORNER_DRIFT[scene.fem.per_side]
-        yield Gate(
-            scene.name,
-            ("fem",),
-            "displacement.static",
-            value - 5e-5,
-            value + 5e-5,
-            "no fine-mesh limit under point springs: independent program, three digits",
-            reference_kind=OTHER,
-            reference_uncertainty=5e-5,
-        )
+        yield printed(scene.name, ("fem",), "displacement.static", value, 5e-5, why)
 
 
 CORE = Study(

@@ -14,13 +14,14 @@ from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row, Value
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
+from validation.studies.bands import OWN, about, cases
 
 NAME = "damping"
 SOLVERS = ("dda", "fem", "bar")
 UNDAMPED = 1e-12
 # Damping ratio of DDA over that of the elements, minus one, where no closed form holds: case -> (value, half band).
-OWN = {
+RATIOS = {
     "poisson": (0.0467, 1e-4),
     "poisson-statics[contact.stiffness=1e+09]": (0.0475, 2e-4),
     "poisson-statics[contact.stiffness=1e+10]": (0.0973, 2e-4),
@@ -33,12 +34,6 @@ OWN = {
 }
 
 
-@functools.cache
-def cases(scenes: tuple[str, ...]) -> tuple[Scene, ...]:
-    """Return the cases of built-in scenes."""
-    return tuple(case for name in scenes for case in load_scene(name).expand())
-
-
 def solvers(scene: Scene) -> list[str]:
     """Return the solvers of a scene whose damping is compared."""
     bar = scene.block.poisson == 0 and scene.fem.foundation == "distributed"
@@ -47,15 +42,11 @@ def solvers(scene: Scene) -> list[str]:
 
 def derived(scenes: tuple[str, ...]) -> tuple[Derived, ...]:
     """Return the derived row of every case."""
-    return tuple(
-        Derived(
-            scene.name,
-            NAME,
-            tuple((scene.name, solver) for solver in solvers(scene)),
-            functools.partial(compare, scene=scene),
-        )
-        for scene in cases(scenes)
-    )
+    found = []
+    for scene in cases(*scenes):
+        needs = tuple((scene.name, solver) for solver in solvers(scene))
+        found.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene)))
+    return tuple(found)
 
 
 def compare(finished: Finished, scene: Scene) -> Mapping[str, Value]:
@@ -92,35 +83,25 @@ def history_distance(row: Row) -> Value:
 
 def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
     """Yield three gates a case: operator, history, and DDA against the elements."""
-    for scene in cases(scenes):
-        yield Gate(
-            scene.name,
-            (NAME,),
-            "operator",
-            0,
-            1e-12,
-            "|lambda| and xi of each solver's own step against trace and determinant at its frequency; band: rounding",
-        )
-        yield Gate(
-            scene.name,
-            (NAME,),
-            "history",
-            0,
-            1e-6,
-            "matrix pencil on each solver's displacement against its operator: the histories hold the mode to 1e-6",
-        )
+    operator = (
+        "|lambda| and xi of each solver's own step against trace and determinant at its frequency; band: rounding"
+    )
+    history = "matrix pencil on each solver's displacement against its operator: the histories hold the mode to 1e-6"
+    for scene in cases(*scenes):
+        yield Gate(scene.name, (NAME,), "operator", 0, 1e-12, operator)
+        yield Gate(scene.name, (NAME,), "history", 0, 1e-6, history)
         yield from ratio(scene)
 
 
 def ratio(scene: Scene) -> Iterator[Gate]:
     """Yield the gate on the damping ratio of DDA over that of the elements, where they are damped."""
     pair, metric = ("dda", "fem"), "mode1.damping"
-    name = scene.name if scene.name in OWN else scene_of(scene.name)
-    if name in OWN:
-        value, half = OWN[name]
+    name = scene.name if scene.name in RATIOS else scene_of(scene.name)
+    if name in RATIOS:
+        value, half = RATIOS[name]
         why = "the mesh has no limit on point springs" if name.startswith("corner") else "the mesh error is below"
         reason = f"model form, physics: a stiffer block is damped more at the same dt; own value, {why}"
-        yield Gate(scene.name, pair, metric, value - half, value + half, reason, "own last value", half)
+        yield Gate(scene.name, pair, metric, *about(value, half), reason, OWN, half)
         return
     frequency = closed_forms.bar_frequency(scene)
     error = closed_forms.mesh_frequency_error(scene)
@@ -128,13 +109,5 @@ def ratio(scene: Scene) -> Iterator[Gate]:
     fem = closed_forms.damping_ratio(scene, frequency * (1 + error))
     if min(abs(dda), abs(fem)) < UNDAMPED:
         return
-    value = dda / fem - 1
-    half = 1e-9 + error
-    yield Gate(
-        scene.name,
-        pair,
-        metric,
-        value - half,
-        value + half,
-        "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error",
-    )
+    why = "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error"
+    yield Gate(scene.name, pair, metric, *about(dda / fem - 1, 1e-9 + error), why)

@@ -10,6 +10,7 @@ from validation.advice.budget import budgets
 from validation.engine import study
 from validation.engine.finished import Finished
 from validation.runs.records import Annotations
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
@@ -20,7 +21,7 @@ def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     judged = {scene for scene, solver in finished.rows if role(solver) is Role.JUDGED}
     return {
         "alarms": [alarm.record() for alarm in alarms(scenes, finished)],
-        "budgets": list(budgets(scene for scene in scenes if scene.name in judged)),
+        "budgets": list(budgets(scene for scene in scenes if scene.name in judged and features.linear(scene))),
     }
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from validation.gates.closed_forms import EPS
 from validation.gates.gate import Gate
-from validation.scenes.scene import load_scene
+from validation.studies.bands import OWN, cases
 from validation.studies.declaration import Study
 
 # Static displacement of linear over quadratic elements, less one: bands about the values of eight elements a side.
@@ -20,38 +20,21 @@ def name(poisson: float, degree: int) -> str:
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on locking, on its cure and on the energy of long runs."""
-    for poisson, (low, high) in LOCKED.items():
-        yield Gate(
-            name(poisson, 1),
-            ("fem", "fem"),
-            "displacement.static",
-            low,
-            high,
-            "linear elements cannot bulge without changing volume: they lock as mu tends to 1/2; half the spread "
-            "between meshes of 4 and 16 a side about the value of 8",
-            reference_kind="own last value",
-            against=name(poisson, 2),
-        )
-    yield Gate(
-        name(0.499999, 2),
-        ("fem", "fem"),
-        "displacement.static",
-        -0.003,
-        0.0,
-        "quadratic elements, the cure, do not see the last 1e-4 of mu: the solution changes by the order of 1/2 - mu "
-        "times its slope, 0.2 %",
-        reference_kind="own last value",
-        against=name(0.4999, 2),
+    why = (
+        "linear elements cannot bulge without changing volume: they lock as mu tends to 1/2; half the spread between "
+        "meshes of 4 and 16 a side about the value of 8"
     )
-    for case in load_scene("long-run").expand():
-        yield Gate(
-            case.name,
-            ("dda",),
-            "energy.drift",
-            0.0,
-            case.time.steps * EPS,
-            "|lambda| = 1: the energy of each mode stays, apart from one rounding a step",
-        )
+    pair, metric = ("fem", "fem"), "displacement.static"
+    for poisson, band in LOCKED.items():
+        yield Gate(name(poisson, 1), pair, metric, *band, why, OWN, against=name(poisson, 2))
+    why = (
+        "quadratic elements, the cure, do not see the last 1e-4 of mu: the solution changes by the order of 1/2 - mu "
+        "times its slope, 0.2 %"
+    )
+    yield Gate(name(0.499999, 2), pair, metric, -0.003, 0.0, why, OWN, against=name(0.4999, 2))
+    why = "|lambda| = 1: the energy of each mode stays, apart from one rounding a step"
+    for case in cases("long-run"):
+        yield Gate(case.name, ("dda",), "energy.drift", 0.0, case.time.steps * EPS, why)
 
 
 STUDY = Study(

@@ -1,4 +1,4 @@
-"""The paper's block unlocked: exact motions with contact that opens, against numbers of an independent program."""
+"""The paper's block unlocked: exact motions against an independent program's numbers, and DDA against exact motions."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ import functools
 import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
+from validation.metrics.catalogue import pair
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.declaration import Study
@@ -50,7 +53,40 @@ def cases() -> dict[float, Scene]:
     return {case.contact.stiffness / case.block.young: case for case in load_scene(SCENE).expand()}
 
 
+REFINED = {  # scene -> order of DDA in the step, through openings and landings
+    "unlocked-constant": 1.0,
+    "unlocked-average": 2.0,
+    "unlocked-average-zero": 1.0,
+}
+NEXT = 0.1  # of an order: what the next order adds over four halvings, seen as the drift of the local orders
+
+
 def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    return (*sampled(), *(refined(name) for name in REFINED))
+
+
+def refined(name: str) -> Derived:
+    """Return the row of the order of DDA in a scene whose step is refined."""
+    steps = load_scene(name).expand()
+    needs = tuple((case.name, solver) for case in steps for solver in ("dda", "block-events"))
+    return Derived(name, "order", needs, functools.partial(order, steps))
+
+
+def order(steps: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the order in dt, with its sign, fitted to the displacement's error against the exact motion."""
+    errors = []
+    for case in steps:
+        histories = [finished.history(case.name, solver) for solver in ("dda", "block-events")]
+        if histories[0] is None or histories[1] is None:
+            return {}
+        error = pair("displacement.l2", histories[0], histories[1])
+        errors.append(error if isinstance(error, float) else math.nan)
+    slope = np.polyfit(np.log([case.time.step for case in steps]), np.log(errors), 1)[0]
+    return {"displacement": float(slope)}
+
+
+def sampled() -> tuple[Derived, ...]:
     """Return a row of samples for every case and both exact motions."""
     return tuple(
         Derived(case.name, f"{kind} samples", ((case.name, f"{kind}-events"),), functools.partial(samples, case, kind))
@@ -73,7 +109,7 @@ def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*value_gates(), *switch_gates())
+    return (*value_gates(), *switch_gates(), *order_gates())
 
 
 def value_gates() -> Iterator[Gate]:
@@ -83,6 +119,13 @@ def value_gates() -> Iterator[Gate]:
             for n, (displacement, pressure) in zip(INSTANTS, rows, strict=True):
                 yield _near(case, kind, f"displacement.{n}", displacement, 0.0)
                 yield _near(case, kind, f"pressure.{n}", pressure, front(case))
+
+
+def order_gates() -> Iterator[Gate]:
+    """Yield the gates on the order of DDA through openings and landings."""
+    for name, value in REFINED.items():
+        reason = f"order {value:g} of the scheme in smooth motion, kept through switches; {NEXT:g} for the next order"
+        yield Gate(name, ("order",), "displacement", value - NEXT, value + NEXT, reason)
 
 
 def _near(case: Scene, kind: str, metric: str, value: float, least: float) -> Gate:
@@ -126,7 +169,7 @@ OPENING = Study(
     NAME,
     "Contact that opens: exact motions of the block and of the bar",
     "The same block on springs that carry no tension: when it leaves the ground, when it lands, and what it carries.",
-    [SCENE],
+    [SCENE, *REFINED],
     gates=gates,
     derived=derived,
 )

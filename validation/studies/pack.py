@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import re
 from collections.abc import Iterable
@@ -25,6 +26,7 @@ JUDGED = "dda"
 ALSO_DDA = ("dda-textbook",)  # bands against another form of the same code say nothing to a third one
 SAME_MODEL = 1e-6  # of the maximum: the corrected recursion in double precision keeps this in every scene of the pack
 OWN = ("displacement.max", "pressure.max")  # a code against the exact history of the same model
+LEFT_OUT = ("name", "sweep", "gate", "run")  # of a scene: what says which cases and solvers are run
 FIELDS = ("scene", "metric", "low", "high", "reference", "until", "reference_kind", "reason", "id")
 
 README = """\
@@ -95,7 +97,7 @@ def write_pack(directory: Path) -> Written:
     wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
     for name, solver in wanted:
         write_csv(_history(cases[name], solver), directory / "histories" / history_file(name, solver))
-    bands = [*(own_band(scene, metric) for scene in cases.values() for metric in OWN), *map(band, gates)]
+    bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
     _write(directory / "bands.csv", _as_csv(bands))
     _write(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
     _write(directory / "README.md", README)
@@ -114,48 +116,32 @@ def history_file(name: str, solver: str) -> str:
 
 def own_band(scene: Scene, metric: str) -> dict[str, Any]:
     """Return the band of a code against the same model's own history."""
-    return {
-        "scene": slug(scene.name),
-        "metric": metric,
-        "low": 0.0,
-        "high": SAME_MODEL,
-        "reference": history_file(scene.name, JUDGED),
-        "until": None,
-        "reference_kind": "exact",
-        "reason": "same model, same scheme: what is left is the rounding of the recursion in double precision",
-        "id": f"{scene.name}:{JUDGED}:{metric}",
-    }
+    why = "same model, same scheme: what is left is the rounding of the recursion in double precision"
+    gate = Gate(scene.name, (JUDGED, JUDGED), metric, 0.0, SAME_MODEL, why)
+    return band(gate) | {"id": f"{scene.name}:{JUDGED}:{metric}"}
 
 
 def band(gate: Gate) -> dict[str, Any]:
     """Return a gate as a row of the pack."""
-    paired = len(gate.pair) == 2
-    return {
-        "scene": slug(gate.scene),
-        "metric": gate.metric,
-        "low": gate.low,
-        "high": gate.high,
-        "reference": history_file(gate.against or gate.scene, gate.pair[1]) if paired else None,
-        "until": gate.until,
-        "reference_kind": gate.reference_kind,
-        "reason": gate.reason,
-        "id": gate.id,
-    }
+    reference = history_file(gate.against or gate.scene, gate.pair[1]) if len(gate.pair) == 2 else None
+    row = {name: getattr(gate, name, None) for name in FIELDS}
+    return row | {"scene": slug(gate.scene), "reference": reference}
 
 
 def as_toml(scene: Scene) -> str:
     """Return a single case as a scene file."""
-    data = {key: value for key, value in scene.definition().items() if key not in ("name", "sweep", "gate", "run")}
-    lines = [f"{key} = {_value(value)}" for key, value in data.items() if not isinstance(value, dict)]
-    for section, table in data.items():
-        if isinstance(table, dict):
-            lines += ["", f"[{section}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
-    return "\n".join(lines) + "\n"
+    lines, sections = [], []
+    for key, value in scene.definition().items():
+        if isinstance(value, dict) and key not in LEFT_OUT:
+            sections += ["", f"[{key}]", *map(_line, value.items())]
+        elif key not in LEFT_OUT:
+            lines.append(_line((key, value)))
+    return "\n".join([*lines, *sections]) + "\n"
 
 
-def _value(value: object) -> str:
-    """Return a value in TOML, which writes numbers, words and lists as JSON does."""
-    return json.dumps(value, ensure_ascii=False)
+def _line(item: tuple[str, Any]) -> str:
+    """Return a key and its value in TOML, which writes numbers, words and lists as JSON does."""
+    return f"{item[0]} = {json.dumps(item[1], ensure_ascii=False)}"
 
 
 def _history(scene: Scene, solver: str) -> Any:

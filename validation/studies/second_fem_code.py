@@ -6,20 +6,14 @@ import math
 from collections.abc import Iterator
 
 from validation.gates.gate import Gate
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
+from validation.studies.bands import APART, OTHER, cases, near
 from validation.studies.declaration import Study
 
 SQUARES = ("two-codes-constant", "two-codes-average")
 POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh
 SCENES = (*SQUARES, *POLYGONS)
 SAME = 1e-10  # of the maximum
-APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
-
-
-def cases() -> Iterator[Scene]:
-    """Yield the cases of the study."""
-    for name in SCENES:
-        yield from load_scene(name).expand()
 
 
 def gates() -> tuple[Gate, ...]:
@@ -37,37 +31,24 @@ def carried(scene: Scene) -> float:
 
 def equilibrium() -> Iterator[Gate]:
     """Yield the gates on the static contact pressure of polygons, which no elasticity enters."""
-    for scene in (load_scene(name) for name in POLYGONS):
+    why = "equilibrium: the springs carry the load's part normal to the base; band: rounding"
+    for scene in cases(*POLYGONS):
         value = carried(scene)
         for solver in scene.run.solvers:
-            yield Gate(
-                scene.name,
-                (solver,),
-                "pressure.static",
-                value * (1 - SAME),
-                value * (1 + SAME),
-                "equilibrium: the springs carry the load's part normal to the base; band: rounding",
-            )
+            yield Gate(scene.name, (solver,), "pressure.static", *near(value, SAME), why)
 
 
 def equal() -> Iterator[Gate]:
     """Yield the gates on the histories of the two codes."""
-    yield from (
-        Gate(
-            scene.name,
-            (solver, "fem:full"),
-            metric,
-            APART,
-            SAME,
-            "same mesh, degree, quadrature and scheme: what is left is rounding, some eps times the condition of "
-            "M + alpha dt^2 K and the steps",
-            reference_kind="other code",
-        )
-        for scene in cases()
-        for solver in scene.run.solvers
-        if solver.startswith("fenicsx")
-        for metric in ("displacement.max", "pressure.max")
+    why = (
+        "same mesh, degree, quadrature and scheme: what is left is rounding, some eps times the condition of "
+        "M + alpha dt^2 K and the steps"
     )
+    for scene in cases(*SCENES):
+        for solver in scene.run.solvers:
+            if solver.startswith("fenicsx"):
+                for metric in ("displacement.max", "pressure.max"):
+                    yield Gate(scene.name, (solver, "fem:full"), metric, APART, SAME, why, OTHER)
 
 
 TWO_CODES = Study(

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
-from validation.scenes.scene import load_scene
+from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
 
 SCENE = "stiff-contact"
@@ -18,26 +18,14 @@ SCENE = "stiff-contact"
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on the contact mode's eigenvalue and on the steps to settle."""
-    for case in load_scene(SCENE).expand():
+    root = "the contact mode's root from trace and determinant: near -1 for (1/2, 1), near -1/3 for (9/16, 1)"
+    whole = "first step from which the value stays within 1e-4 of static: a whole number, the same in sixty digits"
+    for case in cases(SCENE):
         radius = closed_forms.spectral_radius(case, closed_forms.contact_frequency(case))
         half = 1e-11  # rounding of a root near -1, whose distance from it may be 1e-8
-        yield Gate(
-            case.name,
-            ("dda",),
-            "contact.spectral_radius",
-            radius - half,
-            radius + half,
-            "the contact mode's root from trace and determinant: near -1 for (1/2, 1), near -1/3 for (9/16, 1)",
-        )
+        yield Gate(case.name, ("dda",), "contact.spectral_radius", *about(radius, half), root)
         for quantity in ("displacement", "pressure"):
-            yield Gate(
-                case.name,
-                ("dda", "dda-60"),
-                f"{quantity}.fine_settling_step",
-                0.0,
-                0.0,
-                "first step from which the value stays within 1e-4 of static: a whole number, the same in sixty digits",
-            )
+            yield Gate(case.name, ("dda", "dda-60"), f"{quantity}.fine_settling_step", 0.0, 0.0, whole)
 
 
 STUDY = Study(

@@ -8,9 +8,9 @@ from pathlib import Path
 from validation.compare.causes import CAUSES
 from validation.compare.diagnosis import Answer
 from validation.compare.sentences import told_lines
-from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, parameters, short
-from validation.report.figures import histories as figures
+from validation.report.figures import histories
 from validation.report.figures.curves import Panel
 from validation.report.typesetting import write_document
 from validation.runs.history import DISPLACEMENT, History
@@ -39,13 +39,13 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         None,
         next(iter(answer.curves)),
     )
-    figures.save(figures.history_figure([panel], DISPLACEMENT), directory / FIGURE)
+    caption = "The file, the scene as DDA with what is no fault, and the best explanation."
     rest = [*told_lines(answer.told, answer.untold), *answer.notes]
     return [
         Heading(f"{source} beside {scene.name}"),
         Callout(answer.sentence, "warn") if answer.departure else Paragraph(answer.sentence, "lead"),
         Paragraph(parameters(scene, set()), "small"),
-        FigureBlock(FIGURE, "The file, the scene as DDA with what is no fault, and the best explanation."),
+        histories.saved(histories.history_figure([panel], DISPLACEMENT), directory, FIGURE, caption),
         *_facts(answer),
         _ranking(answer),
         *(Paragraph(line, "small") for line in rest),
@@ -62,22 +62,10 @@ def _facts(answer: Answer) -> list[Block]:
 
 
 def _ranking(answer: Answer) -> Table:
-    columns = (
-        Column("Model", "code"),
-        Column("Scheme", "fill"),
-        Column("Misfit [%]", "decimal"),
-        Column("Compliance [%]", "decimal"),
-    )
-    rows = tuple(
-        (
-            str(row["model"]),
-            str(
-                row["name"]
-                or ("exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}")
-            ),
-            short(100 * row["misfit"], 3),
-            DASH if row["compliance"] is None else short(100 * row["compliance"], 3),
-        )
-        for row in answer.ranking[:LINES]
-    )
-    return Table(columns, rows, "Relative L2 of what each model leaves, at its best compliance of the springs.")
+    titles = (Column("Model", "code"), Column("Scheme", "fill"), *columns("decimal", "Misfit [%]", "Compliance [%]"))
+    rows = []
+    for row in answer.ranking[:LINES]:
+        scheme = "exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}"
+        softer = DASH if row["compliance"] is None else short(100 * row["compliance"], 3)
+        rows.append((str(row["model"]), str(row["name"] or scheme), short(100 * row["misfit"], 3), softer))
+    return Table(titles, tuple(rows), "Relative L2 of what each model leaves, at its best compliance of the springs.")

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
-from validation.report.blocks import Block, Callout, Column, FigureBlock, Table
+from validation.report.blocks import Block, Callout, Column, Table, columns
 from validation.report.chapters.data import Group
 from validation.report.chapters.text import percent, plain, short
-from validation.report.figures import histories as figures
-from validation.report.figures import paper as figures_paper
+from validation.report.figures import histories
+from validation.report.figures.paper import BudgetPanel, budget_figure
 from validation.runs.records import AlarmRecord, BudgetRecord
 
 
@@ -21,13 +21,11 @@ def budget_blocks(group: Group, directory: Path) -> list[Block]:
         return []
     labels = {case.name: case.label for case in group.cases}
     alone = len(group.budgets) == 1
-    panels = [
-        figures_paper.BudgetPanel("" if alone else _label(labels.get(budget["scene"], "")), budget)
-        for budget in group.budgets
-    ]
+    panels = []
+    for budget in group.budgets:
+        panels.append(BudgetPanel("" if alone else _label(labels.get(budget["scene"], "")), budget))
     file = f"{group.slug}-damping-budget.svg"
-    figures.save(figures_paper.budget_figure(panels), directory / file)
-    return [FigureBlock(file, _caption(group.budgets))]
+    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets))]
 
 
 def _label(text: str) -> str:
@@ -40,16 +38,14 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
         "Damping budget of DDA's first axial and contact mode over the time step (triangles: the cases).",
         "Open circles: the roots of the step turn real and there is no damping ratio beyond; one root returns to −1.",
     ]
-    limits = {name for budget in budgets for name in budget["limits"]}
-    if "overdamped below" in limits:
+    if any("overdamped below" in budget["limits"] for budget in budgets):
         said.append("Grey: overdamped.")
     said.append("a/c: the wave's way from top to base; a larger dt does not see it.")
     floors = sorted({budget["floor"] for budget in budgets if budget["floor"]})
     if floors:
         span = f"{floors[0]:.3f}" + (f" to {floors[-1]:.3f}" if floors[-1] != floors[0] else "")
         said.append(f"DDA's first frequency is {span} times the bar's at any dt.")
-    rate = any(budget["gg_rate"] for budget in budgets)
-    if rate:
+    if any(budget["gg_rate"] for budget in budgets):
         said.append("The discount is held as a rate.")
     elif any(budget["gg"] < 1 for budget in budgets):
         said.append("gg acts per step: towards small dt the kinetic part grows without bound.")
@@ -59,13 +55,15 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
 def alarm_blocks(group: Group) -> list[Block]:
     """Return the alarms of a scene: a table for each kind that belongs to cases, a remark for the others."""
     labels = {case.name: case.label for case in group.cases}
-    blocks: list[Block] = []
-    for kind, table in TABLES.items():
-        own = [alarm for alarm in group.alarms if alarm["kind"] == kind]
-        if own:
-            blocks.append(table(own, labels))
-    others = [alarm["sentence"] for alarm in group.alarms if alarm["kind"] not in TABLES]
-    return [*blocks, *(Callout(f"{said[:1].upper()}{said[1:]}.", "warn") for said in others)]
+    kinds: dict[str, list[AlarmRecord]] = {kind: [] for kind in TABLES}
+    others: list[Block] = []
+    for alarm in group.alarms:
+        said = alarm["sentence"]
+        if alarm["kind"] in kinds:
+            kinds[alarm["kind"]].append(alarm)
+        else:
+            others.append(Callout(f"{said[:1].upper()}{said[1:]}.", "warn"))
+    return [*(TABLES[kind](own, labels) for kind, own in kinds.items() if own), *others]
 
 
 Alarms = Sequence[AlarmRecord]
@@ -83,13 +81,9 @@ def agreement_table(alarms: Alarms, labels: Labels) -> Table:
         )
         for alarm in alarms
     )
-    columns = (
-        Column("Case"),
-        Column("DDA – elastic block", "decimal"),
-        Column("Motion removed by damping", "decimal"),
-        Column("Time error of both", "decimal"),
-    )
-    return Table(columns, rows, "Alarm, agreement by damping: both are damped out (relative L2 of the displacement).")
+    titles = columns("decimal", "DDA – elastic block", "Motion removed by damping", "Time error of both")
+    caption = "Alarm, agreement by damping: both are damped out (relative L2 of the displacement)."
+    return Table((Column("Case"), *titles), rows, caption)
 
 
 def tension_table(alarms: Alarms, labels: Labels) -> Table:
@@ -101,14 +95,11 @@ def tension_table(alarms: Alarms, labels: Labels) -> Table:
             least, when, duration = (values[f"{solver}.{part}"] for part in ("minimum", "time", "duration"))
             rows.append((label, solver, plain(least / 1e6, 3), short(1e3 * when), short(1e3 * duration)))
             label = ""
-    columns = (
-        Column("Case"),
-        Column("Solver"),
-        Column("Least pressure [MPa]", "decimal"),
-        Column("at [ms]", "decimal"),
-        Column("pulls for [ms]", "decimal"),
+    titles = (
+        *columns("text", "Case", "Solver"),
+        *columns("decimal", "Least pressure [MPa]", "at [ms]", "tension for [ms]"),
     )
-    return Table(columns, tuple(rows), "Alarm, hidden tension: the locked contact pulls where a real one opens.")
+    return Table(titles, tuple(rows), "Alarm, hidden tension: the locked contact pulls where a real one opens.")
 
 
 def ringing_table(alarms: Alarms, labels: Labels) -> Table:
@@ -119,13 +110,8 @@ def ringing_table(alarms: Alarms, labels: Labels) -> Table:
         steps = f"{math.log(100) / -math.log(radius):.0f}" if 0 < radius < 1 else "∞"
         label = labels.get(alarm["scene"], alarm["scene"])
         rows.append((label, plain(alarm["values"]["root"]), plain(radius), steps))
-    columns = (
-        Column("Case"),
-        Column("Root", "decimal"),
-        Column("|λ|", "decimal"),
-        Column("Steps to fall to 1 %", "decimal"),
-    )
-    return Table(columns, tuple(rows), "Alarm, contact ringing: a root of DDA's contact mode lies next to −1.")
+    titles = (Column("Case"), *columns("decimal", "Root", "|λ|", "Steps to fall to 1 %"))
+    return Table(titles, tuple(rows), "Alarm, contact ringing: a root of DDA's contact mode lies next to −1.")
 
 
 TABLES: dict[str, Callable[[Alarms, Labels], Table]] = {

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from validation.report.chapters.text import case_labels
@@ -38,7 +40,7 @@ class Case:
     def reference(self) -> str | None:
         """The solver that pictures take differences from."""
         # The same Newmark scheme first: pictures show model and code.
-        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH)]
+        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH), *by_role(Role.LIMIT)]
         return next((name for name in known if name in self.histories), None)
 
 
@@ -57,7 +59,7 @@ class Group:
     @property
     def solvers(self) -> list[str]:
         """All solvers of the cases, in the order of the study."""
-        return list(dict.fromkeys(solver for case in self.cases for solver in case.rows))
+        return list(dict.fromkeys(itertools.chain(*(case.rows for case in self.cases))))
 
     @property
     def slug(self) -> str:
@@ -66,24 +68,25 @@ class Group:
 
     def compared(self, case: Case, solver: str, reference: str) -> Mapping[str, Any] | None:
         """Return the metrics of a pair over the longest window, in either order, or None."""
-        found = [
-            c
-            for c in self.comparisons
-            if c["scene"] == case.name and {c["solver"], c["reference"]} == {solver, reference}
-        ]
-        longest = max(found, key=lambda c: float(c.get("window") or 0.0), default=None)
+        pair = {solver, reference}
+        own = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
+        longest = max(own, key=lambda c: float(c.get("window") or 0.0), default=None)
         return None if longest is None else dict(longest["metrics"])
+
+    def number_of_pair(self, case: Case, solver: str, reference: str, metric: str) -> float | None:
+        """Return a metric of a pair where it is a number."""
+        value = (self.compared(case, solver, reference) or {}).get(metric)
+        return float(value) if isinstance(value, int | float) else None
 
 
 def groups(results: Results, manifest: Manifest) -> list[Group]:
     """Return the scenes of a study in the order of its manifest."""
     rows = results.rows()
-    names = list(dict.fromkeys(entry["scene"] for entry in manifest.get("cases", [])))
+    scenes: dict[str, dict[str, list[CaseRecord]]] = {}
+    for entry in manifest.get("cases", []):
+        scenes.setdefault(scene_of(entry["scene"]), {}).setdefault(entry["scene"], []).append(entry)
     verdicts = results.verdicts(manifest.get("study"))
-    return [
-        _group(results, rows, manifest, base, [n for n in names if scene_of(n) == base], verdicts)
-        for base in dict.fromkeys(map(scene_of, names))
-    ]
+    return [_group(results, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
 
 
 def _group(
@@ -91,20 +94,16 @@ def _group(
     rows: Mapping[str, Row],
     manifest: Manifest,
     base: str,
-    names: Sequence[str],
+    entries: Mapping[str, Sequence[CaseRecord]],
     verdicts: Sequence[VerdictRecord],
 ) -> Group:
-    entries = {name: [e for e in manifest["cases"] if e["scene"] == name] for name in names}
-    scenes = [parse_scene(entries[name][0]["definition"], name) for name in names]
-    labels = case_labels(names, scenes)
-    cases = tuple(
-        _case(results, rows, entries[name], label, scene)
-        for name, label, scene in zip(names, labels, scenes, strict=True)
-    )
+    scenes = [parse_scene(own[0]["definition"], name) for name, own in entries.items()]
+    labels = case_labels(list(entries), scenes)
+    cases = map(partial(_case, results, rows), entries.values(), labels, scenes)
     return Group(
         base,
-        entries[names[0]][0].get("title") or base,
-        cases,
+        next(iter(entries.values()))[0].get("title") or base,
+        tuple(cases),
         tuple(c for c in manifest.get("comparisons", []) if scene_of(c["scene"]) == base),
         tuple(v for v in verdicts if scene_of(v["scene"]) == base),
         tuple(a for a in manifest.get("alarms", []) if scene_of(a["scene"]) == base),
@@ -121,4 +120,4 @@ def _case(results: Results, rows: Mapping[str, Row], entries: Sequence[CaseRecor
 
 def varied_fields(group: Group) -> set[str]:
     """Return the fields that vary between the cases of a scene."""
-    return {field for case in group.cases for field in CaseName.parse(case.name).values}
+    return set().union(*(CaseName.parse(case.name).values for case in group.cases))

@@ -6,26 +6,30 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Group, groups
-from validation.report.chapters.gates import ORDER, band, value_cell
+from validation.report.chapters.gates import ORDER, band, under_headings, value_cell
 from validation.report.chapters.ledger import ledger_lines, ledger_table, part_values, with_entries
 from validation.report.chapters.registry import CHAPTERS
 from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import percent, plain, span
-from validation.report.figures import histories as figures
+from validation.report.figures import histories
 from validation.runs.case_name import scene_of
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
+from validation.runs.row import Row
 
 LEDGER_FIGURE = "error-ledger.svg"
 
 
 def front_matter(results: Results, studies: Sequence[str], directory: Path) -> list[Block]:
     """Return conclusion, failures, verdict counts and the error ledger of the studies of scenes."""
-    scenes = [study for study in studies if study not in CHAPTERS]
-    found = with_entries([group for study in scenes for group in groups(results, results.manifest(study))])
-    verdicts = [v for study in studies for v in results.verdicts(study)]
+    named: list[Group] = []
+    verdicts: list[VerdictRecord] = []
+    for study in studies:
+        verdicts += results.verdicts(study)
+        named += [] if study in CHAPTERS else groups(results, results.manifest(study))
+    found = with_entries(named)
     blocks: list[Block] = [
         Paragraph(headline(found, verdicts), "lead"),
         *_failures(verdicts),
@@ -36,9 +40,9 @@ def front_matter(results: Results, studies: Sequence[str], directory: Path) -> l
         return blocks
     blocks += [Heading("Error ledger", 3), ledger_table(found)]
     lines = ledger_lines(found)
-    if any(value is not None for line in lines for pair in line.parts.values() for value in pair):
-        figures.save(figures.ledger_figure(lines), directory / LEDGER_FIGURE)
-        blocks.append(FigureBlock(LEDGER_FIGURE, "The error ledger: displacement filled, contact pressure open."))
+    if any(set(line.parts.values()) != {(None, None)} for line in lines):
+        caption = "The error ledger: displacement filled, contact pressure open."
+        blocks.append(histories.saved(histories.ledger_figure(lines), directory, LEDGER_FIGURE, caption))
     return blocks
 
 
@@ -80,19 +84,12 @@ def _failures(verdicts: Sequence[VerdictRecord]) -> list[Block]:
 
 def failure_table(verdicts: Sequence[VerdictRecord]) -> Table:
     """Return the gates that did not pass by their ids, failures first."""
-    remarks: dict[str, list[VerdictRecord]] = {}
-    for v in sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)):
-        remarks.setdefault(v.get("why") or "", []).append(v)
-    columns = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
-    rows = [
-        row
-        for said, some in remarks.items()
-        for row in [
-            *([(said,)] if said else []),
-            *((v["verdict"], v["id"], value_cell(v["value"]), band(v)) for v in some),
-        ]
-    ]
-    return Table(columns, tuple(rows), ruled=False)
+    titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
+    ordered = sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0))
+    rows = under_headings(
+        ordered, lambda v: v.get("why") or "", lambda v: (v["verdict"], v["id"], value_cell(v["value"]), band(v))
+    )
+    return Table(titles, rows, ruled=False)
 
 
 def verdict_counts(results: Results, studies: Sequence[str]) -> Table:
@@ -102,13 +99,11 @@ def verdict_counts(results: Results, studies: Sequence[str]) -> Table:
         per_scene: dict[str, Counter[str]] = {}
         for v in results.verdicts(study):
             per_scene.setdefault(scene_of(v["scene"]), Counter())[v["verdict"]] += 1
-        total = sum(per_scene.values(), Counter())
-        rows.append((study, "all scenes", *_counts(total)))
-        listed = {name: c for name, c in per_scene.items() if len(studies) == 1 or set(c) - {"PASS"}}
-        rows += [("", name, *_counts(c)) for name, c in listed.items()]
-    return Table(
-        (Column("Study"), Column("Scene"), *(Column(word, "decimal") for word in reversed(ORDER))), tuple(rows)
-    )
+        rows.append((study, "all scenes", *_counts(sum(per_scene.values(), Counter()))))
+        for name, count in per_scene.items():
+            if len(studies) == 1 or set(count) - {"PASS"}:
+                rows.append(("", name, *_counts(count)))
+    return Table((*columns("text", "Study", "Scene"), *columns("decimal", *reversed(ORDER))), tuple(rows))
 
 
 def _counts(count: Mapping[str, int]) -> list[str]:
@@ -140,17 +135,19 @@ def _said(value: object) -> str:
 def cost_table(results: Results, manifest: Manifest) -> Table:
     """Return runs, work and seconds of each solver of a study."""
     rows = results.rows()
-    keys = {entry["key"]: entry["solver"] for entry in manifest.get("cases", []) if entry["key"] in rows}
+    used: dict[str, dict[str, Row]] = {}
+    for entry in manifest.get("cases", []):
+        if entry["key"] in rows:
+            used.setdefault(entry["solver"], {})[entry["key"]] = rows[entry["key"]]
     lines = []
-    for solver in dict.fromkeys(keys.values()):
-        own = [rows[key] for key, name in keys.items() if name == solver]
-        most = max((row.work.get("unknowns", 0) for row in own), default=0)
-        total = [sum(row.work.get(name, 0) for row in own) for name in ("factorisations", "solves", "steps")]
-        seconds = sum(sum(row.seconds.values()) for row in own)
-        lines.append((solver, str(len(own)), str(most), *map(str, total), plain(seconds, 3)))
-    titles = ("Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
-    return Table(
-        (Column("Solver"), *(Column(title, "decimal") for title in titles)),
-        tuple(lines),
-        "What the answers cost; kept runs count with the seconds that they took.",
-    )
+    for solver, own in used.items():
+        work: Counter[str] = Counter()
+        most, seconds = 0, 0.0
+        for row in own.values():
+            work.update(row.work)
+            most, seconds = max(most, row.work.get("unknowns", 0)), seconds + sum(row.seconds.values())
+        counts = (len(own), most, work["factorisations"], work["solves"], work["steps"])
+        lines.append((solver, *map(str, counts), plain(seconds, 3)))
+    titles = columns("decimal", "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
+    caption = "Cost of the results; cached runs count with their original run time."
+    return Table((Column("Solver"), *titles), tuple(lines), caption)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Callable, Mapping, Sequence
 
-from validation.report.blocks import Column, Table
+from validation.report.blocks import Column, Table, columns
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -15,31 +16,35 @@ NARROW = 7  # digits; a narrower band is written as middle and half width
 
 def gate_table(verdicts: Sequence[VerdictRecord], labels: Mapping[str, str]) -> Table:
     """Return gates with value and band under the reason that they share, failures first."""
-    reasons: dict[str, list[VerdictRecord]] = {}
-    for v in sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), [*labels, v["scene"]].index(v["scene"]))):
-        reasons.setdefault(reason(v), []).append(v)
-    columns = (
+    titles = (
         Column("Verdict", "verdict"),
-        Column("Case"),
-        Column("Pair"),
+        *columns("text", "Case", "Pair"),
         Column("Metric", "code"),
         Column("Value", "decimal"),
         Column("Band"),
     )
-    rows = [row for said, some in reasons.items() for row in [(said,), *(_gate_row(v, labels) for v in some)]]
-    return Table(columns, tuple(rows), ruled=False)
+    places = [*labels, *(v["scene"] for v in verdicts)]
+    ordered = sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), places.index(v["scene"])))
+    return Table(titles, under_headings(ordered, reason, lambda v: _gate_row(v, labels)), ruled=False)
+
+
+def under_headings(
+    verdicts: Sequence[VerdictRecord],
+    heading: Callable[[VerdictRecord], str],
+    row: Callable[[VerdictRecord], tuple[str, ...]],
+) -> tuple[tuple[str, ...], ...]:
+    """Return a row for each verdict, those of one heading together below it; an empty heading takes no line."""
+    together: dict[str, list[tuple[str, ...]]] = {}
+    for verdict in verdicts:
+        said = heading(verdict)
+        together.setdefault(said, [(said,)] if said else []).append(row(verdict))
+    return tuple(itertools.chain(*together.values()))
 
 
 def _gate_row(v: VerdictRecord, labels: Mapping[str, str]) -> tuple[str, ...]:
     window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
-    return (
-        v["verdict"],
-        labels.get(v["scene"], v["scene"]),
-        " – ".join(v["pair"]),
-        v["metric"] + window,
-        value_cell(v["value"]),
-        band(v),
-    )
+    case, pair = labels.get(v["scene"], v["scene"]), " – ".join(v["pair"])
+    return (v["verdict"], case, pair, v["metric"] + window, value_cell(v["value"]), band(v))
 
 
 def value_cell(value: Value) -> str:

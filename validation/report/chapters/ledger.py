@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from validation.report.blocks import Column, Table
+from validation.report.blocks import Table, columns
 from validation.report.chapters.data import Case, Group
 from validation.report.chapters.text import DASH, bounded, power, raised
 from validation.report.figures.histories import LedgerLine
@@ -46,10 +46,8 @@ def entry(group: Group, case: Case, part: str) -> Entry:
 
 
 def _compared(group: Group, case: Case, solver: str, reference: str) -> Entry | None:
-    metrics = group.compared(case, solver, reference)
-    values = [None if metrics is None else metrics.get(name) for name in METRICS]
-    numbers = [float(v) if isinstance(v, int | float) else None for v in values]
-    return None if numbers == [None, None] else Entry((numbers[0], numbers[1]))
+    displacement, pressure = (group.number_of_pair(case, solver, reference, name) for name in METRICS)
+    return None if displacement is None and pressure is None else Entry((displacement, pressure))
 
 
 def _against_fem(group: Group, case: Case) -> Entry | None:
@@ -72,33 +70,32 @@ def _absence(case: Case, solver: str) -> str:
 
 def with_entries(groups: Sequence[Group]) -> list[Group]:
     """Return the groups with the cases that some part of the ledger applies to."""
-    kept = [replace(group, cases=tuple(case for case in group.cases if _has_entry(group, case))) for group in groups]
-    return [group for group in kept if group.cases]
+    kept = []
+    for group in groups:
+        cases = tuple(case for case in group.cases if _has_entry(group, case))
+        kept += [replace(group, cases=cases)] if cases else []
+    return kept
 
 
 def _has_entry(group: Group, case: Case) -> bool:
-    return any(value is not None for part in PARTS for value in entry(group, case, part).values)
+    return any(entry(group, case, part).values != (None, None) for part in PARTS)
 
 
 def ledger_table(groups: Sequence[Group]) -> Table:
     """Return the ledger of all cases, reasons and remarks numbered below."""
     notes: list[str] = []
-    rows = [_row(group, case, notes) for group in groups for case in group.cases]
-    named = [
-        (group.name if i == 0 else "", *row)
-        for group, row in zip([g for g in groups for _ in g.cases], rows, strict=True)
-        for i in [0 if row[0] == group.cases[0].label else 1]
-    ]
-    columns = [Column("Scene"), Column("Case")]
+    rows = []
+    for group in groups:
+        name = group.name
+        for case in group.cases:
+            rows.append((name, *_row(group, case, notes)))
+            name = ""  # once above its cases
+    titles = columns("text", "Scene", "Case")
     for part, (solver, reference) in PARTS.items():
-        name = f"{part}: {solver} − {reference}" if part != "code" else "code: dda − textbook"
-        columns += [Column("displ.", "decimal", name), Column("pressure", "decimal", name)]
-    return Table(
-        tuple(columns),
-        tuple(named),
-        "Relative L2 difference over the whole history, as a fraction; below 10⁻¹² a bound.",
-        tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)),
-    )
+        over = f"{part}: {solver} − {reference}" if part != "code" else "code: dda − textbook"
+        titles += columns("decimal", "displ.", "pressure", group=over)
+    caption = "Relative L2 difference over the whole history, as a fraction; below 10⁻¹² a bound."
+    return Table(titles, tuple(rows), caption, tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)))
 
 
 def _row(group: Group, case: Case, notes: list[str]) -> tuple[str, ...]:
@@ -121,17 +118,20 @@ def _cell(value: float | None, mark: str) -> str:
 
 def ledger_lines(groups: Sequence[Group]) -> list[LedgerLine]:
     """Return the ledger as lines of a figure."""
-    return [
-        LedgerLine(
-            f"{group.name}: {case.label}" if len(group.cases) > 1 else group.name,
-            {part: entry(group, case, part).values for part in PARTS},
-        )
-        for group in groups
-        for case in group.cases
-    ]
+    lines = []
+    for group in groups:
+        for case in group.cases:
+            label = f"{group.name}: {case.label}" if len(group.cases) > 1 else group.name
+            lines.append(LedgerLine(label, {part: entry(group, case, part).values for part in PARTS}))
+    return lines
 
 
 def part_values(groups: Sequence[Group], part: str, column: int) -> list[float]:
     """Return all numbers of a part that come from its own pair, for displacement (0) or pressure (1)."""
-    found = [entry(group, case, part) for group in groups for case in group.cases]
-    return [value for e in found if not e.remark and (value := e.values[column]) is not None]
+    values = []
+    for group in groups:
+        for case in group.cases:
+            found = entry(group, case, part)
+            value = None if found.remark else found.values[column]
+            values += [] if value is None else [value]
+    return values

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
+from validation.report.blocks import Block, FigureBlock, Heading, PageBreak, Paragraph, Table, columns
 from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups
 from validation.report.chapters.text import DASH, bounded, short
-from validation.report.figures import histories as figures
-from validation.report.figures import paper as figures_paper
-from validation.report.figures.paper import StepPanel
+from validation.report.figures import histories
+from validation.report.figures.paper import StepPanel, radius_figure, steps_figure
 from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -24,9 +23,10 @@ from validation.runs.results import Results
 SOLVERS = ("continuum", "bar", "fem", "dda")
 COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
 WORDS = {0: "refuted", 1: "under a condition", 2: "confirmed"}
+NAMELESS = "under a condition that the paper does not name"
 VERBS = {  # of one, of several
     "confirmed": ("is confirmed", "are confirmed"),
-    "under a condition": tuple(f"{verb} under a condition that the paper does not name" for verb in ("holds", "hold")),
+    "under a condition": (f"holds {NAMELESS}", f"hold {NAMELESS}"),
     "refuted": ("is refuted", "are refuted"),
 }
 CLAIMS = "claims"
@@ -96,23 +96,10 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         word = WORDS.get(int(metrics.get("verdict", -1)), "not tested")
         condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
         measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
-        lines.append(
-            (
-                claim["id"],
-                word,
-                f"{claim['says']} ({claim['place']})",
-                f"{_sentence(claim['why'])}{condition}",
-                measured,
-            )
-        )
-    columns = (
-        Column("Id"),
-        Column("Verdict"),
-        Column("The paper says", "fill"),
-        Column("Why", "fill"),
-        Column("Measured", "fill"),
-    )
-    return Table(columns, tuple(lines))
+        says, why = f"{claim['says']} ({claim['place']})", f"{_sentence(claim['why'])}{condition}"
+        lines.append((claim["id"], word, says, why, measured))
+    titles = (*columns("text", "Id", "Verdict"), *columns("fill", "The paper says", "Why", "Measured"))
+    return Table(titles, tuple(lines))
 
 
 def _sentence(text: str) -> str:
@@ -129,38 +116,37 @@ def figure_1(manifest: Manifest, found: Mapping[str, Group], directory: Path) ->
     if "schemes" not in data:
         return []
     cases = found["damping-map"].cases if "damping-map" in found else ()
-    figures.save(figures_paper.radius_figure(data, _points(cases)), directory / "figure-1.svg")
     caption = (
         "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
         "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."
     )
-    return [FigureBlock("figure-1.svg", caption)]
+    return [histories.saved(radius_figure(data, _points(cases)), directory, "figure-1.svg", caption)]
 
 
 def _points(cases: Sequence[Case]) -> list[tuple[float, float]]:
-    pairs = [
-        (case.number("dda", f"{mode}.frequency"), case.number("dda", f"{mode}.spectral_radius"), case.scene.time.step)
-        for case in cases
-        for mode in ("mode1", "contact")
-    ]
-    points = [(w * dt, radius) for w, radius, dt in pairs if w is not None and radius is not None]
-    return [(x, y) for x, y in points if 0.1 <= x <= 100]
+    points = []
+    for case in cases:
+        for mode in ("mode1", "contact"):
+            frequency = case.number("dda", f"{mode}.frequency")
+            radius = case.number("dda", f"{mode}.spectral_radius")
+            if frequency is not None and radius is not None and 0.1 <= frequency * case.scene.time.step <= 100:
+                points.append((frequency * case.scene.time.step, radius))
+    return points
 
 
 def figure_block(figure: PaperFigure, group: Group, directory: Path) -> FigureBlock:
     """Draw one of the paper's figures and return its block."""
     panels = [_panel(figure, case) for case in group.cases]
     label = "Relative error of displacement [%]" if figure.relative else COLUMNS[figure.quantity][2]
-    file = f"figure-{figure.number}.svg"
-    figures.save(figures_paper.steps_figure(panels, label, figure.last), directory / file)
+    drawn = steps_figure(panels, label, figure.last)
     marked = any(panel.settled is not None for panel in panels)
     dash = " Dashed: step from which DDA stays within 1 % of static." if marked else ""
-    left_out = any(
-        "continuum" in case.histories and "continuum" not in p.lines
-        for case, p in zip(group.cases, panels, strict=True)
-    )
+    left_out = False
+    for case, panel in zip(group.cases, panels, strict=True):
+        left_out |= "continuum" in case.histories and "continuum" not in panel.lines
     less = f" The continuum is left out where its period has fewer than {COARSE} steps." if left_out else ""
-    return FigureBlock(file, f"Figure {figure.number}. {figure.caption}. Hairline: static value.{dash}{less}")
+    caption = f"Figure {figure.number}. {figure.caption}. Hairline: static value.{dash}{less}"
+    return histories.saved(drawn, directory, f"figure-{figure.number}.svg", caption)
 
 
 def _panel(figure: PaperFigure, case: Case) -> StepPanel:

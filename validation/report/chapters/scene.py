@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,25 +13,20 @@ import numpy as np
 from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups, varied_fields
-from validation.report.chapters.gates import ORDER, gate_table
+from validation.report.chapters.gates import gate_table
 from validation.report.chapters.ledger import METRICS
-from validation.report.chapters.text import (
-    AS_STATED,
-    cell,
-    parameters,
-    percent,
-    plain,
-    span,
-    word_notes,
-)
-from validation.report.figures import histories as figures
+from validation.report.chapters.text import AS_STATED, cell, parameters, percent, plain, span, word_notes
+from validation.report.figures import histories
 from validation.report.figures.curves import COLUMNS, Panel
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.row import Value
 from validation.runs.run import Outcome
+from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 MOST_PANELS = 10
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
@@ -58,7 +54,7 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
     blocks += [_history_block(group, column, directory) for column in _columns(group)]
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    if any(_finished(case) for case in group.cases):
+    if any(_finished(case) for case in group.cases) and features.linear(group.cases[0].scene):
         blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
     blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
     if group.verdicts:
@@ -81,26 +77,24 @@ def conclusion(group: Group) -> str:
 
 
 def _agreement(group: Group) -> str:
-    for reference in ("bar", "fem"):
-        values = [_pair_values(group, "dda", reference, metric) for metric in METRICS]
-        if any(values):
-            said = [
-                f"{span(v)} in {name}"
-                for v, name in zip(values, ("displacement", "contact pressure"), strict=True)
-                if v
-            ]
+    for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT)):
+        said = []
+        for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
+            if values := _pair_values(group, "dda", reference, metric):
+                said.append(f"{span(values)} in {name}")
+        if said:
             return f"against {reference}, dda differs by {' and '.join(said)} (relative L2)"
     return "no pair of solvers was compared"
 
 
 def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list[float]:
-    found = [group.compared(case, solver, reference) for case in group.cases]
-    return [float(m[metric]) for m in found if m and isinstance(m.get(metric), int | float)]
+    found = [group.number_of_pair(case, solver, reference, metric) for case in group.cases]
+    return [value for value in found if value is not None]
 
 
 def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
     """Return how many gates pass, fail or did not run, as part of a sentence."""
-    count = {word: sum(v["verdict"] == word for v in verdicts) for word in ORDER}
+    count = Counter(v["verdict"] for v in verdicts)
     if not verdicts:
         return "no gate judges this scene"
     if count["PASS"] == len(verdicts):
@@ -112,10 +106,12 @@ def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
 
 def _tension(group: Group) -> str:
     """Say where a locked contact hides tension."""
-    found = {
-        s: [v for case in group.cases if (v := case.number(s, "pressure.minimum")) is not None] for s in group.solvers
-    }
-    pulled = {s: min(values) for s, values in found.items() if values and min(values) < -1e-6 * _load(group)}
+    pulled: dict[str, float] = {}
+    for solver in group.solvers:
+        values = [case.number(solver, "pressure.minimum") for case in group.cases]
+        least = min((value for value in values if value is not None), default=0.0)
+        if least < -1e-6 * abs(group.cases[0].scene.load.pressure):
+            pulled[solver] = least
     if not pulled:
         return ""
     named = [s for s in ("dda", "bar", "fem") if s in pulled][:2] or list(pulled)[:2]
@@ -123,18 +119,14 @@ def _tension(group: Group) -> str:
     return f"the locked contact hides tension, down to {deepest}"
 
 
-def _load(group: Group) -> float:
-    return abs(group.cases[0].scene.load.pressure)
-
-
 def _damped_agreement(group: Group) -> str:
     """Warn where the agreement grows with the damping, since agreement alone then rewards the worse run."""
-    pairs = sorted(
-        (xi, values[0])
-        for case in group.cases
-        if (xi := case.number("dda", "mode1.damping")) is not None
-        and (values := _pair_values(replace(group, cases=(case,)), "dda", "bar", METRICS[0]))
-    )
+    pairs = []
+    for case in group.cases:
+        xi, error = case.number("dda", "mode1.damping"), group.number_of_pair(case, "dda", "bar", METRICS[0])
+        if xi is not None and error is not None:
+            pairs.append((xi, error))
+    pairs.sort()
     falls = all(a[0] < b[0] and a[1] > b[1] for a, b in itertools.pairwise(pairs))
     if len(pairs) < 3 or not falls:
         return ""
@@ -164,27 +156,32 @@ def _where(labels: Sequence[str]) -> str:
 
 def _columns(group: Group) -> list[str]:
     """Return the columns that some solver reports, displacement and contact pressure first."""
-    kept = {column for case in group.cases for history in case.histories.values() for column in history.columns}
+    kept: set[str] = set()
+    for case in group.cases:
+        kept.update(*(history.columns for history in case.histories.values()))
     return sorted(kept, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
 
 
 def _history_block(group: Group, column: str, directory: Path) -> FigureBlock:
     shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
-    window = shared_window(shown)
+    window = min(_ends(shown), default=0.0)  # cases of one figure are compared over the same time
     panels = [_panel(case, column, window) for case in shown]
-    file = f"{group.slug}-{column.replace('_', '-')}.svg"
-    figures.save(figures.history_figure(panels, column), directory / file)
     name = COLUMNS.get(column, (column,))[0]
     less = "" if len(shown) == len(group.cases) else f" ({len(shown)} of {len(group.cases)} cases)"
-    cut = any(h.time[-1] > window * 1.001 for case in shown for h in case.histories.values())
+    cut = max(_ends(shown), default=0.0) > window * 1.001
     span = f"The first {plain(window, 3)} s, the time that all cases run." if cut else ""
     caption = _history_caption(panels) if column == DISPLACEMENT else ""
-    return FigureBlock(file, " ".join(f"{name}{less}. {span} {caption}".split()))
+    file = f"{group.slug}-{column.replace('_', '-')}.svg"
+    said = " ".join(f"{name}{less}. {span} {caption}".split())
+    return histories.saved(histories.history_figure(panels, column), directory, file, said)
 
 
-def shared_window(cases: Sequence[Case]) -> float:
-    """Return the time that all cases of a sweep run [s]: cases of one figure are compared over the same time."""
-    return min((float(h.time[-1]) for case in cases for h in case.histories.values() if len(h.time)), default=0.0)
+def _ends(cases: Sequence[Case]) -> list[float]:
+    """Return the last instant of every history [s]."""
+    ends = []
+    for case in cases:
+        ends += [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
+    return ends
 
 
 def _history_caption(panels: Sequence[Panel]) -> str:
@@ -196,12 +193,12 @@ def _history_caption(panels: Sequence[Panel]) -> str:
 
 
 def _panel(case: Case, column: str, window: float) -> Panel:
-    histories = {s: h.until(window) for s, h in case.histories.items() if column in h.columns}
-    reference = case.reference if case.reference in histories else None
+    shown = {s: h.until(window) for s, h in case.histories.items() if column in h.columns}
+    reference = case.reference if case.reference in shown else None
     metric = f"{_PREFIX.get(column, column)}.static"
-    known = [case.number(solver, metric) for solver in (reference or "", "dda", *histories)]
+    known = [case.number(solver, metric) for solver in (reference or "", "dda", *shown)]
     title = "" if case.label == AS_STATED else case.label
-    return Panel(title, histories, next((v for v in known if v is not None), None), reference)
+    return Panel(title, shown, next((v for v in known if v is not None), None), reference)
 
 
 def drift_values(group: Group) -> list[tuple[int, float]]:
@@ -216,17 +213,16 @@ def _drift_blocks(group: Group, drift: Sequence[tuple[int, float]], directory: P
     slope = float(np.polyfit(np.log2(n), v, 1)[0])
     dda = group.cases[0].number("dda", "displacement.static")
     note = f": {plain(1e3 * slope, 3)} mm per doubling of n"
-    figure = figures.line_figure(
-        [figures.Line("fem", n, 1e3 * v, note)],
+    figure = histories.line_figure(
+        [histories.Line("fem", n, 1e3 * v, note)],
         "Elements a side n",
         "Static displacement [mm]",
         {} if dda is None else {"dda": 1e3 * dda},
         log2_x=True,
     )
-    file = f"{group.slug}-drift.svg"
-    figures.save(figure, directory / file)
+    caption = "Static displacement on corner point springs over the mesh, with the fitted slope."
     return [
-        FigureBlock(file, "Static displacement on corner point springs over the mesh, with the fitted slope."),
+        histories.saved(figure, directory, f"{group.slug}-drift.svg", caption),
         Callout(
             f"On corner point springs the static displacement changes by {plain(1e3 * slope, 3)} mm with every "
             "halving of the mesh and has no limit: a point force moves its own point of an elastic body "
@@ -277,11 +273,13 @@ def damping_table(group: Group) -> Table:
         for i, solver in enumerate(_finished(case)):
             values = (_measured(m, case.rows[solver].metrics.get(m.metric), case.scene) for m in _MEASURES)
             rows.append((*(() if long else (case.label if i == 0 else "",)), solver, *values))
-    columns = [Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES)]
-    measured = [row.metrics.get(m.metric) for case in group.cases for row in case.rows.values() for m in _MEASURES]
-    return Table(
-        tuple(columns if long else [Column("Case"), *columns]), tuple(rows), notes=word_notes(measured), ruled=not long
-    )
+    titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
+    measured: list[Value] = []
+    for case in group.cases:
+        for row in case.rows.values():
+            measured += [row.metrics.get(m.metric) for m in _MEASURES]
+    shown = titles if long else (Column("Case"), *titles)
+    return Table(shown, tuple(rows), notes=word_notes(measured), ruled=not long)
 
 
 def _finished(case: Case) -> list[str]:

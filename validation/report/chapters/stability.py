@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, short
-from validation.report.figures import histories as figures
-from validation.report.figures import stability as figures_stability
+from validation.report.figures import histories
+from validation.report.figures.stability import DigitMap, digit_maps, digits_of
 from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -70,9 +70,8 @@ def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> 
     matrix = [cell for cell in found if cell.scene.startswith(MATRIX)]
     for start, said in STARTS.items():
         for solver in SOLVERS:
-            blocks += _maps(
-                manifest["study"], [c for c in matrix if (c.solver, c.start) == (solver, start)], said, directory
-            )
+            own = [cell for cell in matrix if (cell.solver, cell.start) == (solver, start)]
+            blocks += _maps(manifest["study"], own, said, directory)
     return [*blocks, *factor_tables([c for c in found if c.scene.startswith(FACTOR)])]
 
 
@@ -83,7 +82,7 @@ def _numbers(found: Iterable[Cell], quantity: str) -> list[float]:
 
 def digits(error: float) -> int:
     """Return the whole number of correct digits."""
-    return int(figures_stability.digits_of(np.array(error)))
+    return int(digits_of(np.array(error)))
 
 
 def conclusion(found: Sequence[Cell]) -> str:
@@ -91,15 +90,13 @@ def conclusion(found: Sequence[Cell]) -> str:
     said = []
     for solver in SOLVERS:
         own = [c for c in found if c.solver == solver and (solver != "fem" or 1e-3 <= c.ratio <= 1e12)]
-        worst = [v for quantity in QUANTITIES for v in _numbers(own, quantity)]
+        worst = [*_numbers(own, "displacement"), *_numbers(own, "pressure")]
         if worst:
             where = " for p/E from 10⁻³ to 10¹²" if solver == "fem" else ""
             said.append(f"{solver} {digits(max(worst))}{where}")
-    grown = [c for c in found if c.solver == "dda" and c.row.outcome in (Outcome.UNSTABLE, Outcome.OVERFLOW)]
-    odd = [c for c in found if c.solver == "dda" and c.row.outcome is Outcome.MISPREDICTED]
-    tail = (
-        f"; {len(grown)} runs of dda left their bounds, {'all' if not odd else f'all but {len(odd)} more'} as predicted"
-    )
+    ends = Counter(cell.row.outcome for cell in found if cell.solver == "dda")
+    grown, odd = ends[Outcome.UNSTABLE] + ends[Outcome.OVERFLOW], ends[Outcome.MISPREDICTED]
+    tail = f"; {grown} runs of dda left their bounds, {f'all but {odd} more' if odd else 'all'} as predicted"
     return f"Correct digits kept at least, in both quantities: {', '.join(said)}{tail if grown else ''}."
 
 
@@ -115,11 +112,10 @@ def outcome_table(found: Sequence[Cell]) -> Table:
             count[str(kind) if named else str(cell.row.outcome)] += 1
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
-    columns = (Column("Solver"), *(Column(kind, "decimal") for kind in kinds), Column("otherwise", "fill"))
+    titles = (Column("Solver"), *columns("decimal", *kinds), Column("otherwise", "fill"))
     notes = tuple(f"{kind}: {kind.sentence}" for kind in Stability)
-    return Table(
-        columns, tuple(rows), "Outcomes by name; the bar has no matrix and completes or does not apply.", notes
-    )
+    caption = "Outcomes by name; the bar has no matrix and completes or does not apply."
+    return Table(titles, tuple(rows), caption, notes)
 
 
 def _maps(study: str, own: Sequence[Cell], said: str, directory: Path) -> list[Block]:
@@ -127,18 +123,14 @@ def _maps(study: str, own: Sequence[Cell], said: str, directory: Path) -> list[B
     if not any(_numbers(own, quantity) for quantity in QUANTITIES):
         return []
     ratios, steps = sorted({c.ratio for c in own}), sorted({c.step for c in own})
-    maps = [figures_stability.DigitMap(title, _worst(own, q, ratios, steps)) for q, title in QUANTITIES.items()]
+    maps = [DigitMap(title, _worst(own, q, ratios, steps)) for q, title in QUANTITIES.items()]
+    drawn = digit_maps(maps, [*map(_decade, ratios)], [*map(_decade, steps)], "Time step dt [s]", "p / E")
     solver, start = own[0].solver, own[0].start
-    file = f"{study}-digits-{solver}-{start}.svg"
-    drawn = figures_stability.digit_maps(
-        maps, [_decade(r) for r in ratios], [_decade(s) for s in steps], "Time step dt [s]", "p / E"
-    )
-    figures.save(drawn, directory / file)
     over = "over the static value where nothing has arrived, " if solver == "bar" else ""
     caption = (
         f"{solver} {said}: correct digits, {over}the worst of all bounded schemes and discounts; blank: no bounded run."
     )
-    return [FigureBlock(file, caption)]
+    return [histories.saved(drawn, directory, f"{study}-digits-{solver}-{start}.svg", caption)]
 
 
 def _worst(own: Sequence[Cell], quantity: str, ratios: Sequence[float], steps: Sequence[float]) -> Array:
@@ -157,19 +149,17 @@ def _decade(value: float) -> str:
 
 def factor_tables(found: Sequence[Cell]) -> list[Block]:
     """Return one table of the one-factor extremes: radius, condition, residual and digits."""
-    scenes = list(dict.fromkeys(c.scene for c in found))
     by_key = {(c.scene, c.solver): c for c in found}
+    scenes = dict.fromkeys(c.scene for c in found)
     rows = [_factor_row(scene, by_key) for scene in scenes]
     if not rows:
         return []
-    columns = (
+    titles = (
         Column("Scene", "id"),
-        Column("|λ|", "decimal", "dda"),
-        Column("condition", "decimal", "dda"),
-        Column("residual", "decimal", "dda"),
-        *(Column(name, "decimal", "Digits of displacement / pressure") for name in ("dda", "dda-textbook", "fem")),
+        *columns("decimal", "|λ|", "condition", "residual", group="dda"),
+        *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
     )
-    return [Heading("One datum at its extremes", 3), Table(columns, tuple(rows), ruled=False)]
+    return [Heading("One datum at its extremes", 3), Table(titles, tuple(rows), ruled=False)]
 
 
 def _factor_row(scene: str, found: Mapping[tuple[str, str], Cell]) -> tuple[str, ...]:

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
+from validation.report.blocks import Block, Column, Heading, PageBreak, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
 from validation.report.chapters.scene import scene_chapter
 from validation.report.chapters.text import DASH, percent, short
-from validation.report.figures import histories as figures
+from validation.report.figures import histories
+from validation.report.figures.histories import Line
 from validation.report.figures.work import work_figure
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -62,19 +63,17 @@ def _count(case: Case) -> int:
     return (case.scene.block.subdivide or (1, 1))[1]
 
 
-def _error(group: Group, case: Case, reference: str, metric: str) -> float | None:
-    value = (group.compared(case, "dda", reference) or {}).get(metric)
-    return float(value) if isinstance(value, int | float) else None
-
-
-def _line(name: str, group: Group, cases: list[Case], reference: str, metric: str) -> figures.Line | None:
+def _line(name: str, group: Group, cases: list[Case], reference: str, metric: str) -> Line | None:
     """Return one way to refine as a line: seconds and error, each point with its count."""
-    points = [(_seconds(case), _error(group, case, reference, metric), _count(case)) for case in cases]
-    kept = [(s, e, n) for s, e, n in points if s > 0 and e]
-    if not kept:
+    points = []
+    for case in cases:
+        seconds, error = _seconds(case), group.number_of_pair(case, "dda", reference, metric)
+        if seconds > 0 and error:
+            points.append((seconds, error, str(_count(case))))
+    if not points:
         return None
-    x, y, notes = zip(*kept, strict=True)
-    return figures.Line(name, np.array(x), np.array(y), " ".join(map(str, notes)))
+    x, y, notes = zip(*points, strict=True)
+    return Line(name, np.array(x), np.array(y), " ".join(notes))
 
 
 def _time_figures(found: dict[str, Group], directory: Path) -> list[Block]:
@@ -88,18 +87,14 @@ def _time_figures(found: dict[str, Group], directory: Path) -> list[Block]:
         group = found.get(f"subblocks-{kind}")
         if group is None:
             continue
-        patterns = {
-            name: [c for c in group.cases if c.scene.block.pattern == name] for name in ("squares", "triangles")
-        }
-        lines = [_line(name, group, cases, "fem", metric) for name, cases in patterns.items()]
+        lines = [_line(name, group, _of_pattern(group, name), "fem", metric) for name in ("squares", "triangles")]
         if kind == "axial" and (column := found.get("subblocks-column")) is not None:
             lines.append(_line("columns, μ = 0", column, list(column.cases), "bar", metric))
         drawn = [line for line in lines if line is not None]
         if drawn:
-            file = f"subblocks-time-{kind}.svg"
-            figures.save(work_figure(drawn, "Seconds of the run", "Relative L2 error"), directory / file)
             caption = f"{title}: error against run time. A number at a point counts the sub-blocks along a side."
-            blocks.append(FigureBlock(file, caption))
+            figure = work_figure(drawn, "Seconds of the run", "Relative L2 error")
+            blocks.append(histories.saved(figure, directory, f"subblocks-time-{kind}.svg", caption))
     return blocks
 
 
@@ -110,6 +105,10 @@ def _of_pattern(group: Group, pattern: str) -> list[Case]:
 def _ratio(case: Case, metric: str = "mode1.frequency") -> float | None:
     own, reference = case.number("dda", metric), case.number("fem", metric)
     return None if own is None or not reference else own / reference - 1
+
+
+def _short(value: float | None) -> str:
+    return DASH if value is None else short(value)
 
 
 def _percent(value: float | None) -> str:
@@ -124,67 +123,53 @@ def _patterns(group: Group) -> Table:
     rows = []
     for case in group.cases:
         work = case.rows["dda"].work if "dda" in case.rows else {}
-        error = _error(group, case, "fem", metric)
-        cells = (
-            _percent(_ratio(case)),
-            _percent(error),
-            str(work.get("unknowns", DASH)),
-            short(1e3 * _seconds(case), 3),
-        )
-        rows.append((case.scene.block.pattern, str(_count(case)), *cells))
-    columns = ("Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms")
-    kinds = ("text", "decimal", "text", "text", "decimal", "decimal")
-    return Table(
-        tuple(Column(title, kind) for title, kind in zip(columns, kinds, strict=True)),  # type: ignore[arg-type]
-        tuple(rows),
-        f"{group.title}, against quadratic elements",
-    )
+        errors = (_percent(_ratio(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
+        cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
+        rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
+    titles = (Column("Pattern"), Column("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
+    titles += columns("decimal", "Unknowns", "ms")
+    return Table(titles, tuple(rows), f"{group.title}, against quadratic elements")
 
 
 def _growth(found: dict[str, Group]) -> list[Block]:
     """Return one sentence on how the seconds of a step grow with the number of squares."""
-    cases = [c for name in ("subblocks-rocking", "subblocks-locking") if name in found for c in found[name].cases]
-    points = [
-        (c.rows["dda"].work["unknowns"], c.rows["dda"].seconds["stepping"] / c.scene.time.steps)
-        for c in cases
-        if c.scene.block.pattern == "squares" and "dda" in c.rows and c.rows["dda"].work.get("unknowns", 0) > 300
-    ]
-    if len({n for n, _ in points}) < 2:
+    points = []
+    for name in ("subblocks-rocking", "subblocks-locking"):
+        for case in _of_pattern(found[name], "squares") if name in found else ():
+            row = case.rows.get("dda")
+            if row is not None and row.work.get("unknowns", 0) > 300:
+                points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
+    if len(dict(points)) < 2:
         return []
     unknowns, seconds = np.array(points).T
     slope = np.polyfit(np.log(unknowns), np.log(seconds), 1)[0]
     largest = f"{unknowns.max():.0f} unknowns"
-    return [
-        Paragraph(f"Beyond 300 unknowns the time of a step grows as their number to the power {slope:.2f} ({largest}).")
-    ]
+    said = f"Beyond 300 unknowns the time of a step grows as their number to the power {slope:.2f} ({largest})."
+    return [Paragraph(said)]
 
 
 def _glue(group: Group) -> Table:
     """Return the error of the first frequency of squares for each glue, in both motions."""
-    ratios = list(dict.fromkeys(case.scene.block.glue_ratio for case in group.cases))
-
-    def error(ratio: float, turned: bool) -> str:
-        cases = [c for c in group.cases if c.scene.block.glue_ratio == ratio and bool(c.scene.load.traction) is turned]
-        return _percent(_ratio(cases[0]) if cases else None)
-
-    rows = tuple((short(ratio), error(ratio, False), error(ratio, True)) for ratio in ratios)
-    columns = (Column("glue_ratio", "decimal"), Column("Axial ω₁"), Column("Rocking ω₁"))
-    return Table(columns, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
+    errors: dict[float, dict[bool, str]] = {}
+    for case in group.cases:
+        glued = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
+        glued[bool(case.scene.load.traction)] = _percent(_ratio(case))
+    rows = tuple((short(ratio), *glued.values()) for ratio, glued in errors.items())
+    titles = (Column("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
+    return Table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
 
 
 def _rocking(group: Group) -> Table:
     """Return the rocking frequencies and damping ratios of block and elements for each patch width."""
-    names = ("mode1.frequency", "mode1.damping")
-    rows = tuple(
-        (
-            short(case.scene.fem.patch_width or case.scene.block.base_length),
-            *(DASH if (v := case.number(s, m)) is None else short(v) for m in names for s in ("dda", "fem")),
-            _percent(_ratio(case)),
-        )
-        for case in group.cases
-    )
-    columns = [Column("Patch width [m]", "decimal")]
-    columns += [Column(s, "decimal", g) for g in ("ω₁ [rad/s]", "ξ₁ [1]") for s in ("dda", "fem")]
-    return Table(
-        (*columns, Column("Block above elements")), rows, "First rocking mode on springs of equal total stiffness"
-    )
+    rows = []
+    for case in group.cases:
+        cells = []
+        for metric in ("mode1.frequency", "mode1.damping"):
+            cells += [_short(case.number(solver, metric)) for solver in ("dda", "fem")]
+        width = case.scene.fem.patch_width or case.scene.block.base_length
+        rows.append((short(width), *cells, _percent(_ratio(case))))
+    titles = columns("decimal", "Patch width [m]")
+    for group_title in ("ω₁ [rad/s]", "ξ₁ [1]"):
+        titles += columns("decimal", "dda", "fem", group=group_title)
+    caption = "First rocking mode on springs of equal total stiffness"
+    return Table((*titles, Column("Block above elements")), tuple(rows), caption)

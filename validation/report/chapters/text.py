@@ -105,14 +105,12 @@ def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
 
 def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
     """Return a short label per case of one scene: the swept values in the symbols of the text."""
-    fields = [CaseName.parse(name).values for name in names]
-    short = [
-        _label({f: v for f, v in values.items() if f != "time.steps"}, scene)
-        for values, scene in zip(fields, scenes, strict=True)
-    ]
-    if len(set(short)) == len(short):
-        return short
-    return [_label(values, scene) for values, scene in zip(fields, scenes, strict=True)]
+    fields = [dict(CaseName.parse(name).values) for name in names]
+    full = list(map(_label, fields, scenes))
+    for values in fields:
+        values.pop("time.steps", None)
+    short = list(map(_label, fields, scenes))
+    return short if len(set(short)) == len(short) else full
 
 
 def _label(values: Mapping[str, str], scene: Scene) -> str:

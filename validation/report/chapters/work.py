@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Column, FigureBlock, Heading, Paragraph, Table
+from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.gates import band
 from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import DASH, percent, plain, short
-from validation.report.figures import histories as figures
+from validation.report.figures import histories
 from validation.report.figures.cost import work_figure
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
@@ -32,7 +32,6 @@ def scheme_blocks(found: Sequence[Point], prefix: str, title: str, directory: Pa
     """Return the figure, the sentences and the table of one scheme."""
     if not found:
         return [Heading(title, 2), Paragraph("No run completed.")]
-    figures.save(work_figure(found), directory / f"{prefix}.svg")
     caption = (
         "Error against cost, step and mesh refined together. Left of each pair against the bar under the same scheme, "
         "right against the continuum; displacement and pressure relative in L2, the frequency relative, the damping "
@@ -43,7 +42,7 @@ def scheme_blocks(found: Sequence[Point], prefix: str, title: str, directory: Pa
         Heading(title, 2),
         Paragraph(cheapest_sentence(found), "lead"),
         Paragraph(floor_sentence(found)),
-        FigureBlock(f"{prefix}.svg", caption),
+        histories.saved(work_figure(found), directory, f"{prefix}.svg", caption),
         run_table(found),
     ]
 
@@ -84,25 +83,22 @@ def floor_sentence(found: Sequence[Point]) -> str:
 
 def run_table(found: Sequence[Point]) -> Table:
     """Return errors, work and seconds of every run."""
-    columns = (
+    titles = (
         Column("Method"),
-        Column("dt [ms]", "decimal"),
-        Column("n", "decimal"),
-        Column("v", "decimal", "Error against the bar"),
-        Column("pressure", "decimal", "Error against the bar"),
-        Column("v", "decimal", "Error against the continuum"),
-        Column("pressure", "decimal", "Error against the continuum"),
-        Column("Unknowns", "decimal"),
-        Column("Solves", "decimal"),
-        Column("Set-up [ms]", "decimal"),
-        Column("Steps [ms]", "decimal"),
+        *columns("decimal", "dt [ms]", "n"),
+        *columns("decimal", "v", "pressure", group="Error against the bar"),
+        *columns("decimal", "v", "pressure", group="Error against the continuum"),
+        *columns("decimal", "Unknowns", "Solves", "Set-up [ms]", "Steps [ms]"),
     )
-    return Table(columns, tuple(_row(p) for p in found), ruled=False)
+    return Table(titles, tuple(_row(p) for p in found), ruled=False)
 
 
 def _row(p: Point) -> tuple[str, ...]:
-    pairs = [(q, r) for r in ("bar", "continuum") for q in ("displacement", "contact pressure")]
-    errors = [plain(p.errors[pair], 2) if pair in p.errors else DASH for pair in pairs]
+    errors = []
+    for reference in ("bar", "continuum"):
+        for quantity in ("displacement", "contact pressure"):
+            error = p.errors.get((quantity, reference))
+            errors.append(DASH if error is None else plain(error, 2))
     mesh = str(p.scene.fem.per_side) if p.method.startswith("fem") else DASH
     spent = [plain(1e3 * p.row.seconds.get(part, 0.0), 2) for part in ("setup", "stepping")]
     work = [str(p.row.work.get(name, DASH)) for name in ("unknowns", "solves")]
@@ -111,17 +107,11 @@ def _row(p: Point) -> tuple[str, ...]:
 
 def order_blocks(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     """Return the table of fitted orders and of the comparison with the record."""
-    rows = tuple(
-        (
-            v["scene"],
-            v["metric"],
-            plain(float(v["value"]), 4) if isinstance(v["value"], int | float) else DASH,
-            band(v),
-            v["verdict"],
-        )
-        for v in verdicts
-    )
-    columns = (
+    rows = []
+    for v in verdicts:
+        value = plain(float(v["value"]), 4) if isinstance(v["value"], int | float) else DASH
+        rows.append((v["scene"], v["metric"], value, band(v), v["verdict"]))
+    titles = (
         Column("Refined", "code"),
         Column("Metric", "code"),
         Column("Value", "decimal"),
@@ -130,6 +120,6 @@ def order_blocks(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     )
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
+        "grid-convergence index as its uncertainty."
     )
-    note += "grid-convergence index as its uncertainty."
-    return [Paragraph(gate_count(verdicts)), Table(columns, rows, notes=(note,), ruled=False)]
+    return [Paragraph(gate_count(verdicts)), Table(titles, tuple(rows), notes=(note,), ruled=False)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from validation.report.figures.curves import HAIR, style_of
-from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends
+from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, one_axes
 from validation.studies.work.points import COSTS, QUANTITIES, ROUNDING, Point, floor, front
 
 NOTHING = 1e-12  # a difference of damping ratios below is rounding: the scheme damps nothing
@@ -25,14 +26,10 @@ def work_figure(found: Sequence[Point]) -> Figure:
     """
     with house_style():
         margins = Margins(15.0, 4.0, 13.0, 9.5)
-        shown = [
-            name
-            for name in QUANTITIES
-            if any(y > NOTHING for p in found for (q, _), y in p.errors.items() if q == name)
-        ]
-        figure, grid = axes_grid([(27.0, 4.0)] * len(shown), len(COSTS) * len(REFERENCES), margins)
+        shown = [name for name in QUANTITIES if _differs(found, name)]
+        panels = list(itertools.product(COSTS, REFERENCES))
+        figure, grid = axes_grid([(27.0, 4.0)] * len(shown), len(panels), margins)
         for row, quantity in zip(grid, shown, strict=True):
-            panels = [(cost, reference) for cost in COSTS for reference in REFERENCES]
             for axes, (cost, reference) in zip(row, panels, strict=True):
                 _panel(axes, found, quantity, cost, reference)
                 if row is grid[0]:
@@ -47,22 +44,28 @@ def work_figure(found: Sequence[Point]) -> Figure:
     return figure
 
 
+def _differs(found: Sequence[Point], quantity: str) -> bool:
+    """Whether some run has an error in a quantity that is more than rounding."""
+    pairs = itertools.product(found, REFERENCES)
+    return any(point.errors.get((quantity, reference), 0.0) > NOTHING for point, reference in pairs)
+
+
 def _panel(axes: Axes, found: Sequence[Point], quantity: str, cost: str, reference: str) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
-    shown = [(p, COSTS[cost](p), p.errors[quantity, reference]) for p in found if (quantity, reference) in p.errors]
-    shown = [(p, x, y) for p, x, y in shown if x > 0 and y > 0]
-    for method in dict.fromkeys(p.method for p, _, _ in shown):
-        own = [(x, y) for p, x, y in shown if p.method == method]
-        x, y = np.array(own).T
+    shown: dict[str, list[tuple[float, float]]] = {}
+    for point in found:
+        x, y = COSTS[cost](point), point.errors.get((quantity, reference), 0.0)
+        if x > 0 and y > 0:
+            shown.setdefault(point.method, []).append((x, y))
+    for method, own in shown.items():
         color = style_of(method).color
-        axes.plot(x, y, lw=0.8, color=color, zorder=3)
+        axes.plot(*np.array(own).T, lw=0.8, color=color, zorder=3)
         for a, b in own:
             axes.plot(a, b, "o", ms=2.6, mec=color, mew=0.6, mfc="white" if b < ROUNDING else color, zorder=4)
-    best = front([(x, y) for _, x, y in shown])
+    best = front(list(itertools.chain(*shown.values())))
     if best:
-        x, y = np.array(best).T
-        axes.step(x, y, where="post", color="#bbbbbb", lw=2.2, zorder=1)
+        axes.step(*np.array(best).T, where="post", color="#bbbbbb", lw=2.2, zorder=1)
     level = floor(found, quantity, reference)
     if level:
         axes.axhline(level, color=style_of("dda").color, lw=HAIR, ls=":", zorder=2)
@@ -93,16 +96,12 @@ def _legend(figure: Figure, found: Sequence[Point]) -> None:
 def columns_figure(names: tuple[str, str], series: dict[str, list[tuple[float, float]]]) -> Figure:
     """Draw one column of a study's table against another, a line for each solver, both logarithmic."""
     with house_style():
-        figure, ((axes,),) = axes_grid([(70.0, 0.0)], 1, Margins(16.0, 62.0, 3.0, 9.5))
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        figure, axes = one_axes(70.0, Margins(16.0, 62.0, 3.0, 9.5), names, logarithmic=True)
         ends = {}
         for name, pairs in series.items():
             x, y = np.array(sorted(pairs)).T
             axes.plot(x, y, "o-", ms=2.6, lw=0.8, color=style_of(name).color)
             ends[name] = float(y[-1])
-        axes.set_xlabel(names[0])
-        axes.set_ylabel(names[1])
         axes.autoscale_view()
         label_ends(axes, ends)
     return figure

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import isotonic_regression
 
 from validation.runs.history import Array, History
 from validation.solvers.contract import LineStyle
@@ -91,26 +92,19 @@ def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
 def envelope(x: Array, y: Array, bins: int = 40) -> tuple[Array, Array]:
     """Return the largest magnitude of y in each of `bins` equal parts of the samples, at the parts' middles."""
     edges = np.unique(np.linspace(0, x.size, bins + 1).astype(int))
-    pairs = list(itertools.pairwise(edges))
-    return (np.array([(x[i] + x[j - 1]) / 2 for i, j in pairs]), np.array([np.abs(y[i:j]).max() for i, j in pairs]))
+    return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, np.maximum.reduceat(np.abs(y), edges[:-1])
 
 
 def nudge(wanted: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
     """Return places at least `gap` apart, in the order of and as near as possible to the wanted ones.
 
-    The least-squares answer: isotonic regression (pool adjacent violators) of ``wanted - gap * rank``, clipped so
-    that all places stay within [low, high] as long as they fit.
+    The least-squares answer: isotonic regression of ``wanted - gap * rank``, clipped so that all places
+    stay within [low, high] as long as they fit.
     """
     goal = np.asarray(wanted, dtype=float)
     order = np.argsort(goal, kind="stable")
     steps = gap * np.arange(goal.size)
-    pools: list[tuple[float, int]] = []
-    for value in goal[order] - steps:
-        pools.append((float(value), 1))
-        while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
-            (a, n), (b, m) = pools[-2:]
-            pools[-2:] = [((a * n + b * m) / (n + m), n + m)]
-    level = np.repeat([v for v, _ in pools], [n for _, n in pools])
+    level = isotonic_regression(goal[order] - steps).x
     places = np.empty_like(goal)
     places[order] = np.clip(level, low, max(low, high - gap * (goal.size - 1))) + steps
     return places
@@ -136,8 +130,11 @@ class Panel:
 
 def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
-    values = np.concatenate([h.columns[column] for p in panels for h in p.histories.values()] or [np.ones(1)])
-    values = np.append(values[np.isfinite(values)], 0.0)
+    found = [np.zeros(1)]
+    for panel in panels:
+        found += [history.columns[column] for history in panel.histories.values()]
+    values = np.concatenate(found if len(found) > 1 else [np.zeros(1), np.ones(1)])
+    values = values[np.isfinite(values)]
     limit = 6 * max((abs(p.static) for p in panels if p.static), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 
@@ -148,7 +145,10 @@ def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
         return {}
     base = panel.histories[panel.reference]
     scale = abs(panel.static or 0.0) or float(np.abs(base.columns[column]).max()) or 1.0
-    others = {s: h for s, h in panel.histories.items() if s != panel.reference and h.time.size == base.time.size}
-    with np.errstate(all="ignore"):  # a run that blew up differs by infinity
-        scaled = {s: (h.columns[column] - base.columns[column]) / scale for s, h in others.items()}
-    return {s: envelope(base.time, np.where(np.isfinite(d), d, np.inf)) for s, d in scaled.items()}
+    found = {}
+    for solver, history in panel.histories.items():
+        if solver != panel.reference and history.time.size == base.time.size:
+            with np.errstate(all="ignore"):  # a run that blew up differs by infinity
+                scaled = (history.columns[column] - base.columns[column]) / scale
+            found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
+    return found

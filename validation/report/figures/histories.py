@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import matplotlib as mpl
 import numpy as np
@@ -15,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
+from validation.report.blocks import FigureBlock
 from validation.report.figures.curves import (
     COLUMNS,
     HAIR,
@@ -30,6 +32,7 @@ from validation.report.figures.curves import (
 from validation.runs.files import write_atomically
 from validation.runs.history import Array
 
+P = TypeVar("P", bound=Any)  # a dataclass with a title
 WIDTH = 166.0  # mm, text width of the report
 DOT = "#0072b2"
 LABEL_GAP = 3.0  # mm between the names of two lines
@@ -52,6 +55,12 @@ def save(figure: Figure, path: Path) -> Path:
     with house_style():
         write_atomically(path, lambda stream: figure.savefig(stream, format="svg", metadata={"Date": None}))
     return path
+
+
+def saved(figure: Figure, directory: Path, file: str, caption: str) -> FigureBlock:
+    """Write a figure into a directory and return its block."""
+    save(figure, directory / file)
+    return FigureBlock(file, caption)
 
 
 @dataclass(frozen=True)
@@ -79,6 +88,19 @@ def axes_grid(
     return figure, grid
 
 
+def one_axes(
+    height: float, margins: Margins, labels: tuple[str, str], logarithmic: bool = False
+) -> tuple[Figure, Axes]:
+    """Return a figure with one pair of axes of a height [mm], labelled in x and y."""
+    figure, ((axes,),) = axes_grid([(height, 0.0)], 1, margins)
+    if logarithmic:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    return figure, axes
+
+
 def size_of(axes: Axes) -> tuple[float, float]:
     """Return width and height of the axes [mm]."""
     figure = axes.get_figure()
@@ -88,31 +110,30 @@ def size_of(axes: Axes) -> tuple[float, float]:
     return box.width * figure.get_figwidth() * 25.4, box.height * figure.get_figheight() * 25.4
 
 
-def label_ends(axes: Axes, ends: Mapping[str, float], names: Mapping[str, str] | None = None) -> None:
+def label_ends(
+    axes: Axes,
+    ends: Mapping[str, float],
+    names: Mapping[str, str] | None = None,
+    colors: Mapping[str, str] | None = None,
+    below: float = 1.0,
+) -> None:
     """Write the names of lines beside their ends (data coordinates), nudged apart, with a thin leader.
 
-    The limits of the axes must have been set before; `names` replaces the text of a label.
+    The limits of the axes must have been set before; `names` replaces the text of a label, `colors` the solver's own,
+    and labels stand at most `below` mm below the axes.
     """
     if not ends:
         return
     width, height = size_of(axes)
-    inverse = axes.transAxes.inverted()
-    right = axes.get_xlim()[1]
+    inverse, right = axes.transAxes.inverted(), axes.get_xlim()[1]
     points = [inverse.transform(axes.transData.transform((right, y))) for y in ends.values()]
     own = [float(np.clip(point[1], 0, 1)) for point in points]
-    places = nudge(own, LABEL_GAP / height, -1.0 / height, 1 + 1.0 / height)
+    places = nudge(own, LABEL_GAP / height, -below / height, 1 + 1.0 / height)
     for name, start, place in zip(ends, own, places, strict=True):
-        color = style_of(name).color
-        axes.plot([1, 1 + 2.5 / width], [start, place], transform=axes.transAxes, color=color, lw=HAIR, clip_on=False)
-        axes.text(
-            1 + 3.1 / width,
-            place,
-            (names or {}).get(name, name),
-            transform=axes.transAxes,
-            color=color,
-            va="center_baseline",
-            ha="left",
-        )
+        color = style_of(name).color if colors is None else colors[name]
+        where: dict[str, Any] = {"transform": axes.transAxes, "color": color}
+        axes.plot([1, 1 + 2.5 / width], [start, place], lw=HAIR, clip_on=False, **where)
+        axes.text(1 + 3.1 / width, place, (names or {}).get(name, name), va="center_baseline", ha="left", **where)
 
 
 def draw_line(axes: Axes, name: str, x: Array, y: Array) -> None:
@@ -138,32 +159,35 @@ def history_figure(panels: Sequence[Panel], column: str) -> Figure:
     as the largest magnitude in each fortieth of the time, on a logarithmic axis.
     """
     columns = _columns(len(panels))
-    bands = -(-len(panels) // columns)
+    letters = [max(map(len, panel.histories), default=0) for panel in panels]
+    room = max(21.0, 4.0 + LETTER * max(letters, default=0))
     with house_style():
-        margins = Margins(right=_label_room(panels))
-        titles, extra = wrapped_titles([panel.title for panel in panels], columns, margins)
-        panels = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
-        margins = replace(margins, top=margins.top + extra)
-        figure, grid = axes_grid([(24.0, 2.5), (15.0, 13.0 + extra)] * bands, columns, margins)
-        for band in range(bands):
-            some = panels[band * columns : (band + 1) * columns]
-            _history_row(grid[2 * band], some, column)
-            _difference_row(grid[2 * band + 1], some, column)
+        figure, bands = small_multiples(panels, columns, Margins(right=room), [(24.0, 2.5), (15.0, 13.0)])
+        for some, (above, below) in bands:
+            _history_row(above, some, column)
+            _difference_row(below, some, column)
     return figure
 
 
-def wrapped_titles(titles: Sequence[str], columns: int, margins: Margins) -> tuple[list[str], float]:
-    """Break titles so that they stay above their panel; return them and the height that they need more [mm]."""
+def small_multiples(
+    panels: Sequence[P], columns: int, margins: Margins, rows: Sequence[tuple[float, float]]
+) -> tuple[Figure, list[tuple[Sequence[P], list[list[Axes]]]]]:
+    """Return a figure of titled panels in bands, and for each band its panels and its rows of axes.
+
+    Titles are broken so that they stay above their panel; bands and margin grow by the lines that this takes.
+    """
     across = (WIDTH - margins.left - margins.right) / columns - COLUMN_GAP
-    # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
-    whole = [", ".join(part.replace(" ", "\u00a0") for part in title.split(", ")) for title in titles]
-    found = [textwrap.fill(title, max(8, int(across / TITLE_LETTER)), break_long_words=False) for title in whole]
-    return found, TITLE_LINE * max((title.count("\n") for title in found), default=0)
-
-
-def _label_room(panels: Sequence[Panel]) -> float:
-    """Return the width that the longest solver's name takes beside the last panel [mm]."""
-    return max(21.0, *(4.0 + LETTER * len(name) for panel in panels for name in panel.histories), 0.0)
+    titles = []
+    for panel in panels:
+        # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
+        whole = ", ".join(part.replace(" ", "\u00a0") for part in panel.title.split(", "))
+        titles.append(textwrap.fill(whole, max(8, int(across / TITLE_LETTER)), break_long_words=False))
+    extra = TITLE_LINE * max((title.count("\n") for title in titles), default=0)
+    shown = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
+    band = [*rows[:-1], (rows[-1][0], rows[-1][1] + extra)]
+    groups = [shown[i : i + columns] for i in range(0, len(shown), columns)]
+    figure, grid = axes_grid(band * len(groups), columns, replace(margins, top=margins.top + extra))
+    return figure, [(some, grid[len(rows) * i : len(rows) * (i + 1)]) for i, some in enumerate(groups)]
 
 
 def _columns(count: int) -> int:
@@ -188,17 +212,18 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str) -> None:
         axes.yaxis.set_major_locator(MaxNLocator(5))
         if panel.static is not None:
             axes.axhline(factor * panel.static, color="#bbbbbb", lw=HAIR, zorder=1)
-    _row_labels(
-        row,
-        panels,
-        f"{name} [{unit}]" if unit else name,
-        {s: factor * float(np.nan_to_num(h.columns[column][-1])) for p in panels for s, h in p.histories.items()},
-    )
+    ends = {}
+    for panel in panels:
+        for solver, history in panel.histories.items():
+            ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
+    _row_labels(row, len(panels), f"{name} [{unit}]" if unit else name, ends)
 
 
 def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str) -> None:
     curves = [differences(panel, column) for panel in panels]
-    values = np.concatenate([y for lines in curves for _, y in lines.values()] or [np.ones(1)])
+    values = np.array([1.0]) if not any(curves) else np.zeros(0)
+    for lines in curves:
+        values = np.concatenate([values, *(y for _, y in lines.values())])
     values = values[(values > FLOOR) & np.isfinite(values)]
     low, high = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
     low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** min(2, math.ceil(math.log10(high) + 0.05))
@@ -208,32 +233,41 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str) -> No
             draw_line(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
         _time_axis(axes, panel)
         axes.set_xlabel("Time [s]", labelpad=1.5)
-    ends = {s: float(np.clip(y[-1], low, high)) for lines in curves for s, (_, y) in lines.items()}
-    _row_labels(row, panels, "|Δ| / static", ends)
+    ends: dict[str, float] = {}
+    for lines in curves:
+        ends |= {solver: float(np.clip(y[-1], low, high)) for solver, (_, y) in lines.items()}
+    _row_labels(row, len(panels), "|Δ| / static", ends)
 
 
-def _row_labels(row: list[Axes], panels: Sequence[Panel], label: str, ends: Mapping[str, float]) -> None:
-    """Label the y axis at the left, hide the other panels' tick labels, name the lines at the right."""
-    row[0].set_ylabel(label)
+def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float]) -> None:
+    share_left(row, count, label)
     row[0].yaxis.set_label_coords(-9.5 / size_of(row[0])[0], 0.5)
-    for axes in row[1 : len(panels)]:
+    label_ends(row[count - 1], ends)
+
+
+def share_left(row: Sequence[Axes], count: int, label: str) -> None:
+    """Label the y axis at the left, hide the other panels' tick labels and all of the axes beyond the count."""
+    row[0].set_ylabel(label)
+    for axes in row[1:count]:
         axes.tick_params(labelleft=False)
-    for axes in row[len(panels) :]:
+    for axes in row[count:]:
         axes.set_axis_off()
-    label_ends(row[len(panels) - 1], ends)
+
+
+def outer_ticks(axes: Axes, last: float, texts: Mapping[float, str]) -> None:
+    """Set ticks on the x axis with their labels; the outer ones stay inside, clear of the neighbouring panels."""
+    axes.set_xticks(list(texts), list(texts.values()))
+    labels = axes.get_xticklabels()
+    labels[0].set_horizontalalignment("left")
+    if max(texts) > 0.95 * last:
+        labels[-1].set_horizontalalignment("right")
 
 
 def _time_axis(axes: Axes, panel: Panel) -> None:
-    """Set limits and ticks; the outer tick labels stay inside, clear of the neighbouring panels."""
     longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
     axes.set_xlim(0, longest)
     ticks = MaxNLocator(3 if size_of(axes)[0] < 40 else 5, steps=[1, 2, 5, 10]).tick_values(0, longest)
-    shown = [float(tick) for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)]
-    axes.set_xticks(shown, [f"{tick:g}" for tick in shown])
-    labels = axes.get_xticklabels()
-    labels[0].set_horizontalalignment("left")
-    if shown[-1] > 0.95 * longest:
-        labels[-1].set_horizontalalignment("right")
+    outer_ticks(axes, longest, {float(tick): f"{tick:g}" for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)})
 
 
 @dataclass(frozen=True)
@@ -246,8 +280,12 @@ class LedgerLine:
 
 def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
     """Draw the parts of the error side by side, one line per case: displacement filled, contact pressure open."""
-    parts = list(dict.fromkeys(part for line in lines for part in line.parts))
-    values = [v for line in lines for pair in line.parts.values() for v in pair if v]
+    parts: dict[str, None] = {}
+    values: list[float] = []
+    for line in lines:
+        parts |= dict.fromkeys(line.parts)
+        for pair in line.parts.values():
+            values += [value for value in pair if value]
     low, high = min(values, default=1e-16), max(values, default=1.0)
     limits = 10.0 ** math.floor(math.log10(max(low, 1e-17))), 10.0 ** math.ceil(math.log10(min(high, 1e3)) + 0.05)
     with house_style():
@@ -257,13 +295,8 @@ def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
             _ledger_axes(axes, [line.parts.get(part, (None, None)) for line in lines], limits)
         row[0].set_yticks(range(len(lines)), [line.label for line in lines])
         row[0].tick_params(axis="y", length=0, pad=5.0)
-        figure.text(
-            (48 + (WIDTH - 52) / 2) / WIDTH,
-            0.5 / (figure.get_figheight() * 25.4),
-            "Relative L2 difference",
-            ha="center",
-            va="bottom",
-        )
+        middle, bottom = (48 + (WIDTH - 52) / 2) / WIDTH, 0.5 / (figure.get_figheight() * 25.4)
+        figure.text(middle, bottom, "Relative L2 difference", ha="center", va="bottom")
     return figure
 
 
@@ -298,7 +331,7 @@ def line_figure(
 ) -> Figure:
     """Draw named lines (with markers where they have few points) and horizontal levels, labelled at their ends."""
     with house_style():
-        figure, ((axes,),) = axes_grid([(38.0, 0.0)], 1, Margins(16.0, 56.0, 3.0, 9.5))
+        figure, axes = one_axes(38.0, Margins(16.0, 56.0, 3.0, 9.5), (x_label, y_label))
         if log2_x:
             axes.set_xscale("log", base=2)
             axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -311,11 +344,6 @@ def line_figure(
             axes.axhline(level, color=style_of(name).color, lw=style_of(name).width)
         axes.margins(x=0.02, y=0.08)
         axes.autoscale_view()
-        axes.set_xlabel(x_label)
-        axes.set_ylabel(y_label)
-        label_ends(
-            axes,
-            {line.name: float(line.y[-1]) for line in lines} | dict(levels or {}),
-            {line.name: f"{line.name}{line.note}" for line in lines},
-        )
+        ends = {line.name: float(line.y[-1]) for line in lines} | dict(levels or {})
+        label_ends(axes, ends, {line.name: f"{line.name}{line.note}" for line in lines})
     return figure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,11 @@ from validation.report.figures.histories import (
     draw_line,
     house_style,
     label_ends,
+    one_axes,
+    outer_ticks,
+    share_left,
     size_of,
-    wrapped_titles,
+    small_multiples,
 )
 from validation.runs.history import Array
 from validation.runs.records import BudgetRecord
@@ -39,7 +42,6 @@ class StepPanel:
     lines: Mapping[str, Array]
     level: float | None = None
     settled: float | None = None
-    marks: Sequence[float] = field(default_factory=tuple)
 
 
 def steps_figure(panels: Sequence[StepPanel], label: str, last: int) -> Figure:
@@ -56,16 +58,17 @@ def steps_figure(panels: Sequence[StepPanel], label: str, last: int) -> Figure:
                 draw_line(axes, name, x, y)
             _mark(axes, panel)
             _step_axis(axes, last)
-        row[0].set_ylabel(label)
-        for axes in row[1:]:
-            axes.tick_params(labelleft=False)
+        share_left(row, len(row), label)
         label_ends(row[-1], {n: float(v[min(last, v.size) - 1]) for n, v in panels[-1].lines.items()})
     return figure
 
 
 def _range(panels: Sequence[StepPanel], last: int) -> tuple[float, float]:
-    values = np.concatenate([v[:last] for panel in panels for v in panel.lines.values()])
-    values = np.append(values[np.isfinite(values)], 0.0)
+    shown = [np.zeros(1)]
+    for panel in panels:
+        shown += [line[:last] for line in panel.lines.values()]
+    values = np.concatenate(shown)
+    values = values[np.isfinite(values)]
     pad = 0.06 * float(np.ptp(values)) or 1.0
     return float(values.min()) - pad, float(values.max()) + pad
 
@@ -93,14 +96,10 @@ def _mark(axes: Axes, panel: StepPanel) -> None:
 def _step_axis(axes: Axes, last: int) -> None:
     room = size_of(axes)[0] > (34 if last < 1000 else 60)
     ticks = MaxNLocator(4 if room else 2, integer=True, steps=[1, 2, 5, 10]).tick_values(0, last)
-    shown = [float(tick) for tick in ticks if 0 <= tick <= last]
-    axes.set_xticks(shown, [f"{tick:,.0f}".replace(",", "\u202f") for tick in shown])
+    texts = {float(tick): f"{tick:,.0f}".replace(",", "\u202f") for tick in ticks if 0 <= tick <= last}
+    outer_ticks(axes, last, texts)
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.set_xlabel("Time step", labelpad=1.5)
-    labels = axes.get_xticklabels()
-    labels[0].set_horizontalalignment("left")
-    if shown[-1] > 0.95 * last:
-        labels[-1].set_horizontalalignment("right")
 
 
 # ---- figure 1 -----------------------------------------------------------------------------------------------------
@@ -110,19 +109,21 @@ def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]
     """Draw spectral radius over w dt for some schemes, what the paper prints dashed, and the code's own operators."""
     omega = np.array(data["omega"])
     with house_style():
-        figure, ((axes,),) = axes_grid([(58.0, 0.0)], 1, Margins(13.0, 56.0, 4.0, 9.5))
+        figure, axes = one_axes(58.0, Margins(13.0, 56.0, 4.0, 9.5), ("ω dt", "Spectral radius |λ|"))
         axes.set_xscale("log")
         axes.set_xlim(omega[0], omega[-1])
         axes.set_ylim(0, 1.06)
-        ends: dict[str, tuple[float, str]] = {}
+        ends: dict[str, float] = {}
+        colors: dict[str, str] = {}
         for (name, curve), color in zip(data["schemes"].items(), SCHEME_COLORS, strict=True):
             radius, printed = np.array(curve["radius"]), np.array(curve["printed"])
             axes.plot(omega, radius, color=color, lw=1.2, zorder=3)
-            ends[name] = (float(radius[-1]), color)
+            ends[name], colors[name] = float(radius[-1]), color
             departs = np.abs(printed - radius) > 1e-6
             if departs.any():
                 axes.plot(omega[departs], printed[departs], color=color, lw=0.9, ls=(0, (4, 2)), zorder=2)
-                ends[f"{name.split(' (')[0]}: √(1+h), as printed"] = (float(printed[-1]), color)
+                name = f"{name.split(' (')[0]}: √(1+h), as printed"
+                ends[name], colors[name] = float(printed[-1]), color
         if points:
             x, y = np.array(points).T
             axes.plot(x, y, "o", ms=2.6, mfc="none", mec=style_of("dda").color, mew=0.6, zorder=5)
@@ -131,30 +132,9 @@ def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]
             )
         axes.axvline(4.0, color=GREY, lw=HAIR, ls=(0, (2, 2)))
         axes.annotate("ω dt = 4", (4.0, 0.02), (3, 0), textcoords="offset points", color=GREY)
-        axes.set_xlabel("ω dt")
-        axes.set_ylabel("Spectral radius |λ|")
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        _colored_ends(axes, ends)
+        label_ends(axes, ends, colors=colors, below=0.0)
     return figure
-
-
-def _colored_ends(axes: Axes, ends: Mapping[str, tuple[float, str]]) -> None:
-    """Write names beside the ends of lines in the lines' own colours, nudged apart."""
-    from validation.report.figures.curves import nudge
-
-    width, height = size_of(axes)
-    low, high = axes.get_ylim()
-    to_unit = (
-        (lambda y: (math.log10(y / low)) / math.log10(high / low))
-        if axes.get_yscale() == "log"
-        else (lambda y: (y - low) / (high - low))
-    )
-    own = [float(np.clip(to_unit(y), 0, 1)) for y, _ in ends.values()]
-    places = nudge(own, 3.0 / height, 0.0, 1.0 + 1 / height)
-    for (name, (_, color)), start, place in zip(ends.items(), own, places, strict=True):
-        line = [1, 1 + 2.5 / width], [start, place]
-        axes.plot(*line, transform=axes.transAxes, color=color, lw=HAIR, clip_on=False)
-        axes.text(1 + 3.1 / width, place, name, transform=axes.transAxes, color=color, va="center_baseline")
 
 
 # ---- the damping budget -------------------------------------------------------------------------------------------
@@ -173,29 +153,15 @@ class BudgetPanel:
 
 def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
     """Draw total damping ratio over dt, split into its parts, with the limits, one panel a setting."""
-    columns = min(len(panels), BUDGET_PANELS)
-    bands = -(-len(panels) // columns)
+    margins = Margins(right=24.0, top=8.0, bottom=9.5)
     with house_style():
-        margins = Margins(right=24.0, top=8.0, bottom=9.5)
-        titles, extra = wrapped_titles([panel.title for panel in panels], columns, margins)
-        panels = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
-        margins = replace(margins, top=margins.top + extra)
-        figure, rows = axes_grid([(40.0, 15.0 + extra)] * bands, columns, margins)
-        for band in range(bands):
-            some = panels[band * columns : (band + 1) * columns]
-            for axes, panel in zip(rows[band], some, strict=False):
+        figure, bands = small_multiples(panels, min(len(panels), BUDGET_PANELS), margins, [(40.0, 15.0)])
+        for some, (row,) in bands:
+            for axes, panel in zip(row, some, strict=False):
                 _budget_axes(axes, panel)
-            for axes in rows[band][1:]:
-                axes.tick_params(labelleft=False)
-            for axes in rows[band][len(some) :]:
-                axes.set_axis_off()
-            rows[band][0].set_ylabel("Damping ratio ξ [%]")
-            _budget_labels(rows[band][len(some) - 1], some[-1].budget)
+            share_left(row, len(some), "Damping ratio ξ [%]")
+            _budget_labels(row[len(some) - 1], some[-1].budget)
     return figure
-
-
-def _values(listed: Sequence[float | None]) -> Array:
-    return np.array([math.nan if value is None else value for value in listed])
 
 
 def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
@@ -203,7 +169,7 @@ def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
     found: dict[str, BudgetLine] = {}
     colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
     for name, curves in budget["modes"].items():
-        total, own, kinetic = (_values(curves[part]) for part in ("total", "algorithmic", "kinetic"))
+        total, own, kinetic = (np.array(curves[part], dtype=float) for part in ("total", "algorithmic", "kinetic"))
         found[name] = (total, colors[name], 1.3, "-")
         if name == "first axial" and min(np.nanmax(part, initial=0.0) for part in (own, kinetic)) > LEAST_RATIO:
             found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
@@ -260,9 +226,9 @@ def _limit_lines(axes: Axes, budget: BudgetRecord) -> None:
 
 
 def _budget_labels(axes: Axes, budget: BudgetRecord) -> None:
-    ends = {}
+    ends, colors = {}, {}
     for name, (values, color, *_) in _lines(budget).items():
         good = values[np.isfinite(values) & (values > LEAST_RATIO)]
         if good.size:
-            ends[name] = (100 * float(good[-1]), color)
-    _colored_ends(axes, ends)
+            ends[name], colors[name] = 100 * float(good[-1]), color
+    label_ends(axes, ends, colors=colors, below=0.0)

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from validation.report.figures.curves import style_of
-from validation.report.figures.histories import WIDTH, house_style, label_ends
+from validation.report.figures.histories import WIDTH, Margins, house_style, label_ends, one_axes
 from validation.runs.history import Array
 
 CELL, LEFT, TOP, BOTTOM, GAP = 4.6, 16.0, 6.0, 9.0, 6.0  # mm
@@ -69,10 +69,9 @@ class Settling:
 def settling_figure(lines: Sequence[Settling], longest: float) -> Figure:
     """Draw steps to settle over p/E, both logarithmic; a hollow mark at the top has not settled within the run."""
     with house_style():
-        figure = Figure(figsize=(WIDTH / 25.4, 62.0 / 25.4))
-        axes = figure.add_axes((16.0 / WIDTH, 10.0 / 62.0, (WIDTH - 70.0) / WIDTH, 48.0 / 62.0))
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        figure, axes = one_axes(
+            48.0, Margins(16.0, 54.0, 4.0, 10.0), ("p / E", "Steps to settle within $10^{-4}$"), True
+        )
         for line in lines:
             style = style_of(line.name)
             shown = np.where(np.isfinite(line.steps), line.steps, longest)
@@ -81,8 +80,6 @@ def settling_figure(lines: Sequence[Settling], longest: float) -> Figure:
             axes.plot(line.ratios[~never], shown[~never], "o", ms=3, color=style.color)
             axes.plot(line.ratios[never], shown[never], "o", ms=4, mfc="white", mec=style.color)
         axes.set_ylim(10, 1.6 * longest)
-        axes.set_xlabel("p / E")
-        axes.set_ylabel("Steps to settle within $10^{-4}$")
         ends = {line.name: float(line.steps[-1]) if np.isfinite(line.steps[-1]) else longest for line in lines}
         label_ends(axes, ends)
     return figure

@@ -9,15 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from validation.report.figures.curves import style_of
-from validation.report.figures.histories import Line, Margins, axes_grid, draw_line, house_style, label_ends
+from validation.report.figures.histories import Line, Margins, draw_line, house_style, label_ends, one_axes
 
 
 def work_figure(lines: Sequence[Line], x_label: str, y_label: str) -> Figure:
     """Draw errors over seconds in the order of refinement; each point carries its note, one for each point."""
     with house_style():
-        figure, ((axes,),) = axes_grid([(46.0, 0.0)], 1, Margins(16.0, 34.0, 3.0, 9.5))
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        figure, axes = one_axes(46.0, Margins(16.0, 34.0, 3.0, 9.5), (x_label, y_label), logarithmic=True)
         for line in lines:
             draw_line(axes, line.name, line.x, line.y)
             axes.plot(line.x, line.y, "o", ms=3, color=style_of(line.name).color, zorder=9)
@@ -25,8 +23,6 @@ def work_figure(lines: Sequence[Line], x_label: str, y_label: str) -> Figure:
                 axes.annotate(note, (x, y), (2.0, 2.5), textcoords="offset points", fontsize=5.5)
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel(x_label)
-        axes.set_ylabel(y_label)
         axes.margins(0.06, 0.1)
         axes.autoscale_view()
         label_ends(axes, {line.name: float(line.y[int(np.argmax(line.x))]) for line in lines})

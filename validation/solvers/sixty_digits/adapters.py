@@ -68,7 +68,7 @@ class PreciseDDA(DDA):
         """Return the columns that this solver has."""
         return BAR_COLUMNS
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block."""
         return PreciseBlock(scene, full)
 
@@ -91,7 +91,7 @@ class PreciseBar(ExactBar):
     role, rank = Role.REPEAT, 9.0
     line = None
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar."""
         return PreciseNewmarkBar(scene, self.name)
 
@@ -127,7 +127,7 @@ class PreciseFiniteElements(FiniteElements):
         """Return None, or why sixty digits are out of reach for the mesh."""
         return _too_large(len(PreciseMesh(scene, full=False).model.F))
 
-    def prepare(self, scene: Scene, full: bool = False) -> Prepared:
+    def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block."""
         return PreciseMesh(scene, full)
 
@@ -135,4 +135,4 @@ class PreciseFiniteElements(FiniteElements):
 def _too_large(unknowns: int) -> str | None:
     if unknowns <= MOST_UNKNOWNS:
         return None
-    return f"{unknowns} unknowns in sixty-digit arithmetic take minutes; at most {MOST_UNKNOWNS} are served"
+    return f"{unknowns} unknowns in sixty-digit arithmetic would take minutes; at most {MOST_UNKNOWNS} are served"

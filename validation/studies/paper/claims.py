@@ -20,7 +20,8 @@ from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
 from validation.runs.row import Value
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
+from validation.studies.bands import cases
 
 REGISTER = "claims"  # the name under which gates find the register's rows
 Needs = tuple[tuple[str, str], ...]
@@ -143,12 +144,12 @@ def whole(number: float) -> float:
 
 def named(*scenes: str) -> dict[str, Scene]:
     """Return the cases of built-in scenes by name."""
-    return {case.name: case for scene in scenes for case in load_scene(scene).expand()}
+    return {case.name: case for case in cases(*scenes)}
 
 
-def by_dda(cases: Iterable[str]) -> Needs:
+def by_dda(names: Iterable[str]) -> Needs:
     """Return the needs of a claim that looks at DDA alone."""
-    return tuple((case, "dda") for case in cases)
+    return tuple((name, "dda") for name in names)
 
 
 # ---- the page -----------------------------------------------------------------------------------------------------

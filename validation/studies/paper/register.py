@@ -34,10 +34,7 @@ def steps_of(evidence: Evidence, case: str) -> dict[str, float]:
 
 def counts(displacement: float, force: float) -> tuple[Band, ...]:
     """Return the bands of two printed step counts."""
-    return (
-        Band("displacement, steps", displacement, displacement),
-        Band("contact force, steps", force, force),
-    )
+    return (Band("displacement, steps", displacement, displacement), Band("contact force, steps", force, force))
 
 
 def equilibrium(e: Evidence) -> dict[str, float]:
@@ -64,9 +61,11 @@ def stiff_alike(e: Evidence) -> dict[str, float]:
 
 def over_steps(e: Evidence) -> dict[str, float]:
     """Return how xi of the first mode rises with dt at p = 1E below and above Omega = 3.27."""
-    cases = sorted((s.time.step, name) for name, s in MAP.items() if s.contact.stiffness == s.block.young)
-    omega = np.array([step * e.number(name, "mode1.frequency") for step, name in cases])
-    xi = np.array([e.number(name, "mode1.damping") for _, name in cases])
+    pairs = []
+    for name, s in MAP.items():
+        if s.contact.stiffness == s.block.young:
+            pairs.append((s.time.step * e.number(name, "mode1.frequency"), e.number(name, "mode1.damping")))
+    omega, xi = np.array(sorted(pairs)).T
     rise, below = np.diff(xi), omega[1:] < 3.28
     return {
         "least rise of xi below w dt = 3.27": float(rise[below].min()),
@@ -79,11 +78,13 @@ def over_steps(e: Evidence) -> dict[str, float]:
 def over_stiffness(e: Evidence) -> dict[str, float]:
     """Return how damping changes with p: first mode below and above dt = 6.2 ms, and contact mode."""
     ladder = (1.0, 10.0, 100.0)
-    small = sorted({s.time.step for s in MAP.values() if s.time.step <= 0.0062})
-    rises = [np.diff([e.number(cell(p, dt), "mode1.damping") for p in ladder]).min() for dt in small]
+    rises = []
+    for dt in {s.time.step for s in MAP.values() if s.time.step <= 0.0062}:
+        xi = [e.number(cell(p, dt), "mode1.damping") for p in ladder]
+        rises += np.diff(xi).tolist()
     first = [e.number(cell(p, 0.01), "mode1.spectral_radius") for p in ladder]
     return {
-        "least rise of xi with p, dt to 6.2 ms": float(min(rises)),
+        "least rise of xi with p, dt to 6.2 ms": min(rises),
         **{f"|lambda| at dt = 0.01, p = {p:g}E": value for p, value in zip(ladder, first, strict=True)},
         "fall of |lambda| at dt = 0.01": float(-np.diff(first).max()),
         "contact |lambda| at dt = 0.01, p = 100E": e.number(cell(100.0, 0.01), "contact.spectral_radius"),
@@ -142,17 +143,15 @@ def boundary(e: Evidence) -> dict[str, float]:
 
 def discount_alone(e: Evidence) -> dict[str, float]:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
-    found = {}
+    found: dict[str, float] = {}
+    squares = []
     for name, s in DISCOUNTS.items():
         found[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")
-    square = [
-        e.number(name, "mode1.spectral_radius") ** 2 / s.time.discount
-        for name, s in DISCOUNTS.items()
-        if s.time.step >= 1e-4
-    ]
-    xi = [v for k, v in found.items() if k != "xi at dt = 2e-05"]
+        if s.time.step >= 1e-4:
+            squares.append(e.number(name, "mode1.spectral_radius") ** 2 / s.time.discount)
+    xi = [value for name, value in found.items() if name != "xi at dt = 2e-05"]
     return found | {
-        "|lambda|^2 / gg - 1, largest of complex roots": max(abs(v - 1) for v in square),
+        "|lambda|^2 / gg - 1, largest of complex roots": max(abs(v - 1) for v in squares),
         "xi, greatest over least": max(xi) / min(xi),
     }
 
@@ -163,7 +162,13 @@ def last_discount(e: Evidence) -> dict[str, float]:
     return {f"discount {i + 1}": share for i, share in enumerate(shares)}
 
 
+def apart(tolerance: str, most: float) -> tuple[Band, ...]:
+    """Return the bands of two differences of step counts."""
+    return tuple(Band(f"{name} to {tolerance}, steps apart", 0, most) for name in ("displacement", "contact force"))
+
+
 TINY = 1e-12
+TO_A_PERCENT = apart("1 %", 2)
 CLAIMS = (
     Claim(
         "C1",
@@ -211,15 +216,11 @@ CLAIMS = (
         "The curves of p = 100E hardly differ from those of p = 10E.",
         by_dda((STIFF, STIFFEST)),
         stiff_alike,
-        tuple(
-            Band(f"{quantity} to {tolerance}, steps apart", 0, most)
-            for quantity in ("displacement", "contact force")
-            for tolerance, most in (("1 %", 2), ("0.01 %", 10))
-        ),
+        (*TO_A_PERCENT, *apart("0.01 %", 10)),
         Finding.CONDITIONAL,
         "the first mode hardly changes, but a root of the contact mode goes to -1: at p = 100E the force rings on",
         "to 1 %, and for the displacement",
-        (Band("displacement to 1 %, steps apart", 0, 2), Band("contact force to 1 %, steps apart", 0, 2)),
+        TO_A_PERCENT,
     ),
     Claim(
         "C6",
@@ -305,10 +306,7 @@ CLAIMS = (
         "Kinetic damping depends on the discount of the initial velocity alone.",
         by_dda(DISCOUNTS),
         discount_alone,
-        (
-            Band("|lambda|^2 / gg - 1, largest of complex roots", 0, TINY),
-            Band("xi, greatest over least", 1, 1.05),
-        ),
+        (Band("|lambda|^2 / gg - 1, largest of complex roots", 0, TINY), Band("xi, greatest over least", 1, 1.05)),
         Finding.CONDITIONAL,
         "|lambda|^2 = gg holds per step; per second the same gg damps the more the smaller dt is, up to overdamping",
         "per step, and for complex roots",

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import functools
+import operator
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
+from dda.scheme.spectral import spectral_radius
 from validation.engine.finished import Derived
 from validation.gates.gate import Gate
+from validation.studies.bands import about
 from validation.studies.declaration import Study
 from validation.studies.paper.claims import REGISTER
 from validation.studies.paper.register import CLAIMS as STATEMENTS
 from validation.studies.paper.slips import SLIPS
 
+KEPT = ("id", "place", "says", "why", "condition")  # of a claim, for its chapter
 CLAIMS = (*STATEMENTS, *SLIPS)
 FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
@@ -62,15 +66,8 @@ def gates() -> tuple[Gate, ...]:
 def numbers() -> Iterator[Gate]:
     """Yield the gates on numbers that an independent program gives."""
     for claim, number, value, half in NUMBERS:
-        yield Gate(
-            REGISTER,
-            (claim,),
-            number,
-            value - half,
-            value + half,
-            "independent program: whole number" if half == 0 else "independent program: half a unit of its last digit",
-            reference_uncertainty=half,
-        )
+        why = "independent program: whole number" if half == 0 else "independent program: half a unit of its last digit"
+        yield Gate(REGISTER, (claim,), number, *about(value, half), why, reference_uncertainty=half)
 
 
 @functools.cache
@@ -81,14 +78,13 @@ def derived() -> tuple[Derived, ...]:
 
 def data() -> Mapping[str, Any]:
     """Return the claims, and Figure 1: spectral radius over w dt, and the square root of 1 + h that the paper draws."""
-    from validation.advice.spectra import radii
-
     omega = np.geomspace(0.1, 100, 241)
     curves = {}
     for name, (alpha, delta) in SCHEMES.items():
         printed = np.sqrt(np.abs(1 + (0.5 - delta) * omega**2 / (1 + alpha * omega**2)))
-        curves[name] = {"radius": _short(radii(omega, alpha, delta, 1.0)), "printed": _short(printed)}
-    claims = [{key: getattr(claim, key) for key in ("id", "place", "says", "why", "condition")} for claim in CLAIMS]
+        curves[name] = {"radius": _short(spectral_radius(omega, alpha, delta, 1.0)), "printed": _short(printed)}
+    kept = operator.attrgetter(*KEPT)
+    claims = [dict(zip(KEPT, kept(claim), strict=True)) for claim in CLAIMS]
     return {"omega": _short(omega), "schemes": curves, "claims": claims}
 
 

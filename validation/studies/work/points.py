@@ -42,6 +42,10 @@ class Point:
         """Unknowns times steps."""
         return float(self.row.work.get("unknowns", 0) * self.row.work.get("steps", 0))
 
+    def reaches(self, error: float, reference: str) -> bool:
+        """Whether displacement and contact pressure are both within an error of a reference."""
+        return all(self.errors.get((q, reference), math.inf) <= error for q in ("displacement", "contact pressure"))
+
 
 def points(results: Results, manifest: Manifest, prefix: str) -> list[Point]:
     """Return the completed runs of the scenes whose name begins so, in the order of the study."""
@@ -106,12 +110,8 @@ def floor(found: Iterable[Point], quantity: str, reference: str) -> float | None
 
 def cheapest(found: Sequence[Point], error: float, reference: str = "continuum") -> Point | None:
     """Return the run of least seconds whose displacement and contact pressure are both within an error."""
-    good = [
-        p
-        for p in found
-        if all(p.errors.get((name, reference), math.inf) <= error for name in ("displacement", "contact pressure"))
-    ]
-    return min(good, key=lambda p: p.seconds, default=None)
+    reached = [point for point in found if point.reaches(error, reference)]
+    return min(reached, key=lambda p: p.seconds, default=None)
 
 
 def table(results: Results, manifest: Manifest) -> list[dict[str, Value]]:

@@ -6,15 +6,20 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, NotRequired
+
+from pydantic import Field
+from typing_extensions import TypedDict
 
 from validation.engine.finished import Derived, Finished
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
+from validation.runs import strict
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Value
+from validation.studies.bands import OWN, about
 
 PATH = Path(__file__).with_name("record.json")
 REFERENCES = {"dda": "bar", "fem": "bar", "bar": "continuum"}
@@ -22,6 +27,17 @@ WORK = ("unknowns", "factorisations", "solves")
 SLACK = {"errors": 0.02, "work": 0.15}  # other libraries round otherwise, and may ask for one check of a space more
 ROUNDING = 1e-10  # an error below is rounding
 Entry = Mapping[str, Any]
+
+
+class _Entry(TypedDict):
+    errors: dict[str, Annotated[float, Field(ge=0)] | str]
+    work: dict[str, Annotated[float, Field(ge=0)]]
+    seconds: dict[str, float]
+
+
+class _Record(TypedDict):
+    cases: dict[str, _Entry]
+    reasons: NotRequired[list[str]]
 
 
 def load() -> dict[str, Any]:
@@ -33,11 +49,10 @@ def load() -> dict[str, Any]:
         There is none, or it cannot be read.
     """
     try:
-        return dict(json.loads(PATH.read_text(encoding="utf-8")))
-    except OSError as error:
+        found: dict[str, Any] = strict.read(PATH, _Record, "write it with --update-record", "a record")
+    except FileNotFoundError as error:
         raise InputError(f"{PATH}: the record of errors and work cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise InputError(f"{PATH}: the record of errors and work must be JSON: {error}") from None
+    return found
 
 
 def measured(finished: Finished, cases: Sequence[tuple[str, str]]) -> dict[str, dict[str, Any]]:
@@ -61,27 +76,47 @@ def _entry(finished: Finished, case: str, solver: str) -> dict[str, Any]:
 def ratios(now: Mapping[str, Entry], then: Mapping[str, Entry]) -> dict[str, float]:
     """Return the worst ratio of an error, and of a work count, to the recorded one, over the cases of both.
 
-    A number that was recorded and is no longer measured is infinitely worse; a part in which nothing can be compared
-    is absent.
+    A number that only one of them has, or that is undefined, is infinitely worse; a part in which nothing can be
+    compared is absent.
     """
     found: dict[str, list[float]] = {}
     for name in then.keys() & now.keys():
         for part, floor in (("errors", ROUNDING), ("work", 1)):
-            for key, value in then[name][part].items():
-                if isinstance(value, int | float):
-                    found.setdefault(part, []).append(_ratio(now[name][part].get(key), value, floor))
-    return {part: max(values) for part, values in found.items()}
+            numbers, recorded = now[name][part], then[name][part]
+            found.setdefault(part, []).extend(
+                _ratio(numbers.get(key), recorded.get(key), floor) for key in numbers.keys() | recorded.keys()
+            )
+    return {part: max(values) for part, values in found.items() if values}
 
 
-def _ratio(now: Value, then: float, floor: float) -> float:
-    return max(now, floor) / max(then, floor) if isinstance(now, int | float) else math.inf
+def _ratio(now: Value, then: Value, floor: float) -> float:
+    if not isinstance(now, int | float) or not isinstance(then, int | float):
+        return math.inf
+    return max(now, floor) / max(then, floor)
+
+
+def compare(finished: Finished, cases: Sequence[tuple[str, str]], then: Mapping[str, Entry]) -> dict[str, float]:
+    """Return the worst ratios to the record.
+
+    Raises
+    ------
+    ValueError
+        A case is not recorded, or the record holds one that is not there.
+    """
+    now = measured(finished, cases)
+    if not now.keys() & then.keys():
+        raise ValueError("holds no case of the study work-precision; nothing was compared")
+    for names, where in ((now.keys() - then.keys(), "lacks"), (then.keys() - now.keys(), "alone holds")):
+        if names:
+            raise ValueError(f"{where} {len(names)} cases, such as {min(names)}; write it anew with --update-record")
+    return ratios(now, then)
 
 
 def compared(cases: tuple[tuple[str, str], ...]) -> Derived:
     """Return the row that compares a run with the record."""
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        found = ratios(measured(finished, cases), load()["cases"])
+        found = compare(finished, cases, load()["cases"])
         return {f"record.{part}": value for part, value in found.items()}
 
     return Derived("work-precision", "record", cases, compute)
@@ -90,16 +125,11 @@ def compared(cases: tuple[tuple[str, str], ...]) -> Derived:
 def gates() -> Iterator[Gate]:
     """Yield the gates on the record."""
     for part, slack in SLACK.items():
-        yield Gate(
-            "work-precision",
-            ("record",),
-            f"record.{part}",
-            1 - slack,
-            1 + slack,
+        why = (
             f"worst ratio of {part} to the committed record (validation/record.json): no case may be worse, and where "
-            "all are better `dda-validate record --update-record` is due",
-            reference_kind="own last value",
+            "all are better `dda-validate record --update-record` is due"
         )
+        yield Gate("work-precision", ("record",), f"record.{part}", *about(1, slack), why, OWN)
 
 
 def update(finished: Finished, cases: Sequence[tuple[str, str]], reason: str) -> None:
@@ -108,11 +138,15 @@ def update(finished: Finished, cases: Sequence[tuple[str, str]], reason: str) ->
     Raises
     ------
     InputError
-        The reason is missing.
+        The reason is missing, or a case that did not complete has nothing to record.
     """
     if not reason.strip():
         raise InputError("--reason: must say why the record changes, got nothing")
     reasons = [*(load()["reasons"] if PATH.exists() else []), reason.strip()]
-    data = {"reasons": reasons, "cases": measured(finished, cases)}
+    entries = measured(finished, cases)
+    for name, entry in entries.items():
+        if not entry["work"] or any(isinstance(value, str) for value in entry["errors"].values()):
+            raise InputError(f"{name}: must have completed with errors and work that are numbers; nothing was written")
+    data = {"reasons": reasons, "cases": entries}
     text = json.dumps(data, indent=1, sort_keys=True) + "\n"
     write_atomically(PATH, lambda stream: stream.write(text.encode()))

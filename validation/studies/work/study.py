@@ -19,6 +19,7 @@ from validation.metrics.pairs import relative_l2
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import OWN, about
 from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
@@ -129,15 +130,18 @@ def order_in_time(name: str) -> Derived:
     def compute(finished: Finished) -> Mapping[str, Value]:
         exact = _columns(finished, reference, "dda", REFERENCE)
         found = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
-        steps = [case.time.step for case in levels]
-        return _orders(steps, [{q: relative_l2(x[q], exact[q]) for q in QUANTITIES} for x in found])
+        return _orders([case.time.step for case in levels], found, [exact] * len(levels))
 
     needs = ((reference, "dda"), *((case.name, "dda") for case in levels))
     return Derived(name, "order", needs, compute)
 
 
-def _orders(sizes: list[float], errors: list[dict[str, Value]]) -> Mapping[str, Value]:
-    return {f"order.{q}": order(sizes, [_number(e[q]) for e in errors]) for q in QUANTITIES}
+def _orders(sizes: list[float], found: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Mapping[str, Value]:
+    orders: dict[str, Value] = {}
+    for q in QUANTITIES:
+        errors = [_number(relative_l2(a[q], b[q])) for a, b in zip(found, exact, strict=True)]
+        orders[f"order.{q}"] = order(sizes, errors)
+    return orders
 
 
 def _number(value: Value) -> float:
@@ -149,14 +153,12 @@ def order_in_mesh(name: str) -> Derived:
     levels = named(name).expand()
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        errors = []
-        for case in levels:
-            found, exact = _columns(finished, case.name, "fem"), _columns(finished, case.name, "bar")
-            errors.append({q: relative_l2(found[q], exact[q]) for q in QUANTITIES})
-        return _orders([1 / n for n in MESHES], errors)
+        found = [_columns(finished, case.name, "fem") for case in levels]
+        exact = [_columns(finished, case.name, "bar") for case in levels]
+        return _orders([1 / n for n in MESHES], found, exact)
 
-    needs = tuple((case.name, solver) for case in levels for solver in ("fem", "bar"))
-    return Derived(name, "order", needs, compute)
+    needs = itertools.product((case.name for case in levels), ("fem", "bar"))
+    return Derived(name, "order", tuple(needs), compute)
 
 
 def grid_convergence() -> Derived:
@@ -187,12 +189,11 @@ def derived() -> tuple[Derived, ...]:
 @functools.cache
 def study_cases() -> tuple[tuple[str, str], ...]:
     """Return the (case, solver) pairs whose errors and work the record keeps."""
-    return tuple(
-        (case.name, solver)
-        for scene in (*refined_together(), *refined_meshes())
-        for case in scene.expand()
-        for solver in case.run.solvers
-    )
+    found: list[tuple[str, str]] = []
+    for scene in (*refined_together(), *refined_meshes()):
+        for case in scene.expand():
+            found += [(case.name, solver) for solver in case.run.solvers]
+    return tuple(found)
 
 
 # ---- gates ----------------------------------------------------------------------------------------------------------
@@ -205,51 +206,32 @@ def gates() -> tuple[Gate, ...]:
 
 def time_orders() -> Iterator[Gate]:
     """Yield the gates on orders in dt."""
+    why = (
+        "order of the scheme from this start, fitted with its sign on five steps; the coarsest one damps the second "
+        "mode by w^2 dt T / 2 = 0.11, of which the slope keeps a tenth as the next term"
+    )
     for (scheme, start), value in TIME_ORDERS.items():
         for q in QUANTITIES:
-            yield Gate(
-                f"work-dt-{scheme}-{start}",
-                ("order",),
-                f"order.{q}",
-                value - 0.02,
-                value + 0.02,
-                "order of the scheme from this start, fitted with its sign on five steps; the coarsest one damps the "
-                "second mode by w^2 dt T / 2 = 0.11, of which the slope keeps a tenth as the next term",
-            )
+            yield Gate(f"work-dt-{scheme}-{start}", ("order",), f"order.{q}", *about(value, 0.02), why)
 
 
 def mesh_orders() -> Iterator[Gate]:
     """Yield the gates on orders in h, and on the index of the finest mesh where no closed form exists."""
-    for name, row, value in (("work-h-degree-1", "order", 2.0), ("work-h-degree-2", "order", 4.0)):
+    why = (
+        "twice the degree, fitted with its sign on four meshes; 8 elements resolve the first mode, b/n = 0.13, "
+        "and leave (b/n)^2, a percent, of the next term"
+    )
+    for degree in (1, 2):
         for q in QUANTITIES:
-            yield Gate(
-                name,
-                (row,),
-                f"order.{q}",
-                value - 0.02,
-                value + 0.02,
-                "twice the degree, fitted with its sign on four meshes; 8 elements resolve the first mode, b/n = 0.13, "
-                "and leave (b/n)^2, a percent, of the next term",
-            )
+            yield Gate(f"work-h-degree-{degree}", ("order",), f"order.{q}", *about(2.0 * degree, 0.02), why)
+    smooth = "linear elements on a smooth foundation: order 2 from successive changes; corners of the base are weak"
+    index = (
+        f"grid-convergence index of the finest mesh, {SAFETY} |last change| / (2^order - 1): the uncertainty of "
+        "the reference where no closed form exists; this suite's own last value, two percent for other roundings"
+    )
     for q in QUANTITIES:
-        yield Gate(
-            "work-h-poisson",
-            ("gci",),
-            f"order.{q}",
-            1.85,
-            2.15,
-            "linear elements on a smooth foundation: order 2 from successive changes; corners of the base are weak",
-        )
-        yield Gate(
-            "work-h-poisson",
-            ("gci",),
-            f"gci.{q}",
-            0.98 * GCI[q],
-            1.02 * GCI[q],
-            f"grid-convergence index of the finest mesh, {SAFETY} |last change| / (2^order - 1): the uncertainty of "
-            "the reference where no closed form exists; this suite's own last value, two percent for other roundings",
-            reference_kind="own last value",
-        )
+        yield Gate("work-h-poisson", ("gci",), f"order.{q}", 1.85, 2.15, smooth)
+        yield Gate("work-h-poisson", ("gci",), f"gci.{q}", 0.98 * GCI[q], 1.02 * GCI[q], index, OWN)
 
 
 WORK_PRECISION = Study(

@@ -1,0 +1,200 @@
+r"""One time step with contact that opens, in the force form.
+
+The contact forces lambda of the end of the step are found before its displacements: with h the step's length,
+k0 = h^2 K0, F for h^2 F, mu = h^2 lambda, momentum P = h M V and inertia force f = h^2 M A,
+
+    S0 (D1 - D) = gg P + (1/2 - alpha) f + alpha (F - k0 D) + alpha B' mu,     S0 = M + alpha k0
+    f1 = F - k0 D1 + B' mu
+    P1 = gg P + (1 - delta) f + delta f1
+
+so that S0 is factorised once for all contact states and the flexibility of the contacts is
+C = alpha h^2 B S0^-1 B'. A closed corner's gap is -N/p, set on acceptance: it is no sum of increments.
+
+The rule "implicit contact" (Kane, Repetto, Ortiz and Marsden 1999) puts the contact force of the end of the step
+alone into the displacement, with weight 1/2 for alpha, and into the momentum, with weight 1; f is the block's own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.glued import Free
+from dda.contact.iteration import Iteration, open_close
+from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
+from dda.one_block.unilateral_form import UNKNOWNS, UnilateralForm
+from dda.scheme.newmark import (
+    Scheme,
+    acceleration_corrector,
+    effective_matrix,
+    initial_acceleration,
+    momentum_balance,
+    velocity_corrector,
+)
+
+Array = NDArray[np.float64]
+Vector = list[float]
+IMPLICIT = "implicit contact"
+U_INDEX = UNKNOWNS.index("U")
+
+
+class State(NamedTuple):
+    """Where the block is, in units of the scheme's own step dt."""
+
+    D: Vector  # unknowns of the form
+    P: Vector  # dt M V
+    f: Vector  # dt^2 M A
+    corners: Corners
+
+
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """A positive definite matrix as L d L', the last unknowns (the gaps) eliminated last."""
+
+    L: list[Vector]  # rows below the diagonal
+    d: Vector
+
+    @classmethod
+    def of(cls, matrix: Array) -> Factor:
+        """Factorise a handful of unknowns."""
+        A = matrix.tolist()
+        n = len(A)
+        L: list[Vector] = [[] for _ in range(n)]
+        d: Vector = []
+        for i in range(n):
+            for j in range(i):
+                L[i].append((A[i][j] - sum(L[i][k] * d[k] * L[j][k] for k in range(j))) / d[j])
+            d.append(A[i][i] - sum(L[i][k] * L[i][k] * d[k] for k in range(i)))
+        return cls(L, d)
+
+    def solve(self, b: Vector) -> Vector:
+        """Return the solution for one right-hand side."""
+        x: Vector = []
+        for row, value in zip(self.L, b, strict=True):
+            for entry, known in zip(row, x, strict=False):
+                value -= entry * known
+            x.append(value)
+        x = [value / pivot for value, pivot in zip(x, self.d, strict=True)]
+        for i in range(len(x) - 1, 0, -1):
+            value = x[i]
+            for j, entry in enumerate(self.L[i]):
+                x[j] -= entry * value
+        return x
+
+
+@dataclass(frozen=True, eq=False)
+class StepLength:
+    """Everything of a step that depends on its length alone."""
+
+    ratio: float  # length h over the scheme's step
+    scheme: Scheme  # of this length, gg for this length
+    k: Vector  # h^2 K0
+    F: Vector  # h^2 F
+    factor: Factor  # of S0
+    push: list[Vector]  # multiplicity B', rows over the unknowns
+    pushed: list[Vector]  # weight h^2 S0^-1 multiplicity B': displacement of unit forces, rows over the unknowns
+    slides: list[Vector]  # rows of B along the base
+    C: list[Vector]  # flexibility of the contacts [m/N]
+    implicit: bool  # the contact force has its own weights
+    gains: dict[tuple[int, ...], list[Vector]] = field(default_factory=dict)  # of contacts that stay closed
+
+    @classmethod
+    def of(cls, form: UnilateralForm, scheme: Scheme, ratio: float, rule: str) -> StepLength:
+        """Factorise S0 and find the flexibility of the contacts.
+
+        A shorter step keeps the share gg^ratio of the velocity, so that the steps of an interval keep gg.
+        """
+        own = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
+        h2 = own.step * own.step
+        k = h2 * form.K
+        factor = Factor.of(effective_matrix(own, form.M, np.diag(k)))
+        implicit = rule == IMPLICIT
+        push = form.multiplicity * form.B.T
+        weight = (0.5 if implicit else own.alpha) * h2
+        pushed = weight * np.array([factor.solve(column) for column in push.T.tolist()]).T
+        slides = form.B[form.contacts :].tolist()
+        C = (form.B @ pushed).tolist()
+        F = (h2 * form.F).tolist()
+        return cls(ratio, own, k.tolist(), F, factor, push.tolist(), pushed.tolist(), slides, C, implicit)
+
+
+def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float) -> State:
+    """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap."""
+    dt = scheme.step
+    P = (dt * velocity) * (form.M @ form.translation[:, 1])
+    f = initial_acceleration(scheme, dt * dt * form.F)
+    return State(form.start.tolist(), P.tolist(), f.tolist(), at_rest(law, form.contacts))
+
+
+def advance(law: Unilateral, length: StepLength, state: State, limit: int) -> tuple[State | None, Iteration]:
+    """Return the state one step later, or None where the contacts have no single state; `state` stays as it is."""
+    D, P, f = state.D, state.P, state.f
+    if length.ratio != 1:
+        P, f = _scaled(P, length.ratio), _scaled(f, length.ratio * length.ratio)
+    scheme, k, F = length.scheme, length.k, length.F
+    x = length.factor.solve(
+        [momentum_balance(scheme, *given) for given in zip(F, k, D, P, f, strict=True)],
+    )
+    found = open_close(law, state.corners, _free(length, D, x), limit)
+    if found.corners is None:
+        return None, found
+    D1, P1, f1 = _accepted(length, (D, P, f), x, found.corners)
+    after = _referred(length, D1, state.corners, found.corners) if length.slides else found.corners
+    if length.ratio != 1:
+        P1, f1 = _scaled(P1, 1 / length.ratio), _scaled(f1, 1 / (length.ratio * length.ratio))
+    return State(D1, P1, f1, after), found
+
+
+def _scaled(values: Vector, factor: float) -> Vector:
+    return [factor * value for value in values]
+
+
+def _free(length: StepLength, D: Vector, x: Vector) -> Free:
+    """Return what the step does to the contacts without their forces; the gaps are the last unknowns."""
+    gaps = len(length.C) - len(length.slides)
+    slide = [sum(b * xi for b, xi in zip(row, x, strict=True)) for row in length.slides]
+    return Free([d + xi for d, xi in zip(D[-gaps:], x[-gaps:], strict=True)], slide, length.C, length.gains)
+
+
+def _accepted(
+    length: StepLength, before: tuple[Vector, Vector, Vector], x: Vector, corners: Corners
+) -> tuple[Vector, Vector, Vector]:
+    """Return (D, P, f) at the end of the step under the contact forces."""
+    D, P, f = before
+    scheme, h2 = length.scheme, length.scheme.step * length.scheme.step
+    D1 = [d + xi for d, xi in zip(D, x, strict=True)]
+    pressed = [0.0] * len(D)
+    if any(corners.closed):
+        forces = [*corners.normal, *slide_forces(corners.shear)] if length.slides else corners.normal
+        moved = (sum(g * y for g, y in zip(row, forces, strict=True)) for row in length.pushed)
+        D1 = [d + by for d, by in zip(D1, moved, strict=True)]
+        pressed = [h2 * sum(b * y for b, y in zip(row, forces, strict=True)) for row in length.push]
+    D1[-len(corners.gap) :] = corners.gap
+    f1 = [acceleration_corrector(*given) for given in zip(length.F, length.k, D1, strict=True)]
+    if not length.implicit:
+        f1 = [own + contact for own, contact in zip(f1, pressed, strict=True)]
+    P1 = [velocity_corrector(scheme, *given) for given in zip(P, f, f1, strict=True)]
+    if length.implicit:
+        P1 = [own + contact for own, contact in zip(P1, pressed, strict=True)]
+    return D1, P1, f1
+
+
+def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) -> Corners:
+    """Return the corners with their references; where one stays closed, U in D is set from it.
+
+    The sum of increments that U was may hold the rounding of a much larger motion without forces.
+    """
+    local = [sum(b * d for b, d in zip(row, D, strict=True)) for row in length.slides]
+    stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
+    where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
+    if len(stays) == 2 and any(stays):
+        glued = zip(before.reference, after.stretch, where, stays, strict=True)
+        held = [r + stretch - s for r, stretch, s, kept in glued if kept]
+        shift = sum(held) / len(held)
+        D[U_INDEX] += shift
+        where = [s + shift for s in where]
+    given = zip(stays, before.reference, where, after.stretch, strict=True)
+    return after._replace(reference=tuple(r if kept else s - stretch for kept, r, s, stretch in given))

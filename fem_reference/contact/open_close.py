@@ -1,0 +1,123 @@
+"""Which points of the base are closed at the end of a step, and with which forces.
+
+The free block would have the gaps w_f; forces N of the points change them to w = w_f + C N. A point is open
+with N = 0 and w >= 0, or closed with w = -N / k and N >= 0: with A = C + diag(1/k), symmetric and positive definite,
+
+    0 <= N,    0 <= A N + w_f,    N . (A N + w_f) = 0.
+
+The states are guessed, the forces of the closed points solved for, and all states corrected at once until none
+changes. For one point that takes two solutions at most. For three and more points it may cycle (Ben Gharbia and
+Gilbert, 2010); then the problem is solved as what it is, the minimum of N'A N / 2 + w_f'N over N >= 0: with
+A = L L' that is |L'N + L^-1 w_f|^2 / 2 but for a constant, least squares over non-negative numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+from scipy.optimize import nnls
+
+from fem_reference.problem.problem import Array
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Forces and gaps of the base's points for given states."""
+
+    normal: Array  # normal force N of each point on the block [N], zero where open, shape (points,)
+    shear: Array  # tangential force T of each point on the block [N], shape (points,)
+    gap: Array  # gap w_f + C N of each point [m], shape (points,)
+    settled: bool = True  # whether the forces are those of the states, which may themselves ask for an iteration
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Converged contact of a step, or why there is none."""
+
+    trial: Trial | None  # forces and gaps; None where no states are consistent, or more than one set may be
+    closed: Flags  # closed points, shape (points,)
+    solves: int  # solutions for the forces of given states [-]; a fallback counts as one
+    failure: str = ""  # why `trial` is None, in words
+
+
+def corrected(trial: Trial, closed: Flags) -> Flags:
+    """States that the forces and gaps ask for; a point that is neither pressed nor lifted keeps its state."""
+    states: Flags = np.where(closed, trial.normal >= 0, trial.gap < 0)
+    return states
+
+
+def iterate(forces: Callable[[Flags], Trial], closed: Flags, limit: int) -> Contact:
+    """Correct all states at once until none changes, with at most `limit` solutions.
+
+    Parameters
+    ----------
+    forces
+        The forces and gaps of given states.
+    closed
+        States to begin with, shape (points,).
+    limit
+        Greatest number of solutions.
+    """
+    for solves in range(1, limit + 1):
+        trial = forces(closed)
+        following = corrected(trial, closed)
+        if np.array_equal(following, closed) and trial.settled:
+            return Contact(trial, closed, solves)
+        closed = following
+    return Contact(None, closed, limit, "the open-close iteration does not converge")
+
+
+def frictionless(C: Array, compliance: Array, free: Array, closed: Flags, limit: int) -> Contact:
+    """Contact of a frictionless base; there always is exactly one.
+
+    Parameters
+    ----------
+    C
+        Gaps of unit forces [m/N], shape (points, points).
+    compliance
+        1 / k of each point [m/N], shape (points,).
+    free
+        Gaps without forces [m], shape (points,).
+    closed, limit
+        As in `iterate`.
+    """
+    A = C + np.diag(compliance)
+
+    def forces(states: Flags) -> Trial:
+        N = np.zeros(len(free))
+        N[states] = np.linalg.solve(A[np.ix_(states, states)], -free[states])
+        return Trial(N, np.zeros(len(free)), free + C @ N)
+
+    found = iterate(forces, closed, limit)
+    if found.trial is not None:
+        return found
+    closed = complementary(A, free) > 0
+    return Contact(forces(closed), closed, limit + 1)
+
+
+def complementary(A: Array, free: Array) -> Array:
+    """Forces N >= 0 with A N + free >= 0 and N . (A N + free) = 0, shape (points,).
+
+    Parameters
+    ----------
+    A
+        Symmetric positive definite matrix [m/N], shape (points, points).
+    free
+        Gaps without forces [m], shape (points,).
+    """
+    # In units in which the diagonal and the load are of size one, as the tolerance of the least squares expects.
+    unit, size = 1 / np.sqrt(np.diag(A)), float(np.max(np.abs(free), initial=0.0))
+    if size == 0:
+        return np.zeros(len(free))
+    L = np.linalg.cholesky(unit[:, None] * A * unit)
+    scaled = unit * free
+    scale = float(np.linalg.norm(scaled))
+    solution, _ = nnls(L.T, solve_triangular(L, -scaled / scale, lower=True))
+    N: Array = scale * unit * solution
+    return N

@@ -1,0 +1,157 @@
+"""The elements on contact points of their base, which bear springs that carry no tension.
+
+A distributed foundation becomes points at the nodes of the base with positive weights that keep the whole
+length: h/2, h/2 on a linear element edge of length h, Simpson's h/6, 4h/6, h/6 on a quadratic one. Any other
+foundation keeps the points of its own quadrature rule.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from skfem import Basis, ElementLineP1, ElementLineP2, Mesh, MeshLine
+from skfem.models.poisson import laplace
+from skfem.models.poisson import mass as line_mass
+
+from fem_reference.mesh import elasticity
+from fem_reference.mesh.mesh import block_mesh
+from fem_reference.mesh.model import assemble, column_applies
+from fem_reference.problem.problem import Array, Problem
+
+SAME_PLACE = 1e-9
+"""Distance below which two points of the base are one, as a share of its length [-]."""
+
+
+@dataclass(frozen=True)
+class ContactModel:
+    """M D'' + K D = F + normal' N + tangential' T, with the forces N, T of the base's points on the block."""
+
+    M: csr_array  # consistent mass matrix [kg], shape (unknowns, unknowns)
+    K: csr_array  # elastic stiffness without the springs of the base [N/m]
+    F: Array  # constant load [N], shape (unknowns,)
+    normal: csr_array  # rows that give the normal displacement of each point, into the block [-], (points, unknowns)
+    tangential: csr_array  # rows that give the displacement of each point along the base [-], shape (points, unknowns)
+    share: Array  # share of the base that belongs to each point [-], shape (points,); its sum is one
+    stiffness: Array  # normal stiffness of each point, 2 p times its share [N/m]
+    shear_stiffness: Array  # tangential stiffness of each point, 2 p_s times its share [N/m]
+    upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
+    observers: dict[str, Array]  # rows that give v, u and the rotation at the centroid, shape (unknowns,)
+    kind: str  # ``"whole"`` or ``"column"``
+
+
+def build(problem: Problem, full: bool = False) -> ContactModel:
+    """Model of the block on points, of one column of elements where all vertical lines move alike.
+
+    Parameters
+    ----------
+    problem
+        The block; its foundation says where the points are.
+    full
+        Model the whole block in any case.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed, or its base moves.
+    """
+    if problem.motion is not None:
+        raise ValueError("motion: the base of a block that may lift off must be at rest, got a moving one")
+    return column(problem) if column_applies(problem) and not full else whole(problem)
+
+
+def column(problem: Problem) -> ContactModel:
+    """One column of elements, v(y) on a line, with one contact point: matrices E W (v', v') and rho W (v, v).
+
+    Raises
+    ------
+    ValueError
+        If the block is not an upright rectangle.
+    """
+    if problem.rectangle is None:
+        raise ValueError(f"vertices: must be an upright rectangle for one column, got {problem.vertices!r}")
+    width, height = problem.rectangle
+    mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
+    basis = Basis(mesh, (ElementLineP1 if problem.degree == 1 else ElementLineP2)())
+    M = problem.density * width * csr_array(line_mass.assemble(basis))
+    # With mu = 0 the modulus of a bar, lam + 2 G, is E.
+    K = problem.young * width * csr_array(laplace.assemble(basis))
+    y, upwards, none = basis.doflocs[0], np.ones(basis.N), np.zeros(basis.N)
+    base, top = (np.eye(1, basis.N, int(np.argmin(np.abs(y - place)))) for place in (0.0, height))
+    return ContactModel(
+        M=M,
+        K=K,
+        F=-problem.pressure * width * top[0] - problem.gravity * (M @ upwards),
+        normal=csr_array(base),
+        tangential=csr_array((1, basis.N)),
+        share=np.ones(1),
+        stiffness=np.array([2 * problem.stiffness]),
+        shear_stiffness=np.array([2 * problem.shear_stiffness]),
+        upwards=upwards,
+        observers={
+            "displacement": basis.probes(np.array([[height / 2]])).toarray()[0],
+            "horizontal_displacement": none,
+            "rotation": none,
+        },
+        kind="column",
+    )
+
+
+def whole(problem: Problem) -> ContactModel:
+    """The whole block.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed.
+    """
+    assembled = assemble(problem)
+    basis = assembled.basis
+    rule = base_rule(problem, basis.mesh, block_mesh(problem).base)
+    rule, weights = merged(problem, basis, rule)
+    u, v = elasticity.values(basis, rule.points, rule.cells)
+    n, t = problem.normal, problem.tangent
+    share = weights / weights.sum()
+    return ContactModel(
+        M=assembled.M,
+        K=assembled.K,
+        F=assembled.F,
+        normal=csr_array(n[0] * u + n[1] * v),
+        tangential=csr_array(t[0] * u + t[1] * v),
+        share=share,
+        stiffness=2 * problem.stiffness * share,
+        shear_stiffness=2 * problem.shear_stiffness * share,
+        upwards=elasticity.components(basis),
+        observers={name: row for name, row in assembled.observers.items() if name != "contact_pressure"},
+        kind="whole",
+    )
+
+
+def base_rule(problem: Problem, mesh: Mesh, facets: NDArray[np.int64]) -> elasticity.Rule:
+    """Points of the base with weights; a node that two facets share comes twice."""
+    if problem.foundation != "distributed":
+        return elasticity.foundation_rule(problem, mesh, facets)
+    ends = elasticity.node_rule(mesh, facets)
+    if problem.degree == 1:
+        return ends
+    count = len(facets)
+    middle = (ends.points[:, :count] + ends.points[:, count:]) / 2
+    return elasticity.Rule(
+        np.hstack([ends.points, middle]),
+        np.concatenate([ends.cells, ends.cells[:count]]),
+        np.concatenate([ends.weights / 3, 4 * ends.weights[:count] / 3]),
+    )
+
+
+def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> tuple[elasticity.Rule, Array]:
+    """The rule with each place once, in the order along the base, and the weights [m]."""
+    x = basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
+    along = problem.tangent @ x
+    order = np.argsort(along, kind="stable")
+    fresh = np.append(True, np.diff(along[order]) > SAME_PLACE * problem.base_length)
+    weights = np.zeros(np.count_nonzero(fresh))
+    np.add.at(weights, np.cumsum(fresh) - 1, rule.weights[order])
+    kept = order[fresh]
+    return elasticity.Rule(rule.points[:, kept], rule.cells[kept], weights), weights

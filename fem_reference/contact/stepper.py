@@ -1,0 +1,146 @@
+"""One step of the Newmark scheme with kinetic damping on a base that carries no tension.
+
+With S = M + alpha dt^2 K of the block without the base's springs, factorised once for each length of step::
+
+    D* = D + gg dt V + dt^2 (1/2 - alpha) A
+    A1 = S^-1 (F - K D*) + S^-1 B' (N, T)          the free block, then the contact forces
+    D1 = D* + alpha dt^2 A1
+    V1 = gg V + dt ((1 - delta) A + delta A1)
+
+so that M A1 = F - K D1 + B' (N, T) without a division by alpha dt^2. The gaps at the end are those of the free
+block plus C N, C = alpha dt^2 B S^-1 B'. Nothing depends on the contact states but the small problem of the forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.sparse import csr_array, vstack
+
+from fem_reference.contact.glued import GluedBase, glued
+from fem_reference.contact.open_close import Contact, Flags, frictionless
+from fem_reference.contact.points import ContactModel
+from fem_reference.problem.problem import Array, Scheme
+from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_acceleration, predictor, velocity
+
+SHEARS = ("frictionless", "glued")
+KEPT = 8
+"""Greatest number of shorter steps whose matrices are kept."""
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """Motion and contact at the end of a step."""
+
+    motion: State  # displacement [m], velocity [m/s] and acceleration [m/s2] of the unknowns
+    gap: Array  # gap w of each point [m], negative where pressed, shape (points,)
+    slip: Array  # displacement s of each point along the base [m]
+    reference: Array  # slip r at which the shear spring of each point is unstrained [m]
+    normal: Array  # normal force N of each point on the block [N]
+    shear: Array  # tangential force T of each point on the block [N]
+    closed: Flags  # points that the last step found closed
+
+
+@dataclass(frozen=True)
+class _Matrices:
+    """What belongs to one length of step."""
+
+    scheme: Scheme
+    solve: Callable[[Array], Array]
+    response: Array  # S^-1 B', shape (unknowns, forces)
+    C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
+
+
+@dataclass
+class ContactStepper:
+    """The scheme applied to the block on points, with its factorisations made once for each length of step.
+
+    Raises
+    ------
+    ValueError
+        If `shear` is unknown or `limit` is below one.
+    """
+
+    model: ContactModel
+    scheme: Scheme
+    shear: str = "frictionless"  # ``"frictionless"``, or ``"glued"``: shear springs hold the closed points
+    limit: int = 6  # greatest number of solutions of the open-close iteration [-]
+    work: Work = field(default_factory=Work)
+
+    def __post_init__(self) -> None:
+        if self.shear not in SHEARS:
+            raise ValueError(f"shear: must be one of {SHEARS}, got {self.shear!r}")
+        if self.limit < 1:
+            raise ValueError(f"limit: must be at least 1, got {self.limit!r}")
+        both = vstack([self.model.normal, self.model.tangential])
+        self._B = csr_array(both if self.shear == "glued" else self.model.normal)
+        self._lengths: dict[float, _Matrices] = {}
+        self._matrices(self.scheme.step)
+
+    def start(self, gap: float = 0.0, speed: float = 0.0) -> ContactState:
+        """State at t = 0: unstrained, a gap above the base [m], with one velocity upwards [m/s]."""
+        zero, none = np.zeros_like(self.model.F), np.zeros(len(self.model.share))
+        mass = self.work.factor(self.model.M) if self.scheme.start == "consistent" else None
+        motion = State(zero, speed * self.model.upwards, initial_acceleration(self.model.F, mass))
+        return ContactState(motion, none + gap, none, none, none, none, np.full(len(none), gap == 0))
+
+    def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Contact]:
+        """One step, of a shorter `length` [s] where that is given.
+
+        Returns
+        -------
+        state, contact
+            The state at the end and the contact found; None where there is none, with the reason in `contact`.
+        """
+        own = self._matrices(self.scheme.step if length is None else length)
+        scheme, model, old = own.scheme, self.model, state.motion
+        ahead = predictor(old, scheme)
+        free = own.solve(model.F - model.K @ ahead)
+        moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
+        contact = self._contact(state, own, moved)
+        if contact.trial is None:
+            return None, contact
+        N, T = contact.trial.normal, contact.trial.shear
+        forces = np.concatenate([N, T])[: len(moved)]
+        A = free + own.response @ forces
+        motion = State(ahead + scheme.alpha * scheme.step**2 * A, velocity(old, A, scheme), A)
+        # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
+        gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
+        slip, reference = self._slipped(state, motion, contact.closed, T, moved + own.C @ forces)
+        return ContactState(motion, gap, slip, reference, N, T, contact.closed), contact
+
+    def _contact(self, state: ContactState, own: _Matrices, moved: Array) -> Contact:
+        compliance, points = 1 / self.model.stiffness, len(self.model.share)
+        free = state.gap + moved[:points]
+        if self.shear == "frictionless":
+            return frictionless(own.C, compliance, free, state.closed, self.limit)
+        slip = state.slip - state.reference + moved[points:]
+        base = GluedBase(own.C, compliance, self.model.shear_stiffness, free, slip, state.gap, state.closed)
+        return glued(base, self.limit)
+
+    def _slipped(
+        self, state: ContactState, motion: State, closed: Flags, T: Array, moved: Array
+    ) -> tuple[Array, Array]:
+        """Slips and references at the end of a step."""
+        if self.shear == "frictionless":
+            slip: Array = self.model.tangential @ motion.D
+            return slip, slip
+        slip = state.slip + moved[len(closed) :]
+        k_t = self.model.shear_stiffness
+        crossing = slip + np.divide(T, k_t, out=np.zeros_like(T), where=k_t > 0)
+        held = np.where(state.closed, state.reference, crossing)
+        return slip, np.where(closed, held, slip)
+
+    def _matrices(self, length: float) -> _Matrices:
+        if length not in self._lengths:
+            if len(self._lengths) > KEPT:
+                self._lengths = {self.scheme.step: self._lengths[self.scheme.step]}
+            share = length / self.scheme.step
+            scheme = replace(self.scheme, step=length, gg=self.scheme.gg**share)
+            solve = self.work.factor(effective_matrix(self.model.M, self.model.K, scheme))
+            response = np.stack([solve(row) for row in self._B.toarray()], axis=1)
+            C = scheme.alpha * length**2 * (self._B @ response)
+            self._lengths[length] = _Matrices(scheme, solve, response, (C + C.T) / 2)
+        return self._lengths[length]

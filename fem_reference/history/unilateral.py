@@ -1,0 +1,260 @@
+"""Histories of the block on a base that carries no tension."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fem_reference.contact.points import ContactModel, build
+from fem_reference.contact.stepper import ContactState, ContactStepper
+from fem_reference.problem.digits import front
+from fem_reference.problem.problem import Array, Problem, Scheme
+
+COMPLETED, OVERFLOW = "completed", "overflow"
+UNILATERAL_COLUMNS = (
+    "displacement",
+    "contact_pressure",
+    "horizontal_displacement",
+    "rotation",
+    "base_shear",
+    "open_share",
+    "largest_gap",
+    "largest_penetration",
+    "kinetic_energy",
+    "strain_energy",
+    "spring_energy",
+    "load_energy",
+    "solves",
+    "cuts",
+)
+"""Columns of a history, one row a step: v at the centroid [m]; sum of N over the base's length [Pa]; u and rotation at
+the centroid [m, 1]; sum of T over the base's length [Pa]; share of the base with a positive gap [-]; largest gap and
+penetration [m]; energies [J], of the loads -F'D; solutions of the open-close iteration and cuts of the step [-]."""
+
+
+@dataclass(frozen=True)
+class Unilateral:
+    """How the block stands on its base, and how its contact is solved.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    gap: float = 0.0  # gap g0 under the whole base at t = 0 [m], at least 0
+    velocity: float = 0.0  # velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one
+    shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
+    limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
+    cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
+    shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
+
+    def __post_init__(self) -> None:
+        for name, rule, good in (
+            ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
+            ("velocity", "must be a finite number", math.isfinite(self.velocity)),
+            ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
+            ("limit", "must be at least 1", self.limit >= 1),
+            ("cut", "must be between 0 and 1", 0 < self.cut < 1),
+            ("shortest", "must be above 0 and at most 1", 0 < self.shortest <= 1),
+        ):
+            if not good:
+                raise ValueError(f"{name}: {rule}, got {getattr(self, name)!r}")
+
+
+@dataclass(frozen=True)
+class UnilateralResult:
+    """A history with its outcome and work counts; row 0 is step 1."""
+
+    time: Array  # time of each row [s], shape (rows,): fewer than steps asked for where the outcome is not completed
+    columns: dict[str, Array]  # one array of shape (rows,) for each of `UNILATERAL_COLUMNS`
+    outcome: str  # ``"completed"``, or why it ended early
+    unknowns: int  # number of unknowns that were integrated [-]
+    points: int  # number of contact points of the base [-]
+    nonzeros: int  # stored entries of the matrix that was factorised last [-]
+    factorisations: int  # number of factorisations [-]: one for each length of step, one of M for a consistent start
+    solves: int  # number of solutions with a factorised matrix [-]
+    notes: tuple[str, ...]  # savings used and warnings, in words
+    setup_seconds: float  # time for assembly, factorisation and the forces' responses [s]
+    stepping_seconds: float  # time for the steps [s]
+    normal: Array | None = None  # normal force of each point at each step [N], shape (rows, points), where asked for
+    gap: Array | None = None  # gap of each point at each step [m], shape (rows, points), where asked for
+
+
+def solve_unilateral(
+    problem: Problem,
+    scheme: Scheme,
+    steps: int,
+    contact: Unilateral | None = None,
+    full: bool = False,
+    every_point: bool = False,
+) -> UnilateralResult:
+    """Integrate the block on a base that carries no tension, unstrained at t = 0 with all loads switched on.
+
+    Parameters
+    ----------
+    problem, scheme
+        What is solved and how it is integrated. The base may not move.
+    steps
+        Number of steps, at least 1.
+    contact
+        How the block stands on its base; touching, at rest and without friction if None.
+    full
+        Solve the whole block where one column of elements would do.
+    every_point
+        Keep the forces and gaps of every point.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed, its base moves, or `steps` is below one.
+    """
+    if steps < 1:
+        raise ValueError(f"steps: must be at least 1, got {steps!r}")
+    contact = Unilateral() if contact is None else contact
+    began = time.perf_counter()
+    model = build(problem, full)
+    stepper = ContactStepper(model, scheme, contact.shear, contact.limit)
+    state = stepper.start(contact.gap, contact.velocity)
+    ready = time.perf_counter()
+    rows, outcome = _run(stepper, state, steps, contact, problem.base_length, every_point)
+    ended = time.perf_counter()
+    observed = np.array([row.observed for row in rows]).reshape(len(rows), len(UNILATERAL_COLUMNS)).T
+    kept = (len(rows), len(model.share))
+    return UnilateralResult(
+        time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
+        columns=dict(zip(UNILATERAL_COLUMNS, observed, strict=True)),
+        outcome=outcome,
+        unknowns=len(model.F),
+        points=len(model.share),
+        nonzeros=stepper.work.nonzeros,
+        factorisations=stepper.work.factorisations,
+        solves=stepper.work.solves,
+        notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
+        normal=np.array([row.normal for row in rows]).reshape(kept) if every_point else None,
+        gap=np.array([row.gap for row in rows]).reshape(kept) if every_point else None,
+    )
+
+
+def _saving(model: ContactModel) -> tuple[str, ...]:
+    return ("one column of elements",) if model.kind == "column" else ()
+
+
+def _ramp(problem: Problem) -> tuple[str, ...]:
+    """Say where the elements are longer than the way 1/kappa of a wave in which the base's pressure changes.
+
+    A wave of modulus lam + 2 G meets springs of 2 p / a for each length of the base: kappa = 2 p / (a (lam + 2 G)).
+    """
+    if problem.mesh is not None:
+        return ()
+    spring = 2 * problem.stiffness / problem.base_length
+    kappa = spring / (problem.lame + 2 * problem.shear_modulus)
+    passed = kappa * float(np.ptp(problem.outline[:, 1])) / problem.elements
+    return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
+
+
+@dataclass(frozen=True)
+class _Row:
+    observed: list[float]
+    normal: Array | None
+    gap: Array | None
+
+
+def _run(
+    stepper: ContactStepper, state: ContactState, steps: int, contact: Unilateral, length: float, every_point: bool
+) -> tuple[list[_Row], str]:
+    """Rows of the steps, and the outcome."""
+    rows: list[_Row] = []
+    # A scheme beyond its limit grows until it overflows; the outcome says so.
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(steps):
+            step = advance_with_cuts(stepper, state, contact)
+            if step.state is None:
+                return rows, step.failure
+            state = step.state
+            observed = [*observe(stepper.model, state, length), float(step.solves), float(step.cuts)]
+            if not np.all(np.isfinite(observed)):
+                return rows, OVERFLOW
+            points = (state.normal, state.gap) if every_point else (None, None)
+            rows.append(_Row(observed, *points))
+    return rows, COMPLETED
+
+
+@dataclass
+class CutStep:
+    """One step of the scheme, in one piece or in several."""
+
+    state: ContactState | None  # state at the end; None where even the shortest step has no contact
+    solves: int = 0  # solutions of the open-close iteration in all pieces, tried and accepted [-]
+    cuts: int = 0  # pieces that were tried without success [-]; the next step is tried in one piece again
+    pieces: list[float] = field(default_factory=list)  # lengths of the accepted pieces over the step [-]
+    failure: str = ""  # why there is no state, in words
+
+
+def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Unilateral) -> CutStep:
+    """One step; a piece without a contact is repeated shorter, from the state at its start, as are those after it.
+
+    Parameters
+    ----------
+    stepper
+        The block and the scheme.
+    state
+        State at the start of the step; it is not changed.
+    contact
+        Factor and limit of the cuts.
+    """
+    result = CutStep(state)
+    left = trial = 1.0
+    while left > 0:
+        length = stepper.scheme.step * trial
+        new, found = stepper.advance(state, length)
+        result.solves += found.solves
+        if new is None:
+            result.cuts += 1
+            if trial <= contact.shortest:
+                result.state, result.failure = None, found.failure
+                return result
+            trial = max(contact.cut * trial, contact.shortest)
+            continue
+        state = new
+        result.pieces.append(trial)
+        # What rounding leaves over is no piece.
+        left = left - trial if left - trial > 1e-9 else 0.0
+        trial = min(trial, left)
+    result.state = state
+    return result
+
+
+def observe(model: ContactModel, state: ContactState, length: float) -> list[float]:
+    """The first twelve of `UNILATERAL_COLUMNS` in a state.
+
+    Parameters
+    ----------
+    model, state
+        The block and its state.
+    length
+        Length of the base [m].
+    """
+    D, V = state.motion.D, state.motion.V
+    k, k_t = model.stiffness, model.shear_stiffness
+    sheared = np.divide(state.shear**2, k_t, out=np.zeros_like(k_t), where=k_t > 0)
+    seen = model.observers
+    return [
+        float(seen["displacement"] @ D),
+        float(state.normal.sum() / length),
+        float(seen["horizontal_displacement"] @ D),
+        float(seen["rotation"] @ D),
+        float(state.shear.sum() / length),
+        float(model.share @ (state.gap > 0)),
+        float(np.max(state.gap, initial=0.0)),
+        float(np.max(-state.gap, initial=0.0)),
+        float(V @ (model.M @ V) / 2),
+        float(D @ (model.K @ D) / 2),
+        float(np.sum(state.normal**2 / k + sheared) / 2),
+        float(-model.F @ D),
+    ]

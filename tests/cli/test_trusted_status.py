@@ -1,0 +1,350 @@
+"""The exit status of a run: no 0 where nothing was measured, where a baseline is no baseline, where names collide."""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, typed
+
+from validation.engine.measured import Judged, covers, wanting
+from validation.engine.run import run_study
+from validation.gates.gate import Status, Verdict
+from validation.report import book
+from validation.report.blocks import Callout, FigureBlock, Heading
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
+from validation.studies.catalogue import STUDIES, get_study
+
+RUN = "[run]\nsolvers = {}\n"
+GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
+
+
+def gated(band: str, pair: str = '["dda", "bar"]', solvers: str = '["dda", "bar"]') -> str:
+    metric = "displacement.l2" if "," in pair else "displacement.static"
+    return SCENE + RUN.format(solvers) + GATE.format(pair, metric, band)
+
+
+WIDE, TIGHT = gated("[0.0, 1.0]"), gated("[0.0, 1e-3]")
+MINE = """
+import numpy as np
+def raises(scene): raise ValueError("no")
+def overflows(scene): return np.full(scene.time.steps, np.inf), np.zeros(scene.time.steps)
+def nothing(scene): return np.full(scene.time.steps, np.nan), np.zeros(scene.time.steps)
+def short(scene): return np.zeros(3), np.zeros(3)
+def millimetres(scene):
+    from validation import solve
+    run = solve(scene, "dda")
+    return 1000 * run.displacement, run.contact_pressure
+"""
+
+
+# ---- nothing measured -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("way", ["raises", "overflows", "nothing", "short", "millimetres"])
+def test_a_case_that_ends_badly_is_no_green(way: str, scene_file: Path, tmp_path: Path) -> None:
+    (tmp_path / "odd_ends.py").write_text(MINE)
+    scene_file.write_text(SCENE + RUN.format(f'["dda", "odd_ends:{way}"]'))
+    done = typed("run", scene_file, "--results", "r", cwd=tmp_path)
+    assert done.returncode == 1
+    assert f"small: ended without a measurement: small odd_ends:{way}" in done.stdout
+    (tmp_path / "r/verdicts.json").write_text("[]")
+    assert typed("run", scene_file, "--results", "r", "--baseline", "r", cwd=tmp_path).returncode == 1
+
+
+def test_a_scene_without_gates_that_ran_well_says_that_nothing_was_judged(scene_file: Path, tmp_path: Path) -> None:
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 0 and "small: has no gates: nothing was judged" in done.stdout
+
+
+def test_gates_of_which_none_was_judged_are_no_green(scene_file: Path, tmp_path: Path) -> None:
+    text = gated("[-1.0, 1.0]", '["dda-textbook"]', '["dda", "dda-textbook"]')
+    scene_file.write_text(text.replace("steps = 50", "steps = 50\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
+    for options in ([], ["--baseline", tmp_path / "r"]):
+        done = typed("run", scene_file, "--results", tmp_path / "r", *options)
+        assert done.returncode == 1
+        assert "small: none of its 1 gates was judged, all are NOT RUN" in done.stdout
+
+
+def test_where_no_solver_applies_nothing_is_green(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["bar"]'))
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 1 and "small: no case was measured" in done.stdout
+
+
+def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("steps = 50", "steps = 3000\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
+    unstable = load_scene(scene_file).with_values({"time.step": 0.1})
+    changed = {"scenes": [unstable], "solvers": ("dda",), "extra": (), "gates": tuple, "derived": tuple}
+    study = replace(get_study("core"), name="x", **changed)
+    run_study(study, Results(tmp_path))
+    ends = {("small", "dda"): Outcome.OVERFLOW}
+    for expects, failed in (((), True), ((Outcome.OVERFLOW,), False), ((Outcome.MISPREDICTED,), True)):
+        run = Judged(replace(study, expects=expects), [], ends)
+        assert bool(run.failed) is failed
+    found = [row.outcome for row in Results(tmp_path).rows().values()]
+    assert found == [Outcome.OVERFLOW]
+    assert [name for name in STUDIES if get_study(name).expects] == ["stability-small", "stability"]
+
+
+# ---- required solvers -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["BAR", "Dda", "sofa", "", "dda fem"])
+def test_an_unknown_required_solver_is_refused_before_anything_runs(
+    name: str, scene_file: Path, tmp_path: Path
+) -> None:
+    done = typed("run", scene_file, "--results", tmp_path / "r", "--require", name)
+    assert done.returncode == 2 and "--require: must be among dda, " in done.stderr
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_required_solver_without_a_judged_gate_is_no_green(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(WIDE)
+    options = ("--results", tmp_path / "r", "--require")
+    done = typed("run", scene_file, *options, "fem")
+    assert done.returncode == 1 and "--require fem: no gate on it was judged" in done.stdout
+    assert typed("run", scene_file, *options, "bar").returncode == 0
+    assert typed("run", scene_file, *options, "bar", "--require", "fem").returncode == 1
+    assert typed("run", scene_file, *options, "fem", "--baseline", tmp_path / "r").returncode == 1
+
+
+def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
+    assert covers("fenicsx", "fenicsx:2") and covers("fem", "fem:full") and covers("fem", "fem")
+    assert not covers("fem", "fem-60") and not covers("fenicsx:2", "fenicsx")
+    core = get_study("core")
+    damping = next(gate for gate in core.gates() if gate.pair == ("damping",) and gate.metric == "operator")
+    run = Judged(core, [Verdict(damping, None, Status.NOT_RUN)], {})
+    assert list(wanting([run], ["fem"])) == ["--require fem: 1 of 1 gates on it are NOT RUN"]
+
+
+# ---- baselines ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("where", ["r", "r/verdicts.json", "link"])
+def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
+    where: str, scene_file: Path, tmp_path: Path
+) -> None:
+    scene_file.write_text(gated("[-1.0, 1.0]", '["dda"]'))
+    (tmp_path / "link").symlink_to(tmp_path / "r")
+    assert typed("run", scene_file, "--results", "r", cwd=tmp_path).returncode == 0
+    scene_file.write_text(gated("[-1.0, -0.5]", '["dda"]'))
+    done = typed("run", scene_file, "--results", "r", "--baseline", where, cwd=tmp_path)
+    assert done.returncode == 1 and "1 gates differ: 1 worse" in done.stdout
+
+
+def test_gates_that_are_deleted_are_worse(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(WIDE)
+    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    scene_file.write_text(SCENE)
+    done = typed("run", scene_file, "--results", tmp_path / "r", "--baseline", tmp_path / "r")
+    assert done.returncode == 1 and "1 gates differ: 1 worse" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("band", "kind", "status"),
+    [
+        ("[0.0, 1.0]", None, 0),
+        ("[0.0, 1e300]", "worse", 1),
+        ("[-inf, inf]", "worse", 1),
+        ("[-0.1, 0.9]", "worse", 1),
+        ("[0.01, 0.9]", "band", 0),
+        ("[0.0, 1.00000000001]", None, 0),  # the last digits of an edge are the processor's
+        ("[0.0, 1.0000000001]", "worse", 1),
+    ],
+)
+def test_a_band_that_changed_is_reported_and_a_wider_one_is_worse(
+    band: str, kind: str | None, status: int, scene_file: Path, tmp_path: Path
+) -> None:
+    for name, text in (("a", WIDE), ("b", gated(band))):
+        scene_file.write_text(text)
+        done = typed("run", scene_file, "--results", tmp_path / name)
+        if done.returncode == 2:  # a scene that asks for an infinite band is refused
+            assert "inf" in band
+            return
+    done = typed("run", scene_file, "--results", tmp_path / "b", "--baseline", tmp_path / "a")
+    assert done.returncode == status
+    assert ("no gate differs" if kind is None else f"1 gates differ: 1 {kind}") in done.stdout
+    assert typed("diff", tmp_path / "a", tmp_path / "b").returncode == status
+
+
+def edited(path: Path, change: object) -> None:
+    found = json.loads(path.read_text())
+    path.write_text(json.dumps(change(found)))  # type: ignore[operator]
+
+
+BASELINES = {
+    "missing": (None, "there is no such file"),
+    "twice": (lambda found: found * 2, "stands twice in the study small"),
+    "another word": (lambda found: [found[0] | {"verdict": "pass"}], "0.verdict: "),
+    "no band": (lambda found: [{k: v for k, v in found[0].items() if k != "band"}], "0.band: field required"),
+    "an empty band": (lambda found: [found[0] | {"band": [1.0, 0.0]}], "low <= high"),
+    "words for numbers": (lambda found: [found[0] | {"band": ["0", "1"]}], "0.band.0: "),
+    "passed on nothing": (lambda found: [found[0] | {"value": None}], "says PASS, got None"),
+    "passed outside": (lambda found: [found[0] | {"value": 2.0}], "says PASS, got 2.0 in [0, 1]"),
+    "failed inside": (lambda found: [found[0] | {"verdict": "FAIL"}], "says FAIL, got"),
+}
+
+
+@pytest.mark.parametrize("name", BASELINES)
+def test_a_baseline_that_is_none_is_refused_before_anything_runs(name: str, scene_file: Path, tmp_path: Path) -> None:
+    change, words = BASELINES[name]
+    scene_file.write_text(WIDE)
+    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
+    base = tmp_path / "r" / "verdicts.json"
+    base.unlink() if change is None else edited(base, change)
+    for command in (["run", scene_file, "--results", tmp_path / "n", "--baseline", base], ["diff", base, base]):
+        done = typed(*command)
+        assert done.returncode == 2 and words in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "n").exists()
+
+
+# ---- names ----------------------------------------------------------------------------------------------------------
+
+
+def test_two_files_of_one_stem_are_refused_by_name(tmp_path: Path) -> None:
+    for directory in ("a", "b"):
+        (tmp_path / directory).mkdir()
+        (tmp_path / directory / "same.toml").write_text(TIGHT if directory == "a" else WIDE)
+    done = typed("run", "a/same.toml", "b/same.toml", cwd=tmp_path)
+    assert done.returncode == 2 and "b/same.toml: must not have the name of a/same.toml" in done.stderr
+    assert not (tmp_path / "reports").exists()
+    done = typed("run", "b/same.toml", "b/same.toml", cwd=tmp_path)
+    assert done.returncode == 0 and "1 PASS" in done.stdout, "one file named twice is one study"
+
+
+@pytest.mark.parametrize("name", ["core", "limits", "Core"])
+def test_a_file_with_a_studys_name_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / f"{name}.toml").write_text(WIDE)
+    done = typed("run", f"{name}.toml", cwd=tmp_path)
+    assert done.returncode == 2 and f"{name}.toml: must not have the name of the study {name}" in done.stderr
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_file_and_a_built_in_scene_of_one_name_do_not_run_together(tmp_path: Path) -> None:
+    (tmp_path / "figure-8.toml").write_text(WIDE)
+    done = typed("run", "figure-8", "figure-8.toml", cwd=tmp_path)
+    assert done.returncode == 2 and "figure-8.toml: must not have the name of figure-8" in done.stderr
+
+
+def test_two_gates_of_one_id_are_refused(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(WIDE + GATE.format('["dda", "bar"]', "displacement.l2", "[0.0, 1e-3]"))
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 2 and "gate.1: must not repeat pair and metric of another gate" in done.stderr
+    assert not (tmp_path / "r").exists()
+
+
+# ---- files and streams ----------------------------------------------------------------------------------------------
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "validation", *map(str, arguments)]
+
+
+@pytest.mark.parametrize("ending", ["vtu", "xdmf"])
+def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_file: Path, tmp_path: Path) -> None:
+    out = tmp_path / f"f.{ending}"
+    out.write_text("a good file")
+    done = subprocess.run(  # a limit on the size of files stands for a full disk
+        command("solve", scene_file, "--solver", "fem", "--fields", out),
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)),
+        check=False,
+        timeout=100,
+    )
+    assert done.returncode == 2 and "--fields: cannot be written: File too large" in done.stderr
+    assert out.read_text() == "a good file"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
+
+
+def test_fields_are_not_written_after_an_overflow(scene_file: Path, tmp_path: Path) -> None:
+    out = tmp_path / "f.vtu"
+    out.write_text("a good file")
+    sets = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    words = [part for text in sets for part in ("--set", text)]
+    done = typed("solve", scene_file, "--solver", "fem", "--fields", out, *words)
+    assert done.returncode == 3 and "overflow" in done.stdout
+    assert out.read_text() == "a good file"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
+
+
+def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
+    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "f.vtu"
+    out.write_text("a good file")
+    run = get_solver("dda").solve(load_scene(scene_file))
+    monkeypatch.setattr("validation.engine.measure.completed", lambda *arguments: run)
+    done = typed("solve", scene_file, "--solver", "fem", "--fields", out)
+    assert done.returncode == 2 and "--fields: fem has written none" in done.stderr
+    assert out.read_text() == "a good file"
+
+
+@pytest.mark.parametrize(("text", "status"), [(TIGHT, 1), (WIDE, 0)])
+def test_a_reader_that_has_gone_does_not_change_the_status(
+    text: str, status: int, scene_file: Path, tmp_path: Path
+) -> None:
+    scene_file.write_text(text)
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "w") as gone:
+        done = subprocess.run(
+            command("run", scene_file, "--results", tmp_path / "r"), stdout=gone, stderr=subprocess.PIPE, timeout=100
+        )
+    assert (done.returncode, done.stderr.strip()) == (status, b"")
+
+
+@pytest.mark.parametrize(("text", "status"), [(TIGHT, 1), (WIDE, 0)])
+def test_a_closed_output_does_not_change_the_status(text: str, status: int, scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(text)
+    line = 'exec "$0" -m validation run "$1" --results "$2" >&-'
+    words = ["bash", "-c", line, sys.executable, str(scene_file), str(tmp_path / "r")]
+    done = subprocess.run(words, capture_output=True, timeout=100)
+    assert (done.returncode, done.stderr.strip()) == (status, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+def test_a_full_output_is_one_line(scene_file: Path, tmp_path: Path) -> None:
+    for words in (["run", scene_file, "--results", tmp_path / "r"], ["list"]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(command(*words), stdout=full, stderr=subprocess.PIPE, text=True, timeout=100)
+        assert done.returncode == 2
+        assert done.stderr.strip() == "error: standard output: No space left on device"
+
+
+@pytest.mark.parametrize("stem", ["a$_{$b", "esc\x1b[31m", "a\u2028b", "$"])
+def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> None:
+    path = tmp_path / f"{stem}.toml"
+    path.write_text(SCENE.replace("A small scene", "A $scene_{ \\u001b"))
+    done = typed("run", path, "--results", tmp_path / "r")
+    assert done.returncode == 0, done.stderr
+    done = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "r.pdf").read_bytes().startswith(b"%PDF-")
+    done = typed("figures", stem, "--results", tmp_path / "r", "--out", tmp_path / "f")
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(
+    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("small", "other"):
+        scene_file.with_name(f"{name}.toml").write_text(SCENE)
+        assert typed("run", scene_file.with_name(f"{name}.toml"), "--results", tmp_path / "r").returncode == 0
+    drawn = book.chapter_of
+    monkeypatch.setattr(book, "chapter_of", lambda study: (lambda *a: [][0]) if study == "other" else drawn(study))
+    blocks = book._all_blocks(Results(tmp_path / "r"), ["other", "small"], tmp_path)
+    (said,) = [block.text for block in blocks if isinstance(block, Callout)]
+    assert "the chapter of other cannot be drawn from these results (IndexError: list index out of range)" in said
+    assert Heading("A small scene", 2) in blocks or any(isinstance(block, FigureBlock) for block in blocks)
+    done = typed("figures", "other", "--results", tmp_path / "r", "--out", tmp_path / "f")
+    assert done.returncode == 2 and "IndexError" in done.stderr

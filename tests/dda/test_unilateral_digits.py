@@ -1,0 +1,142 @@
+"""Opening contact against 60-digit arithmetic, and against the exact motion as the step shrinks."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles import unilateral_mp
+
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
+from fem_reference.events.block_events import solve as exact_motion
+from fem_reference.events.block_model import BlockProblem
+
+PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
+EPS = np.finfo(float).eps
+
+
+def model_of(problem):
+    block = Block.rectangle(problem.width, problem.height, Material(problem.density, problem.young, problem.poisson))
+    contact = Unilateral(problem.stiffness, problem.shear_stiffness, problem.gap)
+    names = ("pressure", "eccentricity", "traction", "gravity", "velocity")
+    return UnilateralModel(block, contact, **{name: getattr(problem, name) for name in names})
+
+
+IMPACT = BlockProblem(1.7, 1.3, 2350.0, 4.3e9, 1e9, velocity=-1.0)
+
+
+def histories(model, scheme, steps):
+    """Return (computed, exact) of v, the normal forces and the shear forces."""
+    result, exact = solve_unilateral(model, scheme, steps), unilateral_mp.history(model, scheme, steps)
+    assert result.outcome == "completed"
+    v = (result.columns["displacement"], [row[0] for row in exact])
+    N = [(mine, [row[1][i] for row in exact]) for i, mine in enumerate((result.normal_force_m, result.normal_force_n))]
+    T = [(mine, [row[2][i] for row in exact]) for i, mine in enumerate((result.shear_force_m, result.shear_force_n))]
+    return v, N, T
+
+
+# Stiffness against step: soft to rigid, a contact resolved in time and one that is not.
+PAIRS = [(1.0, 1e3), (1e9, 1e-6), (1e13, 1e-3), (1e17, 1e-9), (1e17, 1e3), (1e21, 1e-3), (1e24, 1e-9), (1e24, 1e-3)]
+
+
+@pytest.mark.parametrize(("p", "dt"), PAIRS)
+@pytest.mark.parametrize("gg", [1.0, 0.99])
+def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
+    (v, exact), forces, _ = histories(model_of(replace(IMPACT, stiffness=p)), Scheme(0.5, 1.0, gg, dt), 30)
+    assert unilateral_mp.lost(v, exact) < 1e-14
+    assert max(unilateral_mp.lost(*pair) for pair in forces) < 1e-14
+
+
+def test_a_penalty_that_grows_becomes_the_rigid_stop():
+    scheme, model = Scheme(0.5, 1.0, 1.0, 2e-4), model_of(replace(IMPACT, pressure=1e6))
+    stiff, rigid = (solve_unilateral(replace(model, contact=Unilateral(p)), scheme, 60) for p in (1e24, np.inf))
+    assert np.array_equal(stiff.closed_m, rigid.closed_m) and np.all(rigid.gap_m[rigid.closed_m] == 0)
+    # 1/p is 1e-13 of the step's flexibility; some twenty impacts multiply that
+    largest = np.max(rigid.normal_force_m)
+    assert np.max(np.abs(stiff.normal_force_m - rigid.normal_force_m)) < 1e-9 * largest
+
+
+# A corner that closes meets the rounding of a step as a relative error of its small overshoot; two corners in turn
+# multiply it. The oracle, started at V (1 + 1e-12), tells by how much: `steps` times some ten roundings, each grown so.
+@pytest.mark.parametrize("glued", [0.0, 0.4])
+@pytest.mark.parametrize(("p", "dt"), [(1e3, 1e3), (1e9, 1e-9), (1e9, 1e-3), (1e13, 1e-4), (1e24, 1e-4), (1e24, 1e3)])
+def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued):
+    steps, grown = 25, 1e-12
+    problem = replace(
+        IMPACT, poisson=0.31, stiffness=p, shear_stiffness=glued * p, pressure=3.7e6, eccentricity=0.13, gravity=3.0
+    )
+    model, scheme = model_of(problem), Scheme(0.5, 1.0, 0.97, dt)
+    shadow = replace(model, velocity=model.velocity * (1 + grown))
+    (v, exact), normal, shear = histories(model, scheme, steps)
+    moved = unilateral_mp.history(shadow, scheme, steps)
+    largest = max(abs(N) for _, history in normal for N in history)
+    growth = max(abs(float((a - b[0]) / max(map(abs, exact)))) for a, b in zip(exact, moved, strict=True)) / grown
+    for i, (_, N) in enumerate(normal):
+        growth = max(growth, *(abs(float((a - b[1][i]) / largest)) / grown for a, b in zip(N, moved, strict=True)))
+    bound = steps * 10 * EPS * (1 + growth)
+    assert unilateral_mp.lost(v, exact) < bound
+    for mine, theirs in (*normal, *shear):
+        assert max(abs(float(x - y)) for x, y in zip(mine, theirs, strict=True)) < bound * float(largest)
+
+
+def orders(problem, scheme, counts, end):
+    """Return the fitted order and the errors of v against the exact motion, over the exact one's largest value."""
+    motion, errors = exact_motion(problem, end), []
+    for n in counts:
+        alpha, delta, start = scheme
+        result = solve_unilateral(model_of(problem), Scheme(alpha, delta, 1.0, end / n, start), n)
+        v = motion.at(np.minimum(result.time, end)).displacement[1]
+        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
+    return -np.polyfit(np.log(counts), np.log(errors), 1)[0], errors
+
+
+GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
+ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
+# Schemes, exact motions and their order; a step hits a switch anywhere, which scatters a fitted order by a few tenths.
+ORDERS = [
+    (PAPER, (0.5, 1.0, "zero"), 1.0, 0.1),
+    (ECCENTRIC, (0.5, 1.0, "zero"), 1.0, 0.1),
+    (GLUED, (0.5, 1.0, "zero"), 1.0, 0.1),
+    (PAPER, (0.25, 0.5, "consistent"), 2.0, 0.15),
+    (ECCENTRIC, (0.25, 0.5, "consistent"), 2.0, 0.15),
+    (PAPER, (0.25, 0.5, "zero"), 1.0, 0.1),
+]
+
+
+@pytest.mark.parametrize(("problem", "scheme", "order", "scatter"), ORDERS)
+def test_the_order_in_dt_through_switches(problem, scheme, order, scatter):
+    fitted, errors = orders(problem, scheme, [500, 1000, 2000, 4000], 0.03)
+    assert abs(fitted - order) < scatter, errors
+    assert errors[-1] < (3e-5 if order == 2 else 2e-2)
+
+
+def late_errors(problem, phase, counts):
+    """Return the error of ex some time after the first opening, which lies at a given phase of its step."""
+    opening, errors = [s.time for s in exact_motion(problem, 0.02).switches if s.corner == "M"][1], []
+    motion = exact_motion(problem, 1.2 * opening)
+    for n in counts:
+        scheme = Scheme(0.25, 0.5, 1.0, opening / (n + phase), "consistent")
+        result = solve_unilateral(model_of(problem), scheme, round(1.19 * n), ["strain_x"])
+        error = result.columns["strain_x"] - motion.at(result.time).displacement[3]
+        errors.append(np.interp(1.15 * opening, result.time, error))
+    return np.array(errors)
+
+
+def test_glued_shear_lowers_average_acceleration_to_first_order():
+    """Opening takes a finite shear force away, at the end of its step instead of within: an error of first order.
+
+    It is odd about the middle of the step: opening early and late differ by it, and in the middle it vanishes.
+    """
+    glued, counts = replace(PAPER, poisson=0.3, shear_stiffness=1e9), [400, 800, 1600, 3200]
+    early, middle, late = (late_errors(glued, phase, counts) for phase in (0.25, 0.5, 0.75))
+    assert -np.polyfit(np.log(counts), np.log(np.abs(late - early)), 1)[0] == pytest.approx(1.0, abs=0.1)
+    assert -np.polyfit(np.log(counts), np.log(np.abs(middle)), 1)[0] == pytest.approx(2.0, abs=0.1)
+    assert abs(late - early)[-1] > abs(middle[-1])
+
+
+def test_switches_in_two_tenths_of_a_second_are_those_of_the_exact_block_as_dt_shrinks():
+    """At 10 microseconds (1/2, 1) sees all 21 switches at p = 1E and loses a part of the 108 at p = 10E."""
+    for p, scheme, expected in ((1e9, (0.5, 1.0), 21), (1e10, (0.5, 1.0), 83)):
+        result = solve_unilateral(model_of(replace(PAPER, stiffness=p)), Scheme(*scheme, 1.0, 1e-5), 20000)
+        closed = np.concatenate([[False], result.closed_m])
+        assert np.count_nonzero(np.diff(closed)) == expected, p
+        assert np.count_nonzero(result.step_solves == 2) in (expected, expected + 1)  # the start counts as closed

@@ -1,0 +1,306 @@
+"""What is kept is served only where it is whole and its own; what was not measured is no green."""
+
+import json
+import shutil
+import threading
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE, typed
+
+from validation.engine import origin
+from validation.engine.case import Case
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
+from validation.errors import InputError
+from validation.gates.gate import Gate
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.contract import Solver
+
+GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
+WIDE = GATE + 'band = [0.0, 1.0]\nreason = "wide"\n'
+
+
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
+def study(scene: Scene) -> Study:
+    gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
+    return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,))
+
+
+def ran(scene: Scene, results: Results) -> list[str]:
+    """Return the solvers that a run has run, not taken from the directory."""
+    seen: list[str] = []
+    run_study(study(scene), results, progress=lambda done, total, label: seen.append(label.split()[1]))
+    return seen
+
+
+# ---- kept rows ------------------------------------------------------------------------------------------------------
+
+
+def test_the_manifest_says_which_versions_made_the_rows(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    results = Results(tmp_path)
+    then = {"python": "3.11", "commit": "then", "packages": {"numpy": "2.0.0"}}
+    monkeypatch.setattr(origin, "_here", lambda: then)
+    monkeypatch.setattr(origin, "library_versions", dict)
+    finish([Case(scene, "dda")], study(scene), results)
+    monkeypatch.setattr(origin, "_here", lambda: then | {"commit": "now", "packages": {"numpy": "2.1.0"}})
+    assert ran(scene, results) == ["bar"]
+    found = results.manifest("test")["provenance"]
+    assert found["commit"] == "then (1 row); now (1 row)"
+    assert found["packages"] == {"numpy": "2.0.0 (1 row); 2.1.0 (1 row)"}
+    assert found["python"] == "3.11"
+
+
+def test_every_row_says_what_made_it(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    for row in results.rows().values():
+        assert {"commit", "python", "date", "packages"} <= row.provenance.keys()
+        assert row.provenance["packages"]["numpy"] == np.__version__
+        assert not {"matplotlib", "typst"} & row.provenance["packages"].keys(), "they make no row"
+
+
+def rewritten(results: Results, solver: str, change: object) -> None:
+    """Write the history of a solver's row as a program would that does not know whose it is, or as the suite does."""
+    row = next(row for row in results.rows().values() if row.solver == solver)
+    history = results.history(row.key)
+    assert history is not None and callable(change)
+    results.append(row, change(history))
+
+
+def shorter(history: History) -> History:
+    return History(history.time[:-1], {name: values[:-1] for name, values in history.columns.items()})
+
+
+def without_pressure(history: History) -> History:
+    return History(history.time, {"displacement": history.displacement})
+
+
+def infinite(history: History) -> History:
+    return History(history.time, {**history.columns, "displacement": np.full(len(history.time), np.inf)})
+
+
+@pytest.mark.parametrize("change", [shorter, without_pressure, infinite], ids=lambda change: change.__name__)
+def test_a_kept_history_that_is_not_that_of_its_scene_is_run_again(
+    change: object, scene: Scene, tmp_path: Path
+) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    rewritten(results, "dda", change)
+    assert ran(scene, results) == ["dda"]
+    assert ran(scene, results) == []
+
+
+def test_histories_that_swap_places_are_run_again(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    first, second = (tmp_path / "histories").iterdir()
+    shutil.copy(first, tmp_path / "x")
+    shutil.copy(second, first)
+    shutil.copy(tmp_path / "x", second)
+    with pytest.raises(InputError, match="belongs to another case"):
+        results.history(first.stem)
+    assert sorted(ran(scene, results)) == ["bar", "dda"]
+
+
+def test_a_history_without_time_is_one_line(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    path = next((tmp_path / "histories").iterdir())
+    np.savez(path, displacement=np.zeros(50))
+    with pytest.raises(InputError, match="belongs to another case"):
+        results.history(path.stem)
+    with zipfile.ZipFile(path, "a") as kept:
+        kept.comment = path.stem.encode()
+    with pytest.raises(InputError, match="holds no column time"):
+        results.history(path.stem)
+    with path.open("wb") as stream:
+        np.save(stream, np.zeros(3))
+    with pytest.raises(InputError, match="cannot be read as a history"):
+        results.history(path.stem)
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda line: line.replace('"displacement.static": -0.01', '"displacement.static": -0.012'),
+        lambda line: line.replace('"outcome": "completed"', '"outcome": "unstable as predicted"'),
+        lambda line: json.dumps({k: v for k, v in json.loads(line).items() if k != "digest"}),
+        lambda line: "[" * 100_000,
+    ],
+)
+def test_a_row_that_was_edited_is_run_again(edit: object, scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    path = tmp_path / "rows.jsonl"
+    lines = [line for line in path.read_text().splitlines() if line]
+    path.write_text("\n".join(edit(line) if '"dda"' in line else line for line in lines))  # type: ignore[operator]
+    assert path.read_text().splitlines() != lines
+    assert ran(scene, results) == ["dda"]
+
+
+def test_the_latest_row_of_a_key_counts(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    for seconds in (1.0, 2.0, 3.0):
+        results.append(Row("k", "s", "x", "dda", Outcome.REFUSED, {}, seconds={"setup": seconds}), None)
+    assert results.rows()["k"].seconds == {"setup": 3.0}
+
+
+def test_a_row_that_does_not_say_what_made_it_is_run_again(scene: Scene, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    run_study(study(scene), results)
+    row = next(row for row in results.rows().values() if row.solver == "dda")
+    results.append(replace(row, provenance={}), results.history(row.key))
+    assert ran(scene, results) == ["dda"]
+
+
+@pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])
+def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome: Outcome, scene: Scene, tmp_path: Path) -> None:
+    results, case = Results(tmp_path), Case(scene, "dda")
+    made = origin.of_row(case.make_solver())
+    results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
+    rows = finish([case], study(scene), results).rows
+    assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
+
+
+def test_a_worker_with_other_sources_makes_no_rows(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, keys = threading.get_ident(), Case.key
+    monkeypatch.setattr(Case, "key", lambda case: keys(case) if threading.get_ident() == here else "another")
+    with ThreadPoolExecutor(2) as pool:
+        rows = finish([Case(scene, "dda"), Case(scene, "bar")], study(scene), Results(tmp_path), executor=pool).rows
+    assert {row.outcome for row in rows.values()} == {Outcome.RAISED}
+    assert {row.notes for row in rows.values()} == {("the worker holds other sources, versions or files",)}
+
+
+# ---- records --------------------------------------------------------------------------------------------------------
+
+MALFORMED = ["[", "[" * 100_000, "{}", "null", '[{"study": "s"}]', '[{"id": 1, "study": "s"}]', '["a"]', "[1e999]"]
+
+
+@pytest.mark.parametrize("text", MALFORMED, ids=range(len(MALFORMED)))
+@pytest.mark.parametrize("command", ["run", "report", "diff", "baseline"])
+def test_malformed_verdicts_are_one_line_before_anything_runs(
+    command: str, text: str, scene_file: Path, tmp_path: Path
+) -> None:
+    results = tmp_path / "r"
+    run_study(study(load_scene(scene_file)), Results(results))
+    (results / "verdicts.json").write_text(text)
+    before = (results / "rows.jsonl").read_bytes()
+    words: dict[str, list[object]] = {
+        "run": ["run", scene_file, "--results", results],
+        "report": ["report", "--results", results, "--out", tmp_path / "r.pdf"],
+        "diff": ["diff", results, results],
+        "baseline": ["run", scene_file, "--results", tmp_path / "new", "--baseline", results / "verdicts.json"],
+    }
+    done = typed(*words[command])
+    assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1
+    assert "verdicts.json: must be " in done.stderr
+    assert (results / "rows.jsonl").read_bytes() == before and not (tmp_path / "new").exists()
+
+
+def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path, tmp_path: Path) -> None:
+    results = Results(tmp_path / "r")
+    run_study(study(load_scene(scene_file)), results)
+    shutil.copy(tmp_path / "r/studies/test.json", tmp_path / "r/studies/other.json")
+    for words in (["rows", "other"], ["report", "--out", tmp_path / "r.pdf"], ["figures", "other"]):
+        done = typed(*words, "--results", tmp_path / "r", cwd=tmp_path)
+        assert done.returncode == 2 and "holds the study 'test'" in done.stderr
+    (tmp_path / "r/studies/other.json").unlink()
+    (tmp_path / "r/rows.jsonl").write_text("\n")
+    for words in (["rows", "test"], ["report", "--out", tmp_path / "r.pdf"], ["figures", "test"]):
+        done = typed(*words, "--results", tmp_path / "r", cwd=tmp_path)
+        assert done.returncode == 2 and "the row of small dda is lost; run test again" in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_verdicts_of_other_studies_stay(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE + WIDE)
+    other = scene_file.with_name("other.toml")
+    other.write_text(SCENE + WIDE)
+    for path in (scene_file, other, scene_file):
+        assert typed("run", path, "--results", tmp_path / "r").returncode == 0
+    assert [v["study"] for v in Results(tmp_path / "r").verdicts()] == ["other", "small"]
+
+
+# ---- cases that end badly -------------------------------------------------------------------------------------------
+
+
+def test_a_case_at_the_edge_of_numbers_does_not_end_the_others(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("1.0e9\n\n[contact]", "1e-308\n\n[contact]"))
+    done = typed("run", scene_file, "--results", tmp_path / "r", "--jobs", "1")
+    assert done.returncode == 1 and "small: ended without a measurement: small" in done.stdout
+    assert len(Results(tmp_path / "r").manifest("small")["cases"]) == 3
+
+
+class Wrong(Solver):
+    """A solver whose error, static solution or history is at the edge."""
+
+    def __init__(self, way: str) -> None:
+        self.way = self.name = way
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        if self.way == "surrogate":
+            raise ValueError("a lone \udcff and \x1b[31m red")
+        if self.way == "memory":
+            raise MemoryError
+        time = scene.time.step * np.arange(1, scene.time.steps + 1)
+        extra = {"extra": np.full(3, np.nan)} if self.way == "extra" else {}
+        return Run(Outcome.COMPLETED, History(time, {"displacement": -0.01 * np.sin(time), **extra}))
+
+    def static(self, scene: Scene) -> dict[str, float]:
+        return {"displacement": 1e-320}
+
+
+@pytest.mark.parametrize(
+    ("way", "outcome", "note"),
+    [
+        ("surrogate", Outcome.RAISED, r"ValueError: a lone \udcff and \x1b[31m red"),
+        ("memory", Outcome.RAISED, "MemoryError"),
+        ("static", Outcome.COMPLETED, ""),
+        ("extra", Outcome.COMPLETED, ""),
+    ],
+)
+def test_odd_errors_and_values_are_named_outcomes(
+    way: str, outcome: Outcome, note: str, scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Case, "make_solver", lambda self: Wrong(way))
+    results = Results(tmp_path)
+    run_study(Study("test", "t", "p", [scene], ("dda",)), results)
+    (row,) = results.rows().values()
+    assert row.outcome is outcome and (row.notes[-1] if note else "") == note
+    assert outcome is not Outcome.COMPLETED or row.metrics["mode1.measured_damping"] == "undefined"
+    history = results.history(row.key)
+    assert (history is not None) == (outcome is Outcome.COMPLETED)
+    assert history is None or list(history.columns) == ["displacement"]
+
+
+def test_alarms_that_fail_on_one_scene_are_said_of_it_alone(scene: Scene, tmp_path: Path) -> None:
+    other = scene.model_copy(update={"name": "other"})
+
+    def annotate(scenes: object, finished: object) -> object:
+        names = [s.name for s in scenes]  # type: ignore[attr-defined]
+        if "other" in names:
+            raise OverflowError("too large")
+        told = [{"kind": "k", "scene": name, "sentence": "s", "values": {}} for name in names]
+        return {"alarms": told, "budgets": []}
+
+    made = Study("test", "t", "p", [scene, other], ("dda",), annotate=annotate)  # type: ignore[arg-type]
+    run_study(made, Results(tmp_path))
+    told = {alarm["scene"]: alarm["sentence"] for alarm in Results(tmp_path).manifest("test")["alarms"]}
+    assert told == {"small": "s", "other": "alarms and damping budget: OverflowError: too large"}

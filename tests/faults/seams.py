@@ -1,0 +1,132 @@
+"""The table of seams: where seeded faults and other stand-ins enter the code, by the function itself and not its name.
+
+A seam names the module or class *through which* a function is called, since that is where another must stand. Here
+`newmark.predictor` is the function: where it is renamed, moved or no longer imported, this module does not import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+
+import dda
+import fem_reference.exact.bar as exact_bar
+import fem_reference.mesh.elasticity as elasticity
+from dda.model.block import Block
+from dda.one_block import gap_form, solution
+from dda.scheme import blocked, newmark
+from dda.system import joints, subdivision, system
+from dda.system import solution as system_solution
+from fem_reference.events import bar_events, block_events
+from fem_reference.history import solver as fem_history
+from fem_reference.mesh import model as fem_model
+from fem_reference.scheme import diagnostics as fem_diagnostics
+from fem_reference.scheme import eigen as fem_eigen
+from fem_reference.scheme import modal
+from fem_reference.scheme import newmark as fem_newmark
+from validation.compare import causes, diagnosis
+from validation.runs import provenance
+from validation.solvers import fenicsx, registry
+
+
+@dataclass(frozen=True)
+class Seam:
+    """Something that a module or class holds under exactly one name, in whose place another is put.
+
+    Attributes
+    ----------
+    owner
+        The module or class.
+    sound
+        What it holds: a function, or a constant.
+    name
+        Under which name it holds it; found, never written.
+    """
+
+    owner: Any
+    sound: Any
+    name: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        names = [name for name, value in vars(self.owner).items() if value is self.sound]
+        if len(names) != 1:
+            raise ValueError(f"{self.owner!r} holds {self.sound!r} under the names {names}: a seam has exactly one")
+        object.__setattr__(self, "name", names[0])
+
+    def put(self, patch: pytest.MonkeyPatch, other: Any) -> None:
+        """Put something in the place of what is there, as long as the patch lasts."""
+        patch.setattr(self.owner, self.name, other)
+
+    def wrap(self, patch: pytest.MonkeyPatch, replacement: Callable[[Any], Any]) -> None:
+        """Put in its place what is made of it."""
+        self.put(patch, replacement(getattr(self.owner, self.name)))
+
+
+# One block of DDA: its scheme, its matrices, its histories
+DDA_PREDICTOR = Seam(newmark, newmark.predictor)
+DDA_VELOCITY = Seam(newmark, newmark.velocity_corrector)
+DDA_ACCELERATION = Seam(newmark, newmark.acceleration_corrector)
+DDA_START = Seam(newmark, newmark.initial_acceleration)
+DDA_EFFECTIVE = Seam(newmark, newmark.effective_matrix)
+DDA_SQUARES = Seam(blocked, blocked._squared)
+DDA_STIFFNESS = Seam(gap_form, gap_form._stiffness)
+DDA_LOAD = Seam(gap_form, gap_form._load)
+DDA_HISTORIES = Seam(solution, solution.modal_histories)
+DDA_MODES = Seam(solution, solution.modal_form)
+DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
+DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
+DDA_SOLVE = Seam(dda, dda.solve)
+DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
+
+# Systems of blocks
+SYSTEM_BASE = Seam(subdivision, subdivision.base_share)
+SYSTEM_GLUE = Seam(dda, dda.subdivided)
+SYSTEM_JOINT_ROWS = Seam(joints, joints._value)
+SYSTEM_MASS = Seam(system, system._without_rounding)
+SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
+SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
+SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
+SYSTEM_RUN = Seam(system_solution._Stepper, system_solution._Stepper.run)
+SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
+
+# Finite elements
+FEM_PREDICTOR = Seam(fem_newmark, fem_newmark.predictor)
+FEM_VELOCITY = Seam(fem_newmark, fem_newmark.velocity)
+FEM_STEPPER = Seam(fem_history, fem_history.Stepper)
+FEM_BOUNDED = Seam(fem_history, fem_history.bounded)
+FEM_RUN = Seam(fem_history, fem_history.run)
+FEM_SMALL_SPACE = Seam(fem_history, fem_history._in_small_space)
+FEM_FOUNDATION = Seam(elasticity, elasticity._carried)
+FEM_MASS = Seam(elasticity, elasticity.mass)
+FEM_LOAD = Seam(elasticity, elasticity.load)
+FEM_ROTATION = Seam(elasticity, elasticity._rotation)
+FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
+FEM_COLUMN = Seam(fem_model, fem_model.column)
+FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
+FEM_FACTOR = Seam(fem_diagnostics.Work, fem_diagnostics.Work.factor)
+FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
+
+# The bar
+BAR_WAVE_NUMBERS = Seam(exact_bar, exact_bar.wave_numbers)
+BAR_SHARES = Seam(exact_bar, exact_bar.shares)
+BAR_SUM = Seam(exact_bar.Bar, exact_bar.Bar._sum)
+BAR_TRACE = Seam(modal, modal.trace)
+BAR_SPECTRUM = Seam(modal, modal.spectrum)
+BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
+BAR_PAIR = Seam(modal, modal._pair)
+
+# The exact motions with contact that opens
+EVENTS_BLOCK = Seam(block_events, block_events.solve)
+EVENTS_BAR = Seam(bar_events, bar_events.solve)
+
+# The suite itself
+CAUSES_FURTHER = Seam(causes, causes._further)
+CAUSES_OPENED = Seam(causes, causes.opened)
+CAUSES_BETTER = Seam(causes, causes.better)
+DIAGNOSIS_FACTORS = Seam(diagnosis, diagnosis._factors)
+COMMIT = Seam(provenance, provenance._commit)
+PROCESSOR = Seam(provenance, provenance._processor)
+IMPORTED_SOLVER = Seam(registry, registry._imported)

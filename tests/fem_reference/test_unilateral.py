@@ -1,0 +1,283 @@
+"""Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
+
+from dataclasses import replace
+from itertools import pairwise, product
+
+import numpy as np
+import pytest
+from oracles.elements import make
+
+from fem_reference import Motion, Scheme, Unilateral, assemble, solve, solve_unilateral
+from fem_reference.events.bar_events import solve as exact
+from fem_reference.events.bar_model import BarProblem
+
+AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
+CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
+SLOPE = ((1.0, 5.0), (4.0, 5.4), (3.6, 6.6), (1.4, 6.3))
+GLUED = Unilateral(shear="glued")
+
+
+def bar_of(problem, contact=None):
+    """The exact bar of a square problem."""
+    contact = Unilateral() if contact is None else contact
+    width, height = problem.rectangle
+    loads = {"pressure": problem.pressure, "gravity": problem.gravity, "gap": contact.gap, "velocity": contact.velocity}
+    return BarProblem(height, width, problem.density, problem.young, 2 * problem.stiffness, **loads)
+
+
+def distances(problem, scheme, steps, contact=None):
+    """Relative L2 distances of displacement and contact pressure from the exact bar, and the run."""
+    run = solve_unilateral(problem, scheme, steps, contact)
+    truth = exact(bar_of(problem, contact), 1.001 * run.time[-1]).at(run.time)
+    pairs = [(run.columns[name], getattr(truth, name)) for name in ("displacement", "contact_pressure")]
+    return [float(np.linalg.norm(a - b) / np.linalg.norm(b)) for a, b in pairs], run
+
+
+@pytest.mark.parametrize(
+    ("scheme", "orders"),
+    # A front is smeared over h^(2/3) by a scheme of second order and over h^(1/2) by one of first. It is a kink of the
+    # displacement, and of the pressure behind the base spring: over the width d it leaves d^(3/2) in the L2 norm.
+    [(AVERAGE, (1.0, 1.0)), (CONSTANT, (0.75, 0.75))],
+)
+def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
+    found = []
+    for level in (64, 128, 256):
+        step = 6.4e-3 / level
+        error, run = distances(make(elements=level, degree=1), replace(scheme, step=step), round(0.03 / step))
+        assert np.any(run.columns["largest_gap"] > 1e-3)
+        found.append(error)
+    measured = -np.polyfit(np.log([64, 128, 256]), np.log(found), 1)[0]
+    # Not yet asymptotic: the ramp behind the base spring, 1/kappa long, is met by few widths of the smeared front.
+    assert measured == pytest.approx(orders, abs=0.15)
+    assert found[-1][0] < 0.03
+
+
+def test_the_first_opening_and_landing_approach_the_exact_ones():
+    problem = make(elements=256, degree=1)
+    switches = [s.time for s in exact(bar_of(problem), 0.03).switches]
+    run = solve_unilateral(problem, replace(AVERAGE, step=2.5e-5), 1200)
+    up = np.flatnonzero(run.columns["largest_gap"] > 0)
+    assert [s for s in switches if s < 0.03] == switches and len(switches) == 2
+    # The front at the base is a few h^(2/3) wide, (2/256)^(2/3) m at 609 m/s is 6e-5 s.
+    assert run.time[up[0]] == pytest.approx(switches[0], abs=3e-4)
+    assert run.time[up[-1]] == pytest.approx(switches[1], abs=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "contact"),
+    [
+        ({"pressure": 0.0}, Unilateral(velocity=-0.7)),
+        ({"pressure": 0.0, "gravity": 9.81}, Unilateral(gap=1e-3, velocity=-0.2)),
+        ({"pressure": 2e6, "gravity": 30.0}, Unilateral(gap=5e-4)),
+    ],
+)
+def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
+    problem = replace(make(((0, 0), (1.5, 0), (1.5, 2), (0, 2)), elements=128, degree=1, p=3e9), **change)
+    error, run = distances(problem, replace(AVERAGE, step=2.5e-5), 800, contact)
+    assert np.all(run.columns["contact_pressure"][:5] == 0) == (contact.gap > 0)
+    # twice what order one leaves of the coarser runs of the test above at this mesh
+    assert error[0] < 0.02 and error[1] < 0.1
+
+
+@pytest.mark.parametrize(
+    ("problem", "contact"),
+    [
+        (make(p=1e8, elements=6), Unilateral()),
+        (make(p=1e8, elements=6, degree=1, poisson=0.25, foundation="nodes", shear=0.0), Unilateral()),
+        (make(elements=6, degree=1, poisson=0.25, foundation="nodes", shear=4e8, eccentricity=0.1), GLUED),
+        (make(elements=4, poisson=0.3, foundation="corner", shear=4e8), GLUED),
+        (make(elements=6, poisson=0.25, foundation="patch", patch_width=0.7, shear=4e8), GLUED),
+        (make(SLOPE, elements=4, degree=1, foundation="nodes", p=1e8, poisson=0.1), GLUED),
+    ],
+)
+@pytest.mark.parametrize("full", [False, True])
+def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
+    check_locked(problem, Scheme(0.5, 1.0, 0.98, 1e-2), contact, full)
+
+
+def test_central_differences_know_the_base_too():
+    # its weight presses the block from the first step on; a load on top would make the mesh ring ahead of its front
+    problem = replace(make(p=1e8, elements=4, degree=1), pressure=0.0, gravity=9.81)
+    check_locked(problem, Scheme(0.0, 0.5, 1.0, 1e-4, "consistent"), Unilateral(), False)
+
+
+def check_locked(problem, scheme, contact, full):
+    run = solve_unilateral(problem, scheme, 40, contact, full)
+    assert np.all(run.columns["open_share"] == 0)
+    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+    locked = solve(problem, scheme, 40, names, full=True).columns
+    size = {"contact_pressure": np.abs(locked["contact_pressure"]).max()}
+    for name in names:
+        scale = size.get(name, np.abs(locked["displacement"]).max())
+        # forty solutions, each with the rounding of a matrix of condition 1e4
+        assert np.abs(run.columns[name] - locked[name]).max() <= 1e-11 * scale, name
+
+
+def rows_of_the_base(basis, a):
+    """Nodes of a base on y = 0 and their tributary lengths, by hand: end, middle and shared nodes."""
+    along = basis.doflocs[:, basis.nodal_dofs[1]]
+    corners = np.unique(along[0][along[1] == 0])
+    places = [(basis.nodal_dofs, x) for x in corners]
+    h = np.diff(corners)[0]
+    lengths = [h / 2 if x in (0.0, a) else h for x in corners]
+    if len(basis.facet_dofs):
+        lengths = [length / 3 for length in lengths] + [2 * h / 3] * (len(corners) - 1)
+        places += [(basis.facet_dofs, (x + y) / 2) for x, y in pairwise(corners)]
+    found = [pick(basis, dofs[1::2], x) for dofs, x in places]
+    return np.array([np.eye(1, basis.N, i)[0] for i in found]), np.array(lengths)
+
+
+def pick(basis, dofs, x):
+    """The vertical unknown at a place of the base."""
+    near = dofs[:, np.all(np.abs(basis.doflocs[:, dofs[0]] - [[x], [0.0]]) < 1e-12, axis=0)]
+    assert near.shape == (1, 1)
+    return int(near[0, 0])
+
+
+def brute_force(problem, scheme, steps):
+    """Contact pressure at each step from dense matrices: every set of closed points is tried at each step."""
+    assembled = assemble(problem)
+    M, K, F = assembled.M.toarray(), assembled.K.toarray(), assembled.F
+    B, lengths = rows_of_the_base(assembled.basis, problem.base_length)
+    k = 2 * problem.stiffness / problem.base_length * lengths
+    dt, D, V, A = scheme.step, 0 * F, 0 * F, np.linalg.solve(M, F)
+    pressures = []
+    for _ in range(steps):
+        ahead, sets = D + dt * V + dt**2 * (0.5 - scheme.alpha) * A, []
+        for closed in product((0.0, 1.0), repeat=len(k)):
+            stiff = K + B.T @ np.diag(k * closed) @ B
+            new = np.linalg.solve(M + scheme.alpha * dt**2 * stiff, M @ ahead + scheme.alpha * dt**2 * F)
+            if np.array_equal(B @ new < 0, np.array(closed) > 0):
+                sets.append((new, np.linalg.solve(M, F - stiff @ new)))
+        ((D, A1),) = sets
+        V, A = V + dt * ((1 - scheme.delta) * A + scheme.delta * A1), A1
+        pressures.append(-(k @ np.minimum(B @ D, 0)) / problem.base_length)
+    return np.array(pressures)
+
+
+@pytest.mark.parametrize(("degree", "elements"), [(1, 3), (2, 2)])
+@pytest.mark.parametrize("scheme", [replace(CONSTANT, step=3e-4), replace(AVERAGE, step=3e-4)])
+def test_a_partly_open_base_is_that_of_brute_force(degree, elements, scheme):
+    problem = make(elements=elements, degree=degree, eccentricity=0.3, poisson=0.2, shear=0.0)
+    run = solve_unilateral(problem, scheme, 60)
+    assert np.count_nonzero((run.columns["open_share"] > 0) & (run.columns["open_share"] < 0.99)) > 5
+    expected = brute_force(problem, scheme, 60)
+    assert np.abs(run.columns["contact_pressure"] - expected).max() <= 1e-9 * expected.max()
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("shear", ["frictionless", "glued"])
+def test_a_mirrored_load_mirrors_the_block(degree, shear):
+    problem = make(elements=4, degree=degree, eccentricity=0.25, poisson=0.3, shear=4e8)
+    contact = Unilateral(shear=shear)
+    # a hundred steps of the damped scheme: rounding is not multiplied by impacts
+    right = solve_unilateral(problem, CONSTANT, 100, contact, every_point=True)
+    left = solve_unilateral(replace(problem, eccentricity=-0.25), CONSTANT, 100, contact, every_point=True)
+    assert right.gap.max() > 0 and np.abs(right.gap - right.gap[:, ::-1]).max() > 1e-5
+    assert np.abs(right.gap - left.gap[:, ::-1]).max() <= 1e-10 * np.abs(right.gap).max()
+    assert np.abs(right.normal - left.normal[:, ::-1]).max() <= 1e-9 * right.normal.max()
+    turn = right.columns["rotation"]
+    assert np.abs(turn + left.columns["rotation"]).max() <= 1e-10 * np.abs(turn).max() != 0
+
+
+@pytest.mark.parametrize("shear", ["frictionless", "glued"])
+def test_twice_the_load_moves_twice_as_far(shear):
+    problem = replace(make(elements=3, eccentricity=0.3, poisson=0.2), gravity=5.0, traction=3e5)
+    contact = Unilateral(gap=1e-4, velocity=-0.3, shear=shear)
+    more = replace(problem, pressure=2 * problem.pressure, gravity=10.0, traction=6e5)
+    once = solve_unilateral(problem, CONSTANT, 120, contact)
+    twice = solve_unilateral(more, CONSTANT, 120, replace(contact, gap=2e-4, velocity=-0.6))
+    for name, column in once.columns.items():
+        factor = 4 if name.endswith("energy") else 1 if name in ("open_share", "solves", "cuts") else 2
+        # a power of two scales every number of the computation but the shares of the crossings exactly
+        assert np.allclose(factor * column, twice.columns[name], rtol=1e-10, atol=1e-10 * np.abs(column).max()), name
+    assert once.columns["open_share"].min() < 0.5 < once.columns["open_share"].max()
+
+
+def test_one_column_is_the_whole_block():
+    problem, contact = replace(make(elements=4), gravity=20.0), Unilateral(gap=2e-4, velocity=-0.1)
+    column = solve_unilateral(problem, CONSTANT, 300, contact)
+    whole = solve_unilateral(problem, CONSTANT, 300, contact, full=True)
+    assert (column.points, whole.points) == (1, 9)
+    assert column.notes[0] == "one column of elements" and column.notes[1:] == whole.notes
+    for name in ("displacement", "contact_pressure", "largest_gap", "kinetic_energy", "strain_energy", "spring_energy"):
+        a, b = column.columns[name], whole.columns[name]
+        assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max(), name
+
+
+def test_the_block_is_factorised_once_and_solved_once_a_step():
+    problem = make(elements=4, eccentricity=0.3)
+    run = solve_unilateral(problem, replace(CONSTANT, start="zero"), 200)
+    assert np.any(run.columns["open_share"] > 0)
+    assert (run.factorisations, run.points, run.solves) == (1, 9, 9 + 200)
+    again = solve_unilateral(problem, CONSTANT, 5, GLUED)
+    assert (again.factorisations, again.solves) == (2, 2 * 9 + 1 + 5)
+
+
+@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
+def test_a_base_in_one_piece_takes_two_solutions_at_most(scheme):
+    for p in (1e9, 1e11):
+        run = solve_unilateral(make(p=p, elements=32, degree=1), replace(scheme, step=3e-5), 1200)
+        switches = np.count_nonzero(np.diff(run.columns["open_share"]))
+        assert np.count_nonzero(run.columns["solves"] == 2) >= switches > 0
+        assert run.columns["solves"].max() == 2
+
+
+@pytest.mark.parametrize("n", [4, 8, 12, 16])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_a_frictionless_base_in_pieces_does_not_cycle(n, degree):
+    for p, scheme in product((1e9, 1e11), (CONSTANT, AVERAGE)):
+        problem = make(elements=n, degree=degree, eccentricity=0.3, p=p)
+        run = solve_unilateral(problem, replace(scheme, step=5e-4), 60, Unilateral(limit=20))
+        assert run.outcome == "completed" and run.columns["cuts"].max() == 0
+        # No bound is proved from three points on; the greatest number seen is four.
+        assert 2 <= run.columns["solves"].max() <= 6
+
+
+def test_columns_are_those_of_the_points():
+    problem = make(elements=4, eccentricity=0.3, poisson=0.2)
+    run = solve_unilateral(problem, CONSTANT, 250, every_point=True)
+    share = np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 24
+    assert run.gap.shape == run.normal.shape == (250, 9)
+    expected = {
+        "contact_pressure": run.normal.sum(axis=1) / 2,
+        "open_share": (run.gap > 0) @ share,
+        "largest_gap": np.maximum(run.gap.max(axis=1), 0),
+        "largest_penetration": np.maximum(-run.gap.min(axis=1), 0),
+        "spring_energy": (run.normal**2) @ (1 / (2e9 * share)) / 2,
+    }
+    for name, column in expected.items():
+        assert np.allclose(run.columns[name], column, rtol=1e-12, atol=0), name
+    assert 0 < np.median(run.columns["open_share"]) < 1
+    bare = solve_unilateral(problem, CONSTANT, 2)
+    assert bare.gap is None and bare.normal is None
+
+
+def test_a_nearly_rigid_base_keeps_its_digits():
+    """At these stiffnesses the springs' compression is below the rounding of the displacement."""
+    impact, steps = Unilateral(velocity=-1.0), 150
+    stiff, stiffer = (solve_unilateral(make(elements=8, p=p), CONSTANT, steps, impact).columns for p in (1e24, 1e27))
+    assert stiff["open_share"].min() == 0 < stiff["open_share"].max()
+    for name in ("displacement", "contact_pressure"):
+        # the compression is 1e-17 m, of 1e-4 m that the block falls in a step
+        assert np.abs(stiff[name] - stiffer[name]).max() <= 1e-11 * np.abs(stiff[name]).max(), name
+
+
+def test_a_mesh_too_coarse_for_a_stiff_base_is_named():
+    # h kappa = 2 p / (n E) of a square with mu = 0
+    for p, words in ((1e10, "too coarse for the base spring: h kappa is 2.5, at most 1 shows its ramp"), (3.9e9, None)):
+        notes = solve_unilateral(make(elements=8, p=p), replace(CONSTANT, step=0.1), 1).notes
+        assert notes == (("one column of elements",) if words is None else ("one column of elements", words))
+
+
+def test_bad_requests_are_refused_by_name():
+    for field, value in [("gap", -1e-3), ("velocity", np.inf), ("shear", "rough"), ("limit", 0), ("cut", 1.0)]:
+        with pytest.raises(ValueError, match=f"^{field}: "):
+            Unilateral(**{field: value})
+    with pytest.raises(ValueError, match=r"^shortest: "):
+        Unilateral(shortest=0.0)
+    with pytest.raises(ValueError, match=r"^steps: "):
+        solve_unilateral(make(elements=2), CONSTANT, 0)
+    moving = replace(make(elements=2), motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))
+    with pytest.raises(ValueError, match=r"^motion: "):
+        solve_unilateral(moving, CONSTANT, 1)

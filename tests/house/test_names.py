@@ -1,0 +1,94 @@
+"""Who names whom: concrete solvers in the rooms that should not know them, private functions in tests."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from conftest import TOGETHER
+from faults.seams import Seam
+
+from validation.solvers.registry import BUILT_IN
+
+ROOT = Path(__file__).parents[2]
+KNOWING = ("solvers/", "studies/", "report/", "cli/")  # rooms that declare, draw and tell named solvers
+# What the other modules name today; it may only become less.
+NAMED = {
+    "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
+    "engine/case.py": {"fem"},  # the section of a scene
+    "test_gates.py": {"dda"},  # whose place a user's solver takes
+    "advice/spectra.py": {"dda", "fem", "bar"},
+    "advice/advice.py": {"dda", "fem", "continuum"},
+    "compare/diagnosis.py": {"dda", "fem", "bar", "continuum"},
+    "compare/other_solvers.py": {"fem", "continuum"},
+}
+
+
+def strings(tree: ast.AST) -> set[str]:
+    """Return the constants of a module that are strings."""
+    return {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+
+
+def test_solvers_are_named_where_they_are_declared_drawn_or_told() -> None:
+    for path in (ROOT / "validation").rglob("*.py"):
+        module = path.relative_to(ROOT / "validation").as_posix()
+        if not module.startswith(KNOWING):
+            named = strings(ast.parse(path.read_text(encoding="utf-8"))) & set(BUILT_IN)
+            assert named <= NAMED.get(module, set()), module
+
+
+@pytest.mark.long
+def test_the_contracts_of_imports_are_kept() -> None:
+    command = Path(sys.executable).with_name("lint-imports")
+    if not command.exists():
+        pytest.skip("import-linter is not installed")
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run([command, "--no-cache"], capture_output=True, text=True, cwd=ROOT, env=environment)
+    assert done.returncode == 0, done.stdout
+
+
+def test_modules_whose_tests_share_a_fixture_stay_on_one_worker() -> None:
+    texts = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py")}
+    sharing = {name for name, text in texts.items() if 'scope="' + 'module"' in text}
+    assert sharing <= set(TOGETHER) <= set(texts)
+
+
+# ---- seams ----------------------------------------------------------------------------------------------------------
+
+
+def private_targets(tree: ast.AST) -> list[str]:
+    """Return the private names that a test patches by a string."""
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    patching = [call for call in calls if ast.unparse(call.func).endswith("setattr")]
+    names = [arg.value for call in patching for arg in call.args if isinstance(arg, ast.Constant)]
+    return [name for name in names if isinstance(name, str) and name.rpartition(".")[2].startswith("_")]
+
+
+def test_tests_patch_private_functions_by_seams_only() -> None:
+    for path in (ROOT / "tests").rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        assert "setattr" not in text or not private_targets(ast.parse(text)), path
+    assert private_targets(ast.parse('monkeypatch.setattr("a.b._c", 1); patch.setattr(module, "_d", 2)'))
+
+
+def test_a_seam_is_held_under_one_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    def sound() -> int:
+        return 1
+
+    owner = SimpleNamespace(renamed=sound)
+    seam = Seam(owner, sound)
+    assert seam.name == "renamed"
+    seam.wrap(monkeypatch, lambda sound: lambda: 2 * sound())
+    assert owner.renamed() == 2
+    seam.wrap(monkeypatch, lambda sound: lambda: 2 * sound())
+    assert owner.renamed() == 4  # a second fault wraps the first
+    monkeypatch.undo()
+    assert owner.renamed() == 1
+    for wrong in (SimpleNamespace(), SimpleNamespace(a=sound, b=sound)):
+        with pytest.raises(ValueError, match="a seam has exactly one"):
+            Seam(wrong, sound)

@@ -1,0 +1,142 @@
+"""A block on corners that open, in high-precision arithmetic and in the displacement form with springs.
+
+Nothing is shared with the package: matrices are those of `mp_reference`, the springs of the closed corners are part of
+the matrix of the step, and the crossing of a closing corner is found by repetition. Many digits make harmless
+what this form loses by subtraction.
+"""
+
+from itertools import product
+from types import SimpleNamespace
+
+from mpmath import mp, mpf
+from oracles import mp_reference
+
+DIGITS = 60
+
+
+class Oracle:
+    """The model and the scheme in numbers of many digits."""
+
+    def __init__(self, model, scheme):
+        locked = SimpleNamespace(
+            block=model.block,
+            contact=SimpleNamespace(normal=0, shear=0),
+            base=model.base,
+            top=model.top,
+            pressure=model.pressure,
+        )
+        self.M, self.K0, _, _ = mp_reference.matrices(locked)
+        self.alpha, self.delta, self.gg, self.dt = (
+            mpf(x) for x in (scheme.alpha, scheme.delta, scheme.gg, scheme.step)
+        )
+        points = [(mpf(float(x)), mpf(float(y))) for x, y in model.block.corners]
+        _, x0, y0, *_ = mp_reference.integrals(points)
+        self.centred = [(x - x0, y - y0) for x, y in points]
+        self.p, self.ps, self.g0 = (mpf(getattr(model.contact, name)) for name in ("stiffness", "shear", "gap"))
+        self.F = self._load(model)
+        self._rows(model)
+        self.D = mp.zeros(6, 1)
+        self.V = mp.zeros(6, 1)
+        self.V[1] = mpf(model.velocity)
+        self.A = self.M**-1 * self.F if scheme.start == "consistent" else mp.zeros(6, 1)
+        self.closed = (self.g0 == 0,) * 2
+        self.r = [mpf(0), mpf(0)]
+
+    def _ends(self, edge):
+        n = len(self.centred)
+        return self.centred[edge % n], self.centred[(edge + 1) % n]
+
+    def _rows(self, model):
+        (x1, y1), (x2, y2) = self._ends(model.base)
+        self.a = mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
+        tx, ty = (x2 - x1) / self.a, (y2 - y1) / self.a
+        self.normal, self.shear = [], []
+        for x, y in ((x1, y1), (x2, y2)):
+            u, v = mp_reference.displacement_rows(x, y)
+            self.normal.append(mp.matrix([[tx * q - ty * s for q, s in zip(v, u, strict=True)]]))
+            self.shear.append(mp.matrix([[tx * s + ty * q for q, s in zip(v, u, strict=True)]]))
+
+    def _load(self, model):
+        """Pressure on the part whose middle is shifted, traction on the whole top, weight (level top edge only)."""
+        (x1, y1), (x2, y2) = self._ends(model.top)
+        e, length = mpf(model.eccentricity), mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
+        part = length - 2 * abs(e)
+        _, v = mp_reference.displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
+        whole, _ = mp_reference.displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
+        F = [-mpf(model.pressure) * part * b + mpf(model.traction) * length * c for b, c in zip(v, whole, strict=True)]
+        F[1] -= self.M[0, 0] * mpf(model.gravity)
+        return mp.matrix(F)
+
+    def step(self):
+        """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
+        found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
+        assert len(found) == 1, "the oracle needs exactly one contact state"
+        D1, N, T, self.r, self.closed = found[0]
+        push = mp.zeros(6, 1)
+        for c in (0, 1):
+            push += N[c] * self.normal[c].T + T[c] * self.shear[c].T
+        A1 = self.M**-1 * (self.F - self.K0 * D1 + push)
+        self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
+        self.D, self.A = D1, A1
+        return D1[1], N, T
+
+    def _trial(self, closed):
+        """Return the step with these corners closed if its gaps agree with that."""
+        shares = [mpf(1) if was else mpf(1) / 2 for was in self.closed]
+        for _ in range(400):
+            D1 = self._solve(closed, shares)
+            gaps = [self.g0 + (row * D1)[0] for row in self.normal]
+            new = self._shares(gaps)
+            if max(abs(x - y) for x, y in zip(new, shares, strict=True)) < mpf(10) ** (10 - DIGITS):
+                break
+            shares = new
+        else:
+            return None
+        if any((w < 0) != shut for w, shut in zip(gaps, closed, strict=True)):
+            return None
+        return self._accepted(D1, gaps, closed, shares)
+
+    def _shares(self, gaps):
+        """Return the share 1 - theta of the step's slide behind the crossing; 1 of a corner that was closed."""
+        before = [self.g0 + (row * self.D)[0] for row in self.normal]
+        pairs = zip(self.closed, before, gaps, strict=True)
+        return [mpf(1) if was or w0 <= 0 else max(mpf(0), -w1) / (w0 + max(mpf(0), -w1)) for was, w0, w1 in pairs]
+
+    def _reference(self, corner):
+        """Return r, from which the share of the slide is measured."""
+        return self.r[corner] if self.closed[corner] else (self.shear[corner] * self.D)[0]
+
+    def _solve(self, closed, shares):
+        h = self.alpha * self.dt**2
+        star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
+        S, b = self.M + h * self.K0, self.M * star + h * self.F
+        if self.alpha == 0:
+            return star
+        for c in (0, 1):
+            if closed[c]:
+                n, s, ps = self.normal[c], self.shear[c], self.ps * shares[c]
+                S += h * (self.p * n.T * n + ps * s.T * s)
+                b += h * (ps * self._reference(c) * s.T - self.p * self.g0 * n.T)
+        return mp.lu_solve(S, b)
+
+    def _accepted(self, D1, gaps, closed, shares):
+        N, T, r = [mpf(0)] * 2, [mpf(0)] * 2, [mpf(0)] * 2
+        for c in (0, 1):
+            if closed[c]:
+                s = (self.shear[c] * D1)[0]
+                stretch = shares[c] * (s - self._reference(c))
+                N[c], T[c], r[c] = -self.p * gaps[c], -self.ps * stretch, s - stretch
+        return D1, N, T, r, closed
+
+
+def history(model, scheme, steps):
+    """Return v [m], the normal forces and the shear forces [N] of every step."""
+    with mp.workdps(DIGITS):
+        oracle = Oracle(model, scheme)
+        return [oracle.step() for _ in range(steps)]
+
+
+def lost(values, exact):
+    """Return the maximum error over the maximum value."""
+    with mp.workdps(DIGITS):
+        return mp_reference.lost(values, exact)

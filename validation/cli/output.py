@@ -1,0 +1,52 @@
+"""Standard output that nobody reads, that is closed or full, or that cannot write a character."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+PAGE = 150  # characters of a line where the output is no terminal
+
+
+def prepare() -> None:
+    """Let the streams write every character, as an escape where need be, and be there."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by who started this process
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115 - as long as the process
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+@contextmanager
+def heard() -> Iterator[None]:
+    """Go on where the reader of the output has gone: what is left to say decides nothing."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        silence()
+
+
+def silence() -> None:
+    """Send the rest of the output nowhere."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def console() -> Console:
+    """Return a console of the library rich that leaves a reader who has gone to `heard`."""
+    from rich.console import Console
+
+    class Plain(Console):
+        def on_broken_pipe(self) -> None:  # rich would end the process
+            raise
+
+    return Plain(width=None if sys.stdout.isatty() else PAGE)

@@ -1,0 +1,86 @@
+"""JSON read strictly: finite numbers, records of their declared types, every defect one line that names the file."""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from validation.errors import InputError
+
+LARGEST = 2**63  # what a count may be
+
+
+def loads(text: str) -> Any:
+    """Return the data of a JSON text.
+
+    Raises
+    ------
+    ValueError
+        It is no JSON, nested without end, or holds a number that is not finite.
+    """
+    try:
+        return json.loads(text, parse_constant=_refuse, parse_float=_finite, parse_int=_count)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+
+
+def read(path: Path, kind: Any, advice: str, what: str = "what a run writes") -> Any:
+    """Return the data of a JSON file whose content is of a type, as it stands in the file.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    InputError
+        It cannot be read, or is of another type; the line ends with the advice.
+    """
+    try:
+        found = loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; {advice}") from None
+    except ValueError as error:
+        raise InputError(f"{path}: must be JSON: {error}; {advice}") from None
+    if defect := defect_of(found, kind):
+        raise InputError(f"{path}: must be {what}: {defect}; {advice}")
+    return found
+
+
+def defect_of(data: object, kind: Any) -> str | None:
+    """Return where and how data is not of a type, or None where it is."""
+    try:
+        _adapter(kind).validate_python(data, strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        place = ".".join(str(part) for part in first["loc"]) or "the whole"
+        rule = " ".join(first["msg"].removeprefix("Value error, ").split())
+        return f"{place}: {rule[:1].lower()}{rule[1:]}"
+    return None
+
+
+@functools.cache
+def _adapter(kind: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)
+
+
+def _refuse(word: str) -> float:
+    raise ValueError(f"{word} is no number of JSON")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is beyond the range of numbers")
+    return value
+
+
+def _count(text: str) -> int:
+    if len(text) > 20 or abs(int(text)) > LARGEST:
+        raise ValueError(f"{text[:24]} is beyond the range of numbers")
+    return int(text)

@@ -1,0 +1,13 @@
+"""Text from outside (errors, names, titles) in characters that every file and terminal takes."""
+
+from __future__ import annotations
+
+
+def printable(text: str) -> str:
+    """Return a text whose control characters and lone surrogates are written as escapes, line breaks as blanks."""
+    return shown(" ".join(text.split()))
+
+
+def shown(text: str) -> str:
+    """Return a text whose control characters and lone surrogates are written as escapes."""
+    return "".join(c if c.isprintable() or c == "\u00a0" else c.encode("unicode_escape").decode() for c in text)

@@ -1,0 +1,42 @@
+"""What the gates of the studies share: the cases that they judge, and bands about a value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from validation.gates.gate import Gate
+from validation.scenes.scene import Scene, load_scene
+
+OTHER = "other code"  # the kind of a reference that an independent program computed
+OWN = "own last value"
+APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
+
+
+def cases(*names: str) -> Iterator[Scene]:
+    """Yield the single cases of built-in scenes."""
+    for name in names:
+        yield from load_scene(name).expand()
+
+
+def about(value: float, half: float) -> tuple[float, float]:
+    """Band of a half width about a value."""
+    return value - half, value + half
+
+
+def near(value: float, relative: float) -> tuple[float, float]:
+    """Band of a relative half width about a value."""
+    return about(value, abs(value) * relative)
+
+
+def decimals(value: float) -> float:
+    """Half a unit of the last printed digit of a number."""
+    digits = f"{value:g}".partition(".")[2]
+    return 0.5 * 10.0 ** -len(digits)
+
+
+def printed(
+    scene: str, pair: tuple[str, ...], metric: str, value: float, half: float, reason: str, **window: Any
+) -> Gate:
+    """Return the gate on a number that an independent program printed: `half` a unit of its last digit."""
+    return Gate(scene, pair, metric, *about(value, half), reason, OTHER, half, **window)
