@@ -2,9 +2,15 @@
 
 import signal
 
-if __name__ == "__main__":
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until `main` takes it: no traceback from the imports
-    from validation.cli import main
 
+def main() -> None:
+    """Run the command line; an interruption before it is ready ends the process without a traceback."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from validation.cli import main as run
+
+    run()
+
+
+if __name__ == "__main__":
     main()
