@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from faults import seams
 
-from validation.compare import reading
 from validation.compare.reading import MOST_STEPS, Foreign, read, steppings
 from validation.errors import InputError
 
@@ -55,7 +55,7 @@ def test_a_million_rows_are_refused_before_they_are_parsed(tmp_path: Path, monke
     read(written(tmp_path / "most.csv", MOST_STEPS))
     path = written(tmp_path / "more.csv", 100 * MOST_STEPS)
     parsed = []
-    monkeypatch.setattr(reading, reading._numbers.__name__, lambda row: parsed.append(row) or [0.0, 0.0])
+    seams.READING_NUMBERS.put(monkeypatch, lambda row: parsed.append(row) or [0.0, 0.0])
     with pytest.raises(InputError, match=r"more.csv: must hold at most 10000 rows, got 1000002; cut it, or keep"):
         read(path)
     assert not parsed

@@ -39,7 +39,7 @@ PAIRS = [(1.0, 1e3), (1e9, 1e-6), (1e13, 1e-3), (1e17, 1e-9), (1e17, 1e3), (1e21
 
 
 @pytest.mark.parametrize(("p", "dt"), PAIRS)
-@pytest.mark.parametrize("gg", [1.0, 0.99])
+@pytest.mark.parametrize("gg", [pytest.param(1.0, marks=pytest.mark.long), 0.99])
 def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
     (v, exact), forces, _ = histories(model_of(replace(IMPACT, stiffness=p)), Scheme(0.5, 1.0, gg, dt), 30)
     assert unilateral_mp.lost(v, exact) < 1e-14
@@ -57,7 +57,7 @@ def test_a_penalty_that_grows_becomes_the_rigid_stop():
 
 # A corner that closes meets the rounding of a step as a relative error of its small overshoot; two corners in turn
 # multiply it. The oracle, started at V (1 + 1e-12), tells by how much: `steps` times some ten roundings, each grown so.
-@pytest.mark.parametrize("glued", [0.0, 0.4])
+@pytest.mark.parametrize("glued", [pytest.param(0.0, marks=pytest.mark.long), 0.4])
 @pytest.mark.parametrize(("p", "dt"), [(1e3, 1e3), (1e9, 1e-9), (1e9, 1e-3), (1e13, 1e-4), (1e24, 1e-4), (1e24, 1e3)])
 def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued):
     steps, grown = 25, 1e-12

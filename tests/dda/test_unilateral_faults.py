@@ -176,7 +176,11 @@ def test_nothing_is_noticed_without_a_fault():
     assert noticed() == []
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
+SHORT = (crossed_at_start, dead_band, damped_again)  # one of each check
+MARKED = [pytest.param(fault, marks=[pytest.mark.long] * (fault not in SHORT)) for fault in FAULTS]
+
+
+@pytest.mark.parametrize("fault", MARKED, ids=lambda fault: fault.__name__)
 def test_a_known_slip_is_noticed(monkeypatch, fault):
     fault(monkeypatch)
     assert FAULTS[fault] <= set(noticed())

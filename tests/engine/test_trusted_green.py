@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SCENE, typed
+from faults import seams
 
 from validation.engine import origin
 from validation.engine.case import Case
@@ -54,10 +55,10 @@ def test_the_manifest_says_which_versions_made_the_rows(
 ) -> None:
     results = Results(tmp_path)
     then = {"python": "3.11", "commit": "then", "packages": {"numpy": "2.0.0"}}
-    monkeypatch.setattr(origin, origin._here.__name__, lambda: then)
+    seams.ORIGIN.put(monkeypatch, lambda: then)
     monkeypatch.setattr(origin, "library_versions", dict)
     finish([Case(scene, "dda")], study(scene), results)
-    monkeypatch.setattr(origin, origin._here.__name__, lambda: then | {"commit": "now", "packages": {"numpy": "2.1.0"}})
+    seams.ORIGIN.put(monkeypatch, lambda: then | {"commit": "now", "packages": {"numpy": "2.1.0"}})
     assert ran(scene, results) == ["bar"]
     found = results.manifest("test")["provenance"]
     assert found["commit"] == "then (1 row); now (1 row)"

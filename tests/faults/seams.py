@@ -27,7 +27,8 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.compare import causes, diagnosis
+from validation.compare import causes, diagnosis, reading
+from validation.engine import origin
 from validation.runs import provenance
 from validation.solvers import fenicsx, registry
 
@@ -127,6 +128,8 @@ CAUSES_FURTHER = Seam(causes, causes._further)
 CAUSES_OPENED = Seam(causes, causes.opened)
 CAUSES_BETTER = Seam(causes, causes.better)
 DIAGNOSIS_FACTORS = Seam(diagnosis, diagnosis._factors)
+READING_NUMBERS = Seam(reading, reading._numbers)
+ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)
 PROCESSOR = Seam(provenance, provenance._processor)
 IMPORTED_SOLVER = Seam(registry, registry._imported)
