@@ -16,7 +16,7 @@ from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
-from validation.solvers import limits_of_memory, memory
+from validation.solvers import memory
 from validation.studies.catalogue import scene_study
 
 MB = 2**20
@@ -32,7 +32,7 @@ def machine(root: Path, groups: str, files: dict[str, str]) -> Path:
 
 
 def left(root: Path) -> float:
-    return min(limits_of_memory.of_groups(root), default=math.inf)
+    return min(memory.of_groups(root), default=math.inf)
 
 
 V2 = "0::/user.slice/job.scope\n"
@@ -78,9 +78,9 @@ def test_what_control_groups_leave(groups: str, files: dict[str, str], expected:
 
 def test_the_least_of_all_limits_is_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
     there = memory.available()
-    monkeypatch.setattr(limits_of_memory, "of_groups", lambda root: iter([there / 2, there / 4]))
+    monkeypatch.setattr(memory, "of_groups", lambda root: iter([there / 2, there / 4]))
     assert memory.available() <= there / 4
-    monkeypatch.setattr(limits_of_memory, "of_groups", lambda root: iter([-1.0]))
+    monkeypatch.setattr(memory, "of_groups", lambda root: iter([-1.0]))
     assert memory.available() == 0.0
 
 
@@ -88,7 +88,7 @@ def test_the_least_of_all_limits_is_what_there_is(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("limit", ["RLIMIT_AS", "RLIMIT_DATA"])
 def test_limits_of_the_process_count(limit: str) -> None:
     code = (
-        "import resource as r; from validation.solvers.limits_of_memory import available\n"
+        "import resource as r; from validation.solvers.memory import available\n"
         f"r.setrlimit(r.{limit}, (3 * 2**30, r.RLIM_INFINITY)); print(available())"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

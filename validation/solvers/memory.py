@@ -1,21 +1,22 @@
-"""Memory that a run will take, estimated before it is taken; a scene that cannot fit is refused with the estimate."""
+"""Memory that a run will take and memory that is there; a scene that cannot fit is refused with the estimate."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
-from validation.solvers.limits_of_memory import available
 
 NUMBER = 8  # bytes
 COPIES = 4  # of a history while it is made, observed, checked and kept
 UNKNOWN = 3000  # bytes of assembly for each unknown: element matrices, indices, M, K and S
 FILL = 150  # bytes of the factor for each unknown and doubling of the mesh
 REFUSED = "must fit into memory"  # what a refusal says; it holds for the moment and is not kept
+UNLIMITED = 2.0**60  # bytes: control groups of version 1 say "no limit" as a number next to 2^63
 MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
 
@@ -72,3 +73,97 @@ def check(scene: Scene, solver: Solver) -> None:
 def refused(notes: Iterable[str]) -> bool:
     """Whether a row was refused for want of memory, which may be there the next time."""
     return any(f": {REFUSED}, " in note for note in notes)
+
+
+# ---- what is there --------------------------------------------------------------------------------------------------
+
+
+def available() -> float:
+    """Return the bytes that can be had without swapping; infinite where the system does not say."""
+    return max(0.0, min([_of_machine(), *of_groups(Path("/")), *_of_process()]))
+
+
+def _of_machine() -> float:
+    found = _fields(Path("/proc/meminfo")).get("MemAvailable")
+    if found is not None:
+        return found
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return math.inf
+
+
+def _fields(path: Path) -> dict[str, float]:
+    """Return the sizes of a file of ``Name: 123 kB`` lines [bytes]; none where it cannot be read."""
+    try:
+        words = [line.split() for line in path.read_text(encoding="utf-8", errors="replace").splitlines()]
+    except OSError:
+        return {}
+    sizes = (w for w in words if len(w) == 3 and w[2] == "kB" and w[1].isdecimal())
+    return {name.rstrip(":"): 1024.0 * int(size) for name, size, _ in sizes}
+
+
+# ---- control groups -------------------------------------------------------------------------------------------------
+
+
+def of_groups(root: Path) -> Iterator[float]:
+    """Yield what each control group of this process leaves, of version 2 and of version 1, up to the root's."""
+    for controllers, group in _groups(root):
+        limits, used = ["memory.max", "memory.high"], "memory.current"
+        mount = root / "sys/fs/cgroup"
+        if controllers:
+            limits, used, mount = ["memory.limit_in_bytes"], "memory.usage_in_bytes", mount / "memory"
+        if controllers and "memory" not in controllers.split(","):
+            continue
+        place = mount / group.lstrip("/")
+        for directory in (d for d in (place, *place.parents) if d.is_relative_to(mount)):
+            limit = min((_number(directory / name) for name in limits), default=math.inf)
+            if limit < UNLIMITED:
+                yield limit - _held(directory, used)
+
+
+def _groups(root: Path) -> list[tuple[str, str]]:
+    """Return the controllers and the path of each group that this process is in."""
+    try:
+        lines = (root / "proc/self/cgroup").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+    parts = [line.split(":", 2) for line in lines]
+    return [(part[1], part[2]) for part in parts if len(part) == 3]
+
+
+def _held(directory: Path, used: str) -> float:
+    """Return the bytes that a group holds and cannot give back: its files' pages can be dropped."""
+    current, statistics = _number(directory / used), directory / "memory.stat"
+    try:
+        words = [line.split() for line in statistics.read_text(encoding="ascii").splitlines()]
+        of = {w[0]: float(w[1]) for w in words if len(w) == 2}
+    except (OSError, ValueError):
+        of = {}
+    files = of.get("total_inactive_file", of.get("inactive_file", 0.0))
+    return max(0.0, current - files) if math.isfinite(current) else 0.0
+
+
+def _number(path: Path) -> float:
+    """Return a limit or a size [bytes]; infinite where there is none."""
+    try:
+        text = path.read_text(encoding="ascii").strip()
+        return math.inf if text == "max" else float(text)
+    except (OSError, ValueError):
+        return math.inf
+
+
+# ---- limits of the process ------------------------------------------------------------------------------------------
+
+
+def _of_process() -> Iterator[float]:
+    """Yield what the limits of the address space and of the data leave (``ulimit -v`` and ``-d``)."""
+    try:
+        import resource
+    except ImportError:
+        return
+    taken = _fields(Path("/proc/self/status"))
+    for limit, field in ((resource.RLIMIT_AS, "VmSize"), (resource.RLIMIT_DATA, "VmData")):
+        soft = resource.getrlimit(limit)[0]
+        if soft != resource.RLIM_INFINITY:
+            yield soft - taken.get(field, 0.0)
