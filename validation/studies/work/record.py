@@ -126,8 +126,8 @@ def gates() -> Iterator[Gate]:
     """Yield the gates on the record."""
     for part, slack in SLACK.items():
         why = (
-            f"worst ratio of {part} to the committed record ({PATH.name} beside this study): no case may be worse, and where "
-            "all are better `dda-validate record --update-record` is due"
+            f"worst ratio of {part} to the committed record ({PATH.name} beside this study): no case may be worse, "
+            "and where all are better `dda-validate record --update-record` is due"
         )
         yield Gate("work-precision", ("record",), f"record.{part}", *about(1, slack), why, OWN)
 
