@@ -42,6 +42,7 @@ clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/*.pdf
 
 $(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c "import ensurepip" 2>/dev/null || { echo "needs the venv module of Python: apt-get install python3-venv"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[dev]' --constraint constraints.txt
 	@touch $@

@@ -85,17 +85,20 @@ def kill(group: int) -> None:
 
 
 def ended(child: int, block: bool = False) -> "int | None":
-    """Reap whatever has ended; return the status of the child as a shell tells it, None while it runs."""
-    while True:
-        try:
-            process, status = os.waitpid(child if block else -1, 0 if block else os.WNOHANG)
-        except ChildProcessError:
-            return None
-        if process == 0:
-            return None
-        if process == child:
-            code = os.waitstatus_to_exitcode(status)
-            return code if code >= 0 else 128 - code
+    """Return the status of the child as a shell tells it, None while it runs; reap the others that have ended.
+
+    The child itself is not reaped: its number, which is that of its group, stays nobody else's.
+    """
+    if not hasattr(os, "waitid"):
+        process, status = os.waitpid(child, 0 if block else os.WNOHANG)
+        code = os.waitstatus_to_exitcode(status)
+        return None if process == 0 else code if code >= 0 else 128 - code
+    which, whose = (os.P_PID, child) if block else (os.P_ALL, 0)
+    while (found := os.waitid(which, whose, os.WEXITED | os.WNOWAIT | (0 if block else os.WNOHANG))) is not None:
+        if found.si_pid == child:
+            return found.si_status if found.si_code == os.CLD_EXITED else 128 + found.si_status
+        os.waitpid(found.si_pid, 0)
+    return None
 
 
 def watch(child: int, lifeline: int, wake: int) -> int:
@@ -108,7 +111,7 @@ def watch(child: int, lifeline: int, wake: int) -> int:
         asked = wake in ready and any(number != int(signal.SIGCHLD) for number in os.read(wake, 64))
         if asked or rest == 0.0 or (lifeline in ready and os.read(lifeline, 1)):
             kill(child)
-            return ended(child, block=True) or 128 + signal.SIGKILL
+            return ended(child, block=True) or 0
         if lifeline in ready:
             deadline, watched = time.monotonic() + GRACE, [wake]
     return status
