@@ -80,6 +80,7 @@ def scan(scene: Scene, solve_for: str) -> np.ndarray:
     return np.where(radius <= 1 + 1e-12, xi, np.nan)
 
 
+@pytest.mark.long
 @EXAMPLES
 @given(scenes(), decades(-3, 0.2), st.sampled_from(["dt", "gg", "scheme"]))
 def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: str) -> None:

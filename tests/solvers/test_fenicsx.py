@@ -301,6 +301,7 @@ def kills_of(
     return kills
 
 
+@pytest.mark.long
 @pytest.mark.fenicsx
 def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     ours = ("fem: load 2e-10 high", "dda: load 2e-10 high")

@@ -110,6 +110,7 @@ LIMIT_FAULTS = [
 KILLS = {"stability-small": FAULTS, "stiff-contact": CONTACT_FAULTS, "limits": LIMIT_FAULTS}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KILLS)
 def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path, finished_cases: Path) -> None:
     study = get_study(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from faults import seams
 from faults.fault import Fault, late, no_damping, thousandth, times, with_scheme
 from faults.kill_matrix import check_kill_matrix
@@ -51,6 +52,7 @@ FAULTS = [
 ]
 
 
+@pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     gates = [gate for gate in SUBBLOCKS.gates() if not any(word in gate.scene for word in LEFT_OUT)]
     scenes = {gate.scene for gate in gates}

@@ -59,6 +59,7 @@ def softer(problem):
     return replace(problem, young=0.999 * problem.young)
 
 
+@pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
 
