@@ -13,15 +13,16 @@ import pytest
 from conftest import SCENE, typed
 from faults import seams
 
-from validation.engine import origin
+from validation.engine import measure, origin
 from validation.engine.case import Case
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
 from validation.gates.gate import Gate
+from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.row import Row
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.contract import Solver
@@ -289,6 +290,23 @@ def test_odd_errors_and_values_are_named_outcomes(
     history = results.history(row.key)
     assert (history is not None) == (outcome is Outcome.COMPLETED)
     assert history is None or list(history.columns) == ["displacement"]
+
+
+def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sound = measure.solo
+
+    def fails_in_modes(seen: Measurable, parts: tuple[str, ...]) -> dict[str, Value]:
+        if "modes" in parts:
+            raise np.linalg.LinAlgError("no convergence")
+        return sound(seen, parts)
+
+    monkeypatch.setattr(measure, "solo", fails_in_modes)
+    row, history = measure.execute(Case(scene, "dda"), "k", "test")
+    assert row.outcome is Outcome.COMPLETED and history is not None
+    assert row.notes[-1] == "modes not measured: LinAlgError: no convergence"
+    assert isinstance(row.metrics["displacement.final"], float) and "mode1.damping" not in row.metrics
 
 
 def test_alarms_that_fail_on_one_scene_are_said_of_it_alone(scene: Scene, tmp_path: Path) -> None:
