@@ -80,14 +80,14 @@ def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
     (tmp_path / "python3").chmod(0o755)
 
     def listed(path: str) -> list[str]:  # root may read everything, so that no mode of a directory will do
-        if path == "/root/bin":
+        if path == "/locked/bin":
             raise PermissionError(13, "Permission denied", path)
         return os.listdir(path)
 
     places = SimpleNamespace(**vars(os) | {"listdir": listed})
     monkeypatch.setattr(adapters_fenicsx, "os", places)
     monkeypatch.delenv(VARIABLE, raising=False)
-    monkeypatch.setenv("PATH", os.pathsep.join(["/root/bin", str(tmp_path / "absent"), str(tmp_path)]))
+    monkeypatch.setenv("PATH", os.pathsep.join(["/locked/bin", str(tmp_path / "absent"), str(tmp_path)]))
     assert list(adapters_fenicsx.candidates()) == [sys.executable, str(tmp_path / "python3")]
 
 

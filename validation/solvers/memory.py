@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from validation.errors import InputError
@@ -68,11 +68,6 @@ def check(scene: Scene, solver: Solver) -> None:
             f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
             f"{there / GIGABYTE:.3g} GB are there, got {value}"
         )
-
-
-def refused(notes: Iterable[str]) -> bool:
-    """Whether a row was refused for want of memory, which may be there the next time."""
-    return any(f": {REFUSED}, " in note for note in notes)
 
 
 # ---- what is there --------------------------------------------------------------------------------------------------
