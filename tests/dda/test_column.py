@@ -110,6 +110,35 @@ def test_a_base_that_moves_slowly_carries_the_column(stiff: float | None) -> Non
     assert abs(found.columns["contact_pressure"][-1]) < 1e-3 * np.abs(found.columns["contact_pressure"]).max()
 
 
+def test_the_surface_over_a_rigid_base_answers_by_mass_and_stiffness() -> None:
+    """Welded to the base, whose inertia of half a block counts: (K - W2 M) x = -(K_b - w^2 M_b) d, here by hand."""
+    n, step, omega = 6, 5e-4, 400.0
+    column = Column([Layer(n * HEIGHT, DENSITY, YOUNG, 0.0, n)])
+    time = step * np.arange(4000)
+    drive = ricker(time, 60.0)
+    found = solve_column(column, dda.Scheme(0.5, 1.0, 1.0, step), drive)
+    A, B = waves.Column(HEIGHT, DENSITY, YOUNG).ends(waves.Stepping(step).squared_frequency(omega))
+    a, b = waves.Column(HEIGHT, DENSITY, YOUNG).ends(omega**2)
+    matrix = np.diag([2 * A] * (n - 1) + [A]) + np.diag([B] * (n - 1), 1) + np.diag([B] * (n - 1), -1)
+    x = np.linalg.solve(matrix, [-b, *[0.0] * (n - 1)])
+    moved = spectrum(time, drive.displacement, omega)
+    seen = {name: spectrum(found.time, values, omega) / moved for name, values in found.columns.items()}
+    assert abs(seen["displacement"] - x[-1]) < 1e-9 * abs(x[-1])
+    assert abs(seen["contact_pressure"] - (a + B * x[0])) < 1e-9 * abs(a + B * x[0])
+
+
+def test_a_long_wave_doubles_at_the_surface() -> None:
+    """One block on a half-space of its own impedance, a wave of 4,000 of its heights: twice the incident one."""
+    impedance = (DENSITY * YOUNG) ** 0.5
+    frequency = impedance / DENSITY / (4000 * HEIGHT)
+    column = Column([Layer(HEIGHT, DENSITY, YOUNG)], impedance=impedance)
+    step = 1e-3 / frequency
+    drive = ricker(step * np.arange(4001), frequency)
+    found = solve_column(column, dda.Scheme(0.25, 0.5, 1.0, step), drive)
+    late = ricker(found.time - HEIGHT * DENSITY / impedance, frequency).displacement
+    assert np.abs(found.columns["displacement"] - 2 * late).max() < 1e-4 * np.abs(late).max()
+
+
 def test_alpha_zero_is_the_same_code() -> None:
     column = Column([Layer(4.0, DENSITY, YOUNG, 0.0, 8)], impedance=(DENSITY * YOUNG) ** 0.5)
     histories = []
