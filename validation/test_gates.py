@@ -55,6 +55,8 @@ def _applies(name: str) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in _cases(study):
         return False
     case = _cases(study)[gate.cases[0]]
+    if case.scene.column is not None:
+        return False
     return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
 
 

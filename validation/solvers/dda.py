@@ -14,6 +14,7 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -192,7 +193,10 @@ class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS
+    handles = (
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN}) | features.LOADS
+    )
+    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -201,7 +205,7 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS)
+        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
@@ -215,6 +219,10 @@ class DDA(Solver):
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.blocks import BlockColumn
+
+            return BlockColumn(scene, scheme_of(scene))
         if features.UNILATERAL in features.of(scene):
             return OpeningBlock(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
