@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -9,15 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs.contact import LOST, STORED, ContactRecord, Rebound
 from validation.runs.history import Array, History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, no_fields
 
 if TYPE_CHECKING:
+    from fem_reference.events import bar_events, block_events
     from fem_reference.events import switches as events
     from fem_reference.events.bar_model import BarProblem
     from fem_reference.events.block_model import BlockProblem
@@ -26,6 +30,7 @@ FORCES = ("normal_force_m", "normal_force_n")  # N, on the block, at the two end
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
 BLOCK_COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", *GAPS, *FORCES)
 BAR_COLUMNS = ("displacement", "contact_pressure", *GAPS, *FORCES)
+SAMPLES = 2000  # instants in which peaks are sought, at least
 TOLD = 6  # switches that a note names
 
 
@@ -101,6 +106,22 @@ class Motion(Prepared):
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)
 
+    def finely(self) -> Array:
+        """Return instants between the steps as well, at least `SAMPLES`, in which peaks are sought [s]."""
+        t = self.scene.time
+        parts = -(-SAMPLES // t.steps)
+        return np.asarray(t.step / parts * np.arange(1.0, t.steps * parts + 1), dtype=np.float64).clip(max=self.end)
+
+    @property
+    def end(self) -> float:
+        """Last instant [s]."""
+        return float(self.instants()[-1])
+
+    def spans(self, corner: str) -> list[tuple[float, float]]:
+        """Return when each whole contact of a corner begins and ends [s]."""
+        own = [one for one in self.found or () if one.corner == corner]
+        return [(a.time, b.time) for a, b in itertools.pairwise(own) if a.kind == "closes" and b.kind == "opens"]
+
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
         self.found = switches
@@ -123,6 +144,8 @@ def switches_in_words(switches: Sequence[events.Switch]) -> str:
 class BlockMotion(Motion):
     """The block of one strain."""
 
+    motion: block_events.BlockMotion | None = None
+
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         from fem_reference.events.block_events import solve
@@ -131,15 +154,43 @@ class BlockMotion(Motion):
         check_columns(self.scene, BLOCK_COLUMNS)
         began, problem, t = perf_counter(), block_of(self.scene), self.instants()
         with naming(self.scene):
-            motion = solve(problem, float(t[-1]))
+            self.motion = motion = solve(problem, self.end)
         found = motion.at(t)
         named = (found.displacement[1], found.contact_pressure, found.displacement[0], found.displacement[2])
         columns = (*named, *found.gap, *found.normal_force)
         return self.observed(dict(zip(BLOCK_COLUMNS, columns, strict=True)), motion.switches, began)
 
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
+        if self.motion is None:
+            raise NotReported(f"{self.name}: the scene was not run")
+        t, push = self.finely(), opened.pushing(self.scene)
+        found = self.motion.at(t)
+        velocity, start = found.velocity[1], self.scene.block.velocity
+        spans = sorted((span, i) for i, corner in enumerate("MN") for span in self.spans(corner))
+        rates = [(self.motion.at([first, last]).gap_velocity[i]) for (first, last), i in spans]
+        return ContactRecord(
+            time=t,
+            force=found.normal_force.sum(axis=0),
+            impulse=opened.mass(self.scene) * (velocity - start) + push * t,
+            penetration=np.maximum(0.0, -found.gap).max(axis=0),
+            gap=np.maximum(0.0, found.gap).max(axis=0),
+            open_share=1 - found.closed.mean(axis=0),
+            start_velocity=start,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=velocity,
+            rebounds=tuple(Rebound(float(-before), float(after)) for before, after in rates),
+            energies={name: getattr(found, name) for name in STORED}
+            | dict.fromkeys(LOST[:2], np.zeros_like(t))
+            | {LOST[2]: found.released},
+        )
+
 
 class BarMotion(Motion):
     """The bar."""
+
+    motion: bar_events.BarMotion | None = None
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -149,11 +200,32 @@ class BarMotion(Motion):
         check_columns(self.scene, BAR_COLUMNS)
         began, problem, t = perf_counter(), bar_of(self.scene), self.instants()
         with naming(self.scene):
-            motion = solve(problem, float(t[-1]))
+            self.motion = motion = solve(problem, self.end)
         found = motion.at(t)
         force = found.contact_pressure * problem.width / 2
         columns = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
         return self.observed(dict(zip(BAR_COLUMNS, columns, strict=True)), motion.switches, began)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; the bar reports no energies."""
+        if self.motion is None:
+            raise NotReported(f"{self.name}: the scene was not run")
+        t, width = self.finely(), self.motion.problem.width
+        found = self.motion.at(t)
+        rates = [[float(self.motion.fields(at, [0.0]).velocity[0]) for at in span] for span in self.spans("base")]
+        return ContactRecord(
+            time=t,
+            force=found.contact_pressure * width,
+            impulse=found.impulse * width,
+            penetration=np.maximum(0.0, -found.gap),
+            gap=np.maximum(0.0, found.gap),
+            open_share=np.asarray(found.gap > 0, dtype=np.float64),
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=found.mean_velocity,
+            rebounds=tuple(Rebound(-before, after) for before, after in rates),
+        )
 
 
 class BlockEvents(Solver):
