@@ -124,8 +124,9 @@ def needed(scene: Scene, speed: float, error: float, penetration: float) -> Need
     """
     static = abs(opened.pushing(scene)) / (2 * penetration)
     landing = speed**2 * opened.mass(scene) / (8 * penetration**2)
-    p, limit = max(static, landing), largest_omega(scene, error)
-    steps = limit / contact_frequency(scene, p) if p else math.inf, limit / contact_frequency(scene)
+    p = max(static, landing) or scene.contact.stiffness  # without load and speed any springs do
+    limit = largest_omega(scene, error)
+    steps = limit / contact_frequency(scene, p), limit / contact_frequency(scene)
     return Needed(p, *steps, limit, restitution(scene, limit))
 
 

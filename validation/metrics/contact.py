@@ -101,8 +101,15 @@ def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float])
     """Return a number of the restitutions of the single contacts, undefined where none begins and ends in the run."""
     if record.rebounds is None:
         return NOT_REPORTED
-    found = [rebound.restitution for rebound in record.rebounds if rebound.closing > 0]
+    found = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
     return float(part(found)) if found else UNDEFINED
+
+
+def landing_speed(record: ContactRecord) -> Value:
+    """Greatest rate at which a gap closes before a contact."""
+    if record.rebounds is None:
+        return NOT_REPORTED
+    return max((rebound.closing for rebound in record.rebounds), default=UNDEFINED)
 
 
 def stored(record: ContactRecord, name: str) -> Value:
@@ -167,6 +174,7 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.mean_solves", "1", mean_solves),
     ("contact.most_solves", "1", most_solves),
     ("contact.cuts", "1", cuts),
+    ("contact.landing_speed", "m/s", landing_speed),
     ("contact.restitution", "1", restitution),
     ("energy.rise", "1", rise),
     ("energy.switching_gain", "1", switching),

@@ -19,12 +19,12 @@ class Rebound:
     """One contact of one corner: the rates of its gap before it closes and after it opens."""
 
     closing: float  # rate at which the gap closes, positive [m/s]
-    opening: float  # rate at which it opens again [m/s]
+    opening: float | None  # rate at which it opens again [m/s]; None where that is not seen within the run
 
     @property
-    def restitution(self) -> float:
-        """Opening over closing rate [-]."""
-        return self.opening / self.closing
+    def restitution(self) -> float | None:
+        """Opening over closing rate [-]; None where it does not open again."""
+        return None if self.opening is None else self.opening / self.closing
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class ContactRecord:
     velocity, start_velocity
         Velocity of the centre of mass, upwards [m/s], shape (steps,), and at t = 0.
     rebounds
-        The contacts that begin and end within the run, in the order of their beginning.
+        The contacts that begin within the run, in the order of their beginning.
     energies
         Name among `STORED` and `LOST` to the energy at each step [J], shape (steps,).
     start_energy, given
@@ -73,7 +73,7 @@ def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:
     """Return the contacts of one corner, seen from step to step, each with the index of its first closed step.
 
     The rate before is that of the last step without contact, that after is that of the first step which begins and
-    ends without contact: no contact force has entered either. A contact without such steps on both sides is left out.
+    ends without contact: no contact force has entered either. A contact without such a step before it is left out.
 
     Parameters
     ----------
@@ -83,13 +83,11 @@ def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:
         dt [s].
     """
     closed = gap <= 0
-    edges = np.flatnonzero(np.diff(closed)) + 1
+    edges = [*(np.flatnonzero(np.diff(closed)) + 1), len(gap)]
     found = []
     for first, last in itertools.pairwise(edges):
-        flights = closed[max(first - 2, 0) : first], closed[last : last + 3]
-        if not closed[first] or (len(flights[0]), len(flights[1])) != (2, 3) or any(map(np.any, flights)):
-            continue
-        before, after = gap[first - 1] - gap[first - 2], gap[last + 2] - gap[last + 1]
-        if before < 0:
-            found.append((int(first), Rebound(float(-before / step), float(after / step))))
+        if closed[first] and first >= 2 and not closed[first - 2] and gap[first - 1] < gap[first - 2]:
+            free = last + 2 < len(gap) and not closed[last : last + 3].any()
+            after = float(gap[last + 2] - gap[last + 1]) / step if free else None
+            found.append((int(first), Rebound(float(gap[first - 2] - gap[first - 1]) / step, after)))
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import operator
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -117,10 +118,11 @@ class Motion(Prepared):
         """Last instant [s]."""
         return float(self.instants()[-1])
 
-    def spans(self, corner: str) -> list[tuple[float, float]]:
-        """Return when each whole contact of a corner begins and ends [s]."""
+    def spans(self, corner: str) -> list[tuple[float, float | None]]:
+        """Return when each contact of a corner begins and ends [s]; None where it goes on."""
         own = [one for one in self.found or () if one.corner == corner]
-        return [(a.time, b.time) for a, b in itertools.pairwise(own) if a.kind == "closes" and b.kind == "opens"]
+        ends = [*own[1:], None]
+        return [(a.time, None if b is None else b.time) for a, b in zip(own, ends, strict=True) if a.kind == "closes"]
 
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
@@ -144,7 +146,7 @@ def switches_in_words(switches: Sequence[events.Switch]) -> str:
 class BlockMotion(Motion):
     """The block of one strain."""
 
-    motion: block_events.BlockMotion | None = None
+    motion: block_events.BlockMotion
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -162,13 +164,12 @@ class BlockMotion(Motion):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
-        if self.motion is None:
+        if self.found is None:
             raise NotReported(f"{self.name}: the scene was not run")
         t, push = self.finely(), opened.pushing(self.scene)
         found = self.motion.at(t)
         velocity, start = found.velocity[1], self.scene.block.velocity
-        spans = sorted((span, i) for i, corner in enumerate("MN") for span in self.spans(corner))
-        rates = [(self.motion.at([first, last]).gap_velocity[i]) for (first, last), i in spans]
+        spans = [(first, last, i) for i, corner in enumerate("MN") for first, last in self.spans(corner)]
         return ContactRecord(
             time=t,
             force=found.normal_force.sum(axis=0),
@@ -180,17 +181,23 @@ class BlockMotion(Motion):
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
             velocity=velocity,
-            rebounds=tuple(Rebound(float(-before), float(after)) for before, after in rates),
+            rebounds=tuple(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
             energies={name: getattr(found, name) for name in STORED}
             | dict.fromkeys(LOST[:2], np.zeros_like(t))
             | {LOST[2]: found.released},
         )
 
+    def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
+        """Return the rates of a corner's gap as its contact begins and ends."""
+        times = [first] if last is None else [first, last]
+        rates = [float(rate) for rate in np.atleast_1d(self.motion.at(times).gap_velocity[corner])]
+        return Rebound(-rates[0], None if last is None else rates[1])
+
 
 class BarMotion(Motion):
     """The bar."""
 
-    motion: bar_events.BarMotion | None = None
+    motion: bar_events.BarMotion
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -208,11 +215,10 @@ class BarMotion(Motion):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
-        if self.motion is None:
+        if self.found is None:
             raise NotReported(f"{self.name}: the scene was not run")
         t, width = self.finely(), self.motion.problem.width
         found = self.motion.at(t)
-        rates = [[float(self.motion.fields(at, [0.0]).velocity[0]) for at in span] for span in self.spans("base")]
         return ContactRecord(
             time=t,
             force=found.contact_pressure * width,
@@ -224,8 +230,13 @@ class BarMotion(Motion):
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
             velocity=found.mean_velocity,
-            rebounds=tuple(Rebound(-before, after) for before, after in rates),
+            rebounds=tuple(itertools.starmap(self._rebound, self.spans("base"))),
         )
+
+    def _rebound(self, first: float, last: float | None) -> Rebound:
+        """Return the velocities of the base as its contact begins and ends."""
+        rates = [None if at is None else float(self.motion.fields(at, [0.0]).velocity[0]) for at in (first, last)]
+        return Rebound(-(rates[0] or 0.0), rates[1])
 
 
 class BlockEvents(Solver):
