@@ -124,6 +124,11 @@ def total(record: ContactRecord) -> Array | None:
     return np.asarray(sum(record.energies[name] for name in STORED), dtype=np.float64)
 
 
+def given(record: ContactRecord) -> Value:
+    """Kinetic energy at the start and what the loads put in until they stand still."""
+    return record.given
+
+
 def rise(record: ContactRecord) -> Value:
     """Greatest total energy above that at the start, over the energy that start and loads give."""
     energy = total(record)
@@ -176,6 +181,7 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.cuts", "1", cuts),
     ("contact.landing_speed", "m/s", landing_speed),
     ("contact.restitution", "1", restitution),
+    ("energy.given", "J", given),
     ("energy.rise", "1", rise),
     ("energy.switching_gain", "1", switching),
     ("energy.imbalance", "1", imbalance),

@@ -151,7 +151,7 @@ def finest() -> list[Scene]:
 @functools.cache
 def data() -> Mapping[str, Any]:
     """Return the restitution map for its figure: mean, least and greatest e over Omega, by scheme."""
-    grid = np.geomspace(0.05, 300.0, 61)
+    grid = np.geomspace(0.05, 1500.0, 61)
     curves = {}
     for scheme in ((0.5, 1.0), (0.25, 0.5)):
         rows = np.array([impact_statistics(*scheme, 1.0, float(x)) for x in grid]).T
