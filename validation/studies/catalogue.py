@@ -26,6 +26,7 @@ STUDIES = {
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
     "opening": "validation.studies.opening:OPENING",
     "waves": "validation.studies.waves.study:study",
+    "rebound": "validation.studies.rebound:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
