@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from validation.runs.history import Array, Complex
 from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
@@ -60,6 +61,13 @@ class NewmarkBar(Prepared):
         """Raise: the bar has no matrix and modes without end."""
         raise NotReported("bar: the exact bar has no matrix and no largest frequency")
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space."""
+        from fem_reference.exact.vibration import response
+
+        with naming(self.scene):
+            return response(self.bar, self.scheme, frequencies, BAR_COLUMNS, exact)
+
 
 class ExactBar(Solver):
     """Exact in space, Newmark in time."""
@@ -100,6 +108,10 @@ class ContinuousBar(NewmarkBar):
         step = self.scene.time.step
         half_rate = -math.log(self.scene.time.discount) / step / 2
         return tuple(Mode(m.frequency, m.share, _sampled(m.frequency, half_rate, step)) for m in super().modes())
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time."""
+        return super().response(frequencies, exact=True)
 
 
 def _sampled(w: float, half_rate: float, step: float) -> tuple[complex, complex]:

@@ -11,10 +11,11 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -102,6 +103,15 @@ class OneBlock(Prepared):
 
         return vars(dda.diagnostics(self.model, self.scheme))
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, mode by mode."""
+        import dda
+
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
+        with naming(self.scene):
+            return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+
 
 class SubBlocks(OneBlock):
     """A block cut into glued sub-blocks."""
@@ -147,6 +157,15 @@ class SubBlocks(OneBlock):
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: diagnostics are those of one whole block."""
         raise NotReported("dda reports diagnostics of a whole block only")
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the system."""
+        import dda
+
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
+        with naming(self.scene):
+            return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
@@ -266,6 +285,10 @@ class Printed(OneBlock):
         with naming(self.scene):
             found = dda.solve_textbook(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns)
             return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: the printed recursion is no M D'' + K D = F where mu is not zero."""
+        raise NotReported("dda-textbook reports no frequency response: the printed recursion is stepped only")
 
 
 class Textbook(DDA):

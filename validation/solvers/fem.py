@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 from validation.errors import InputError
 from validation.runs.contact import STORED, ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -137,6 +138,15 @@ class Mesh(Prepared):
         from fem_reference.scheme.diagnostics import diagnostics
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the mesh."""
+        from fem_reference.history.response import response
+
+        check_stable(self.scene, self.model)
+        columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
+        with naming(self.scene):
+            return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
 
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")  # J, in the order of `STORED`
