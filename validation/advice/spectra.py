@@ -59,6 +59,7 @@ class Damping:
     modes: tuple[ModeDamping, ...]
     references: dict[str, dict[str, float | None]]  # solver -> frequency and damping of its first axial mode
     sentence: str
+    alias: float | None = None  # what samples show of the continuum's first mode where it lies beyond pi / dt [rad/s]
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -165,7 +166,15 @@ def damping(scene: Scene, references: bool = False) -> Damping:
     rate = -math.log(gg) / scene.time.step + 0.0 if gg > 0 else None
     others = {name: first_mode(scene, name) for name in ("fem", "bar")} if references else {}
     found = {name: values for name, values in others.items() if values}
-    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named))
+    shown = alias(scene) if references else None
+    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named), shown)
+
+
+def alias(scene: Scene) -> float | None:
+    """Return what samples show of the continuum's first mode [rad/s]; None below pi / dt or without a solution."""
+    if get_solver("continuum").refusal(scene):
+        return None
+    return checked("continuum", scene).modes(scene)[0].alias(scene.time.step)
 
 
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
