@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -117,9 +118,11 @@ def through_the_gates(attribute: str, *options: str) -> str:
     return done.stdout + done.stderr
 
 
-def test_a_sound_solver_passes_every_gate_that_applies() -> None:
-    shown = through_the_gates("solve")
+def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
+    shown = through_the_gates("solve", f"--junitxml={tmp_path / 'junit.xml'}")
     assert " passed" in shown and "failed" not in shown
+    names = [case.get("name") for case in ElementTree.parse(tmp_path / "junit.xml").iter("testcase")]
+    assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names, "JUnit has the gates' ids"
 
 
 def test_a_broken_solver_fails_by_name() -> None:

@@ -153,8 +153,7 @@ def dispersion() -> Iterator[Gate]:
             f"{closed_forms.elements_per_front(scene):.3g} elements per c dt; the shapes' own error, of the next "
             "order, takes up to a quarter off"
         )
-        for quantity in ("displacement", "pressure"):
-            value = closed_forms.mesh_error(scene.name, quantity)
+        for quantity, value in closed_forms.mesh_error(scene).items():
             yield Gate(scene.name, ("fem", "bar"), f"{quantity}.l2", 0.75 * value, 1.1 * value, why)
 
 
