@@ -7,6 +7,7 @@ of the same scheme at gg = 1; the kinetic part is the rest.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -21,8 +22,8 @@ from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
-from validation.solvers.contract import Solver
-from validation.solvers.registry import get_solver
+from validation.solvers.contract import NotReported, Role, Solver
+from validation.solvers.registry import by_role, get_solver
 
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
 FIRST, CONTACT = "first axial", "contact"
@@ -172,9 +173,11 @@ def damping(scene: Scene, references: bool = False) -> Damping:
 
 def alias(scene: Scene) -> float | None:
     """Return what samples show of the continuum's first mode [rad/s]; None below pi / dt or without a solution."""
-    if get_solver("continuum").refusal(scene):
-        return None
-    return checked("continuum", scene).modes(scene)[0].alias(scene.time.step)
+    for name in by_role(Role.TRUTH):
+        with contextlib.suppress(NotReported):
+            if not get_solver(name).refusal(scene):
+                return checked(name, scene).modes(scene)[0].alias(scene.time.step)
+    return None
 
 
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
