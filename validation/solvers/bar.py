@@ -107,14 +107,15 @@ class ContinuousBar(NewmarkBar):
         """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
         step = self.scene.time.step
         half_rate = -math.log(self.scene.time.discount) / step / 2
-        return tuple(Mode(m.frequency, m.share, _sampled(m.frequency, half_rate, step)) for m in super().modes())
+        every = super().modes()
+        return tuple(Mode(m.frequency, m.share, _factors(m.frequency, half_rate, step), None, True) for m in every)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time."""
         return super().response(frequencies, exact=True)
 
 
-def _sampled(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
+def _factors(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
     """Return the factors by which a damped oscillation changes in a step."""
     root = cmath.sqrt(half_rate**2 - w**2)
     return cmath.exp((root - half_rate) * step), cmath.exp((-root - half_rate) * step)
