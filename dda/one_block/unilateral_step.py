@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from dda.contact.glued import Free
 from dda.contact.iteration import Iteration, open_close
 from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
-from dda.one_block.unilateral_form import UNKNOWNS, UnilateralForm
+from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
     acceleration_corrector,
@@ -37,8 +37,7 @@ from dda.scheme.newmark import (
 
 Array = NDArray[np.float64]
 Vector = list[float]
-IMPLICIT = "implicit contact"
-U_INDEX = UNKNOWNS.index("U")
+NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
 
 
 class State(NamedTuple):
@@ -198,3 +197,43 @@ def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) ->
         where = [s + shift for s in where]
     given = zip(stays, before.reference, where, after.stretch, strict=True)
     return after._replace(reference=tuple(r if kept else s - stretch for kept, r, s, stretch in given))
+
+
+class Jump:
+    """A whole step of frictionless contacts as matrices over v = (D, P, N, T, w), after any step but the first.
+
+    It is `advance` with f = F - k D + multiplicity h^2 B' N put in: for the single steps in which contacts switch.
+    """
+
+    def __init__(self, form: UnilateralForm, law: Unilateral, length: StepLength) -> None:
+        self.law, self.length, self.place = law, length, form.layout
+        place, scheme = self.place, length.scheme
+        n, c, h2 = place.unknowns, place.contacts, scheme.step * scheme.step
+        k, F = np.diag(length.k), np.array(length.F)
+        push, pushed = h2 * np.array(length.push), np.array(length.pushed)
+        D, P, N = (np.eye(place.size)[part] for part in (place.D, place.P, place.contact(0)))
+        f, own = push @ N - k @ D, -k @ D  # both without F
+        inverse = np.array([length.factor.solve(column) for column in np.eye(n).tolist()]).T
+        ahead = D + inverse @ (scheme.gg * P + (0.5 - scheme.alpha) * f + scheme.alpha * own)
+        fallen = inverse @ ((0.5 - scheme.alpha) * F + scheme.alpha * F)
+        self.rows, self.constant = np.zeros((place.size, place.size)), np.zeros(place.size)
+        self.forced = np.zeros((place.size, c))
+        self.rows[place.D], self.constant[place.D], self.forced[place.D] = ahead, fallen, pushed
+        self.rows[place.P] = scheme.gg * P + (1 - scheme.delta) * f - scheme.delta * (k @ ahead)
+        self.constant[place.P] = F - scheme.delta * (k @ fallen)
+        self.forced[place.P] = scheme.delta * (push - k @ pushed)
+        gaps, w = slice(n - c, n), place.contact(2)
+        self.rows[w], self.constant[w], self.forced[w] = ahead[gaps], fallen[gaps], pushed[gaps]
+        self.forced[place.contact(0)] = np.eye(c)
+
+    def step(self, v: Array, closed: tuple[bool, ...], limit: int) -> tuple[Array, Iteration]:
+        """Return v one step later and the contacts; where there are none v is what it would be without forces."""
+        place, nothing = self.place, (0.0,) * self.place.contacts
+        after = self.rows @ v + self.constant
+        free = Free(after[place.contact(2)].tolist(), (), self.length.C, {})
+        found = open_close(self.law, Corners(closed, nothing, nothing, nothing, nothing, nothing), free, limit)
+        if found.corners is None:
+            return after, found
+        after += self.forced @ np.array(found.corners.normal)
+        after[place.contact(2)] = after[place.unknowns - place.contacts : place.unknowns] = found.corners.gap
+        return after, found

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.errors import InputError
 from validation.runs.modes import Mode, Switch
@@ -176,9 +177,13 @@ class OpeningBlock(Prepared):
         with naming(self.scene):
             r = dda.solve_unilateral(self.model, scheme_of(self.scene), self.scene.time.steps, asked, self.options)
         self.result = r
-        contact = {name: getattr(r, name) for name in (*GAPS, *FORCES)}
-        counts = {"solves": r.step_solves.astype(float), "cuts": r.step_cuts.astype(float)}
-        return opened_run(self.scene, r, {**r.columns, **contact, **counts})
+        return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
+
+    def _contact(self, r: dda.UnilateralResult) -> dict[str, NDArray[np.float64]]:
+        """Return the asked columns of the contacts, which are made when they are asked for."""
+        counts = {"solves": "step_solves", "cuts": "step_cuts"}
+        names = [name for name in self.scene.run.columns if name in (*GAPS, *FORCES, *COUNTS)]
+        return {name: np.asarray(getattr(r, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
