@@ -34,6 +34,7 @@ class Iteration(NamedTuple):
     corners: Corners | None
     solves: int
     failure: str | None = None
+    mean: tuple[float, ...] | None = None  # normal forces over the step where they are not those of its end [N]
 
 
 def open_close(law: Unilateral, before: Corners, free: Free, limit: int) -> Iteration:

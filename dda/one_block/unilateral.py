@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
@@ -161,6 +161,13 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
         raise ValueError(
             f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {given}"
         )
+    law = model.contact
+    if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
+        raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
+    if options.rule == CONSERVING and len((form := model.form()).B) > form.contacts:
+        raise ValueError(
+            f"rule: {CONSERVING} contact is frictionless: shear must be 0 where the base can slide, got {law}"
+        )
     if math.isinf(model.contact.stiffness) and scheme.alpha == 0:
         raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {model.contact.stiffness}")
 
@@ -170,13 +177,15 @@ class Stepping:
 
     def __init__(self, model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
         self.model, self.scheme, self.options = model, scheme, options
+        if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
+            model = replace(model, contact=replace(model.contact, shear=0.0))
         self.law, self.form = model.contact, model.form(options.full)
         self.outcome, self.factorisations = COMPLETED, 0
         self.lengths: dict[float, StepLength] = {}
         self.phases: dict[tuple[bool, ...], Phase | str] = {}
         self.history = History(self.form.layout)
         self.cut_steps: dict[int, CutStep] = {}  # for their energies
-        self.start = start_state(self.form, self.law, scheme, model.velocity)
+        self.start = start_state(self.form, self.law, scheme, model.velocity, options.rule)
 
     def run(self, steps: int) -> None:
         """Make the steps that are reached; `outcome` says how it ended."""

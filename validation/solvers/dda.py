@@ -165,7 +165,8 @@ class OpeningBlock(Prepared):
             law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
             loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
             self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
-            self.options = dda.UnilateralOptions(solve_limit=c.solve_limit, cut=c.cut, full=full)
+            self.scheme = scheme_of(scene)
+            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, full=full)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -175,7 +176,7 @@ class OpeningBlock(Prepared):
         check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
         asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = dda.solve_unilateral(self.model, scheme_of(self.scene), self.scene.time.steps, asked, self.options)
+            r = dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, asked, self.options)
         self.result = r
         return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
 
@@ -197,7 +198,7 @@ class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS | features.RULES
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
