@@ -1,6 +1,6 @@
 """Adapter of FEniCSx: finds an interpreter that has dolfinx and asks the worker there.
 
-The worker is `fem_reference/fenicsx_worker.py`; dolfinx is never imported here, nor by anything but that file.
+The worker is the folder `fem_reference/fenicsx`; dolfinx is never imported here, nor by anything outside that folder.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx_worker.py")  # type: ignore[union-attr,arg-type]
+WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx")  # type: ignore[union-attr,arg-type]
 # One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
 # that is not of the locale's characters, unless Python reads paths as UTF-8.
 ENVIRONMENT = {
@@ -123,7 +123,7 @@ class FEniCSx(Solver):
     handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
     sections = MESH_SECTIONS
     unread = OF_SUB_BLOCKS
-    sources = ("fem_reference.fenicsx_worker",)
+    sources = ("fem_reference.fenicsx",)
     distributed = True
     meshed = True
     saves = False
