@@ -1,4 +1,4 @@
-"""Load this folder as a package of a name of its own, so that nothing else of its parent can be imported, and run it."""
+"""Load this folder as a package of a name of its own, so that nothing else of its parent is reached, and run it."""
 
 import importlib.util
 import sys

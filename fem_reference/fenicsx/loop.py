@@ -16,12 +16,43 @@ from mpi4py import MPI
 
 from .model import COMM, Block, Inapplicable, Request
 from .newmark import Factor, Newmark
+from .opening import COLUMNS as OPENING
+from .opening import Opening
 
 IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
 
 
 def run(request: Request) -> dict[str, Any]:
     """Answer one request; every rank runs this, and all return the same."""
+    return run_open(request) if request["law"] == "unilateral" else run_locked(request)
+
+
+def run_open(request: Request) -> dict[str, Any]:
+    """Answer a request for contact that carries no tension; a history may end early."""
+    Factor.factorisations = Factor.solves = 0
+    began = time.perf_counter()
+    block = Block(request | {"stiffness": 0.0, "shear_stiffness": 0.0})
+    scheme = Opening(block, request)
+    ready = time.perf_counter()
+    rows: list[dict[str, float]] = []
+    failure = ""
+    while len(rows) < request["steps"] and not failure:
+        contact, failure = scheme.advance()
+        seen = {name: float(row.dot(scheme.D)) for name, row in block.observers.items()}
+        rows += [] if failure else [seen | dict(zip(OPENING, contact, strict=True))]
+    return {
+        "outcome": failure or "completed",
+        "time": (request["step"] * np.arange(1, len(rows) + 1)).tolist(),
+        "columns": {name: [row[name] for row in rows] for name in request["columns"]},
+        "pressed": [bool(row["contact_pressure"] > 0) for row in rows],
+        "unknowns": block.K.getSize()[0],
+        "nonzeros": scheme.nonzeros,
+        **_counted(began, ready, time.perf_counter()),
+    }
+
+
+def run_locked(request: Request) -> dict[str, Any]:
+    """Answer a request for locked springs."""
     Factor.factorisations = Factor.solves = 0
     began = time.perf_counter()
     block = Block(request)
@@ -29,25 +60,32 @@ def run(request: Request) -> dict[str, Any]:
     ready = time.perf_counter()
     rows = [block.observers[name] for name in request["columns"]]
     history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
-    ended = time.perf_counter()
-    done = Factor.factorisations, Factor.solves
+    counted = _counted(began, ready, time.perf_counter())
     rest = Factor(block.K)(scheme.load(request["last"]))
     static = {name: float(row.dot(rest)) for name, row in block.observers.items()}
     static["contact_pressure"] += float(block.carried_pressure(request["last"]))
     if request["moved"] and "contact_pressure" in request["columns"]:
         history[:, request["columns"].index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
-    memory = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
     return {
+        "outcome": "completed",
         "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
         "columns": {name: history[:, i].tolist() for i, name in enumerate(request["columns"])},
         "static": static,
         "unknowns": block.K.getSize()[0],
         "nonzeros": scheme.nonzeros,
-        "factorisations": done[0],
-        "solves": done[1],
+        **counted,
+    }
+
+
+def _counted(began: float, ready: float, ended: float) -> dict[str, Any]:
+    """What a history has cost."""
+    peak = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
+    return {
+        "factorisations": Factor.factorisations,
+        "solves": Factor.solves,
         "setup_seconds": ready - began,
         "stepping_seconds": ended - ready,
-        "memory": memory,
+        "memory": peak,
         "version": dolfinx.__version__,
     }
 
