@@ -14,8 +14,8 @@ or null), last (where the base comes to rest), degree, foundation, patch_width, 
 cells ("quadrilaterals" or "triangles"; or points and cells of a mesh file), alpha,
 delta, gg, step, start, steps, columns, law ("locked" or "unilateral", then gap, velocity, solve_limit and cut too). An
 answer holds outcome, time, columns, static (or pressed, whether the base was, for each step), unknowns, nonzeros,
-factorisations, solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad input),
-"inapplicable" or "raised" with a sentence.
+factorisations, solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad
+input), "inapplicable" or "raised" with a sentence.
 
 Runs with dolfinx 0.5 and with the interface of 0.7 to 0.10 (basix elements, another order of arguments).
 """
