@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
+from validation.runs.contact import ContactRecord
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
@@ -70,6 +71,10 @@ class Prepared:
     def switches(self) -> tuple[Switch, ...]:
         """Return the openings and closings of a unilateral contact after t = 0, in the order of time."""
         raise NotReported("no switches are reported")
+
+    def contact_record(self) -> ContactRecord:
+        """Return what a unilateral contact did at each step of the history that was run."""
+        raise NotReported("nothing of the contact is reported")
 
 
 class Solver:

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs.contact import ContactRecord
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -186,6 +189,30 @@ class OpeningBlock(Prepared):
             raise NotReported("dda: the scene was not run")
         r = self.result
         return flips({"M": r.closed_m.astype(float), "N": r.closed_n.astype(float)}, r.time)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did, from the same steps with their energies."""
+        import dda
+
+        scheme, steps = scheme_of(self.scene), self.scene.time.steps
+        r = dda.solve_unilateral(self.model, scheme, steps, (), replace(self.options, energies=True))
+        gaps, force = np.array([r.gap_m, r.gap_n]), r.normal_force_m + r.normal_force_n
+        return ContactRecord(
+            time=r.time,
+            force=force,
+            impulse=opened.summed(force, scheme.step, 1.0 if self.options.rule != "newmark" else scheme.delta),
+            penetration=np.maximum(0.0, -gaps).max(axis=0),
+            gap=np.maximum(0.0, gaps).max(axis=0),
+            open_share=1 - np.mean([r.closed_m, r.closed_n], axis=0),
+            start_velocity=self.model.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=r.velocity,
+            rebounds=opened.rebounds(gaps, scheme.step),
+            energies=r.energies or {},
+            solves=r.step_solves.astype(float),
+            cuts=r.step_cuts.astype(float),
+        )
 
 
 class DDA(Solver):

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
+from validation.runs.contact import STORED, ContactRecord
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -143,6 +145,9 @@ class Mesh(Prepared):
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
 
+ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")  # J, in the order of `STORED`
+
+
 class OpeningMesh(Prepared):
     """A block on a foundation that carries no tension, point by point of its base."""
 
@@ -165,12 +170,31 @@ class OpeningMesh(Prepared):
         with naming(self.scene):
             found = solve_unilateral(self.problem, self.scheme, self.scene.time.steps, self.contact, self.full)
         self.pressed = found.columns["contact_pressure"] > 0
-        self.time = found.time
+        self.time, self.seen = found.time, found.columns
         return opened_run(self.scene, found, found.columns)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
         return flips({"base": self.pressed.astype(float)}, self.time)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; the elements report no velocity and no losses apart."""
+        seen, scheme = self.seen, self.scheme
+        force = seen["contact_pressure"] * self.scene.block.base_length
+        return ContactRecord(
+            time=self.time,
+            force=force,
+            impulse=opened.summed(force, scheme.step, scheme.delta),
+            penetration=seen["largest_penetration"],
+            gap=seen["largest_gap"],
+            open_share=seen["open_share"],
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            energies={name: seen[column] for name, column in zip(STORED, ENERGY_COLUMNS, strict=True)},
+            solves=seen["solves"],
+            cuts=seen["cuts"],
+        )
 
 
 class FiniteElements(Solver):

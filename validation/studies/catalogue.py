@@ -25,6 +25,7 @@ STUDIES = {
     "stability": "validation.studies.stability:full",
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
     "opening": "validation.studies.opening:OPENING",
+    "rebound": "validation.studies.rebound:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
