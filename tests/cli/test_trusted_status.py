@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, typed
+from conftest import SCENE, thinned, typed
 
 from validation.engine.measured import Judged, covers, wanting
 from validation.engine.run import run_study
@@ -249,7 +249,7 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-m", "validation", *map(str, arguments)]
 
 
-@pytest.mark.parametrize("ending", ["vtu", "xdmf"])
+@pytest.mark.parametrize("ending", thinned(["xdmf", "vtu"], 2))
 def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_file: Path, tmp_path: Path) -> None:
     out = tmp_path / f"f.{ending}"
     out.write_text("a good file")
@@ -257,6 +257,7 @@ def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_fi
         command("solve", scene_file, "--solver", "fem", "--fields", out),
         capture_output=True,
         text=True,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # a compiled file would be cut off at the limit, and kept
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)),
         check=False,
         timeout=100,
@@ -289,7 +290,7 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
     assert out.read_text() == "a good file"
 
 
-@pytest.mark.parametrize(("text", "status"), [(TIGHT, 1), (WIDE, 0)])
+@pytest.mark.parametrize(("text", "status"), thinned([(WIDE, 0), (TIGHT, 1)], 2))
 def test_a_reader_that_has_gone_does_not_change_the_status(
     text: str, status: int, scene_file: Path, tmp_path: Path
 ) -> None:
@@ -303,7 +304,7 @@ def test_a_reader_that_has_gone_does_not_change_the_status(
     assert (done.returncode, done.stderr.strip()) == (status, b"")
 
 
-@pytest.mark.parametrize(("text", "status"), [(TIGHT, 1), (WIDE, 0)])
+@pytest.mark.parametrize(("text", "status"), thinned([(TIGHT, 1), (WIDE, 0)], 2))
 def test_a_closed_output_does_not_change_the_status(text: str, status: int, scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(text)
     line = 'exec "$0" -m validation run "$1" --results "$2" >&-'
@@ -313,15 +314,17 @@ def test_a_closed_output_does_not_change_the_status(text: str, status: int, scen
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
-def test_a_full_output_is_one_line(scene_file: Path, tmp_path: Path) -> None:
-    for words in (["run", scene_file, "--results", tmp_path / "r"], ["list"]):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run(command(*words), stdout=full, stderr=subprocess.PIPE, text=True, timeout=100)
-        assert done.returncode == 2
-        assert done.stderr.strip() == "error: standard output: No space left on device"
+@pytest.mark.parametrize("words", thinned(["list", "run small.toml"], 2))
+def test_a_full_output_is_one_line(words: str, scene_file: Path) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            command(*words.split()), stdout=full, stderr=subprocess.PIPE, text=True, timeout=100, cwd=scene_file.parent
+        )
+    assert done.returncode == 2
+    assert done.stderr.strip() == "error: standard output: No space left on device"
 
 
-@pytest.mark.parametrize("stem", ["a$_{$b", "esc\x1b[31m", "a\u2028b", "$"])
+@pytest.mark.parametrize("stem", thinned(["$_{$esc\x1b[31m\u2028b", "a$_{$b", "esc\x1b[31m", "a\u2028b", "$"], 5))
 def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> None:
     path = tmp_path / f"{stem}.toml"
     path.write_text(SCENE.replace("A small scene", "A $scene_{ \\u001b"))

@@ -5,6 +5,7 @@ import re
 import resource
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,10 +19,17 @@ solve(scene, "dda")
 """
 
 
+@cache
+def nodes(path: Path) -> list[ast.AST]:
+    """Return what a file consists of."""
+    return list(ast.walk(ast.parse(path.read_text())))
+
+
+@cache
 def imports(path: Path) -> set[str]:
     """Return the top-level packages that a file imports, anywhere in it."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name.partition(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -91,9 +99,8 @@ def test_no_print_no_exit_no_assert_in_library_code() -> None:
         for path in (ROOT / package).rglob("*.py"):
             if path.relative_to(ROOT / package).as_posix() in ("test_gates.py", "cli/entry.py"):
                 continue
-            tree = ast.parse(path.read_text())
-            assert not [node for node in ast.walk(tree) if isinstance(node, ast.Assert)], path
-            calls = [ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)]
+            assert not [node for node in nodes(path) if isinstance(node, ast.Assert)], path
+            calls = [ast.unparse(node.func) for node in nodes(path) if isinstance(node, ast.Call)]
             assert not {"print", "sys.exit", "exit"} & set(calls), path
 
 
@@ -120,13 +127,16 @@ def test_the_command_line_and_the_plugin_start_light() -> None:
 
 def test_start_up_takes_a_fraction_of_a_second() -> None:
     for arguments in (["-c", "import dda"], ["-m", "validation", "--help"]):
-        spent = []
-        for _ in range(3):
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=ROOT)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-        assert min(spent) < 0.6, arguments  # promised 0.3 s; twice that where a machine is slow or shared
+        # promised 0.3 s; twice that where a machine is slow or shared, in one of three trials
+        assert any(seconds(*arguments) < 0.6 for _ in range(3)), arguments
+
+
+def seconds(*arguments: str) -> float:
+    """Return the processor time of a fresh interpreter."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=ROOT)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def test_one_module_reaches_for_a_cluster() -> None:

@@ -32,6 +32,16 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return kept
 
 
+def test_a_part_of_the_scenes_gives_its_figures(results: Results, tmp_path: Path) -> None:
+    manifest = results.manifest("paper")
+    manifest["cases"] = [case for case in manifest["cases"] if case["scene"].startswith("figure-9")]
+    blocks = chapter_of("paper")(results, manifest, tmp_path)
+    files = [block.file for block in blocks if isinstance(block, FigureBlock)]
+    assert files == ["figure-1.svg", "figure-9.svg", "figure-9-damping-budget.svg"]
+    assert all((tmp_path / file).stat().st_size > 2000 for file in files)
+
+
+@pytest.mark.long
 def test_every_figure_is_written_as_svg_and_png_and_no_solver_is_loaded(results: Results, tmp_path: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from validation.report.book import figures; "

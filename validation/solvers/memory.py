@@ -57,7 +57,7 @@ def check(scene: Scene, solver: Solver) -> None:
     Raises
     ------
     InputError
-        With the field, the estimate and what is there.
+        With the field, the estimate and what is available.
     """
     size, field = needed(scene, solver)
     there = available()
@@ -66,7 +66,7 @@ def check(scene: Scene, solver: Solver) -> None:
         value = getattr(getattr(scene, section), key)
         raise InputError(
             f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
-            f"{there / GIGABYTE:.3g} GB are there, got {value}"
+            f"{there / GIGABYTE:.3g} GB are available, got {value}"
         )
 
 
