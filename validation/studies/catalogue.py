@@ -26,6 +26,7 @@ STUDIES = {
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.rebound:STUDY",
+    "impacts": "validation.studies.impacts:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
