@@ -21,6 +21,7 @@ from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
 from fem_reference.events import bar_events, block_events
+from fem_reference.events import restitution as map_of_impacts
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -80,6 +81,7 @@ DDA_MODES = Seam(solution, solution.modal_form)
 DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
 DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
+DDA_OPENED = Seam(dda, dda.solve_unilateral)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 
 # Systems of blocks
@@ -122,6 +124,7 @@ BAR_PAIR = Seam(modal, modal._pair)
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
 EVENTS_BAR = Seam(bar_events, bar_events.solve)
+RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 
 # The suite itself
 CAUSES_FURTHER = Seam(causes, causes._further)

@@ -100,12 +100,20 @@ def _judged_anyway(gate: Gate, row: Row) -> bool:
     return gate.metric.startswith("stability.") and row.outcome in (Outcome.UNSTABLE, Outcome.OVERFLOW)
 
 
+def compared_until(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> float | None:
+    """Return the time up to which two histories are compared [s]: the gate's, or the horizon of either if earlier."""
+    horizons = [row.metrics.get("horizon.time") for row in map(finished.rows.get, names) if row is not None]
+    limits = [gate.until, *(value for value in horizons if isinstance(value, float))]
+    return min((limit for limit in limits if limit is not None), default=None)
+
+
 def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Value:
     if gate.metric in PAIRS:
         histories = [finished.history(*name) for name in names]
         if len(histories) < 2 or histories[0] is None or histories[1] is None:
             return None
-        first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
+        until = compared_until(gate, names, finished)
+        first, second = (h if until is None else h.until(until) for h in histories if h is not None)
         return _paired(gate.metric, first, second, finished.rows[names[0]].metrics)
     rows = [finished.row(*name) for name in names]
     values = [None if row is None else row.metrics.get(gate.metric) for row in rows]
