@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.block_oracle import Integrated, random_problem
+from oracles.landing import first_landing, micro_impacts
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import BlockProblem
-from fem_reference.events.landing import first_landing, micro_impacts
 from fem_reference.events.switches import TooManySwitchesError
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
