@@ -72,9 +72,8 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        scenes = [
-            case for scene in self.scenes for case in (load_scene(scene) if isinstance(scene, str) else scene).expand()
-        ]
+        stated = [load_scene(scene) if isinstance(scene, str) else scene for scene in self.scenes]
+        scenes = [case for scene in stated for case in scene.expand()]
         named = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
