@@ -22,6 +22,8 @@ from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.opening import OpeningSystem, opening_subdivided
+from dda.system.opening_solution import OpeningResult, solve_opening_system
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
@@ -41,6 +43,8 @@ __all__ = [
     "Material",
     "ModalForm",
     "Mode",
+    "OpeningResult",
+    "OpeningSystem",
     "Result",
     "Scheme",
     "Section",
@@ -56,8 +60,10 @@ __all__ = [
     "modal_form",
     "modes",
     "one_step_operator",
+    "opening_subdivided",
     "shared_edges",
     "solve",
+    "solve_opening_system",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

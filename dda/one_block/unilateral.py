@@ -168,8 +168,13 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
         raise ValueError(
             f"rule: {CONSERVING} contact is frictionless: shear must be 0 where the base can slide, got {law}"
         )
-    if math.isinf(model.contact.stiffness) and scheme.alpha == 0:
-        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {model.contact.stiffness}")
+    check_scheme(law, scheme)
+
+
+def check_scheme(law: Unilateral, scheme: Scheme) -> None:
+    """Raise ValueError where an explicit scheme meets a rigid stop."""
+    if math.isinf(law.stiffness) and scheme.alpha == 0:
+        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
 
 
 class Stepping:

@@ -215,13 +215,13 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
         empty = csr_array((0, 0))
         return B, G, empty, empty
     kappa = csr_array(block_diag([csr_array(group.stiffness) for group in groups]))
-    C = csr_array(block_diag([csr_array(_inverse(group.stiffness[None])[0]) for group in groups]))
+    C = csr_array(block_diag([csr_array(inverses(group.stiffness[None])[0]) for group in groups]))
     for matrix in (kappa, C):
         matrix.eliminate_zeros()
     return B, G, kappa, C
 
 
-def _inverse(matrices: Array) -> Array:
+def inverses(matrices: Array) -> Array:
     """Return the inverses of positive definite matrices, scaled so that widely spread diagonals keep their digits."""
     root = np.sqrt(np.einsum("nii->ni", matrices))
     scale = root[:, :, None] * root[:, None, :]

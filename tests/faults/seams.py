@@ -92,7 +92,7 @@ SYSTEM_MASS = Seam(system, system._without_rounding)
 SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
-SYSTEM_RUN = Seam(system_solution._Stepper, system_solution._Stepper.run)
+SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
 
 # Finite elements

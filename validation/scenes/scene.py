@@ -90,8 +90,8 @@ class Scene(Section):
         given = self.time.alpha, self.time.delta
         if self.contact.rule != "newmark" and given != (0.25, 0.5):
             raise ValueError(
-                f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: time.alpha must be 0.25 "
-                f"and time.delta 0.5, got {given[0]:g} and {given[1]:g}"
+                f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: "
+                f"time.alpha must be 0.25 and time.delta 0.5, got {given[0]:g} and {given[1]:g}"
             )
         return self
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -161,7 +161,7 @@ class OpeningBlock(Prepared):
         import dda
 
         self.scene, self.full = scene, full
-        self.result: dda.UnilateralResult | None = None
+        self.result: dda.UnilateralResult | dda.OpeningResult | None = None
         b, c, q = scene.block, scene.contact, scene.load
         with naming(scene):
             block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
@@ -171,6 +171,12 @@ class OpeningBlock(Prepared):
             self.scheme = scheme_of(scene)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, full=full)
 
+    def solve(self, columns: Sequence[str], options: dda.UnilateralOptions) -> dda.UnilateralResult | dda.OpeningResult:
+        """Make the steps."""
+        import dda
+
+        return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, options)
+
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         import dda
@@ -179,11 +185,11 @@ class OpeningBlock(Prepared):
         check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
         asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, asked, self.options)
+            r = self.solve(asked, self.options)
         self.result = r
         return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
 
-    def _contact(self, r: dda.UnilateralResult) -> dict[str, NDArray[np.float64]]:
+    def _contact(self, r: dda.UnilateralResult | dda.OpeningResult) -> dict[str, NDArray[np.float64]]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
         names = [name for name in self.scene.run.columns if name in (*GAPS, *FORCES, *COUNTS)]
@@ -198,18 +204,15 @@ class OpeningBlock(Prepared):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did, from the same steps with their energies."""
-        import dda
-
-        scheme, steps = scheme_of(self.scene), self.scene.time.steps
-        r = dda.solve_unilateral(self.model, scheme, steps, (), replace(self.options, energies=True))
-        gaps, force = np.array([r.gap_m, r.gap_n]), r.normal_force_m + r.normal_force_n
+        r, scheme = self.solve((), replace(self.options, energies=True)), self.scheme
+        gaps, force = r.gap, r.normal.sum(axis=0)
         return ContactRecord(
             time=r.time,
             force=force,
             impulse=opened.summed(force, scheme.step, 1.0 if self.options.rule != "newmark" else scheme.delta),
             penetration=np.maximum(0.0, -gaps).max(axis=0),
             gap=np.maximum(0.0, gaps).max(axis=0),
-            open_share=1 - np.mean([r.closed_m, r.closed_n], axis=0),
+            open_share=1 - np.mean(r.closed, axis=0),
             start_velocity=self.model.velocity,
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
@@ -221,11 +224,32 @@ class OpeningBlock(Prepared):
         )
 
 
+class OpeningSubBlocks(OpeningBlock):
+    """Glued sub-blocks on points that carry no tension."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        import dda
+
+        super().__init__(scene, full)
+        b = scene.block
+        with naming(scene):
+            columns, rows = b.subdivide or (1, 1)
+            self.opening = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
+
+    def solve(self, columns: Sequence[str], options: dda.UnilateralOptions) -> dda.OpeningResult:
+        """Make the steps."""
+        import dda
+
+        return dda.solve_opening_system(self.opening, self.scheme, self.scene.time.steps, columns, options)
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS | features.RULES
+    handles = (
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS | features.RULES
+    )
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -239,9 +263,10 @@ class DDA(Solver):
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
-        apart = own & {features.SUB_BLOCKS, features.BASE_MOTION}
-        if features.UNILATERAL in own and apart:
-            return f"it does not handle {', '.join(sorted(apart))} together with {features.UNILATERAL}"
+        if {features.UNILATERAL, features.BASE_MOTION} <= own:
+            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+        if features.SUB_BLOCKS in own and (rule := own & features.RULES):
+            return f"it does not handle {min(rule)} together with {features.SUB_BLOCKS}"
         return None
 
     def build(self, scene: Scene, full: bool) -> Prepared:
@@ -249,7 +274,7 @@ class DDA(Solver):
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
         if features.UNILATERAL in features.of(scene):
-            return OpeningBlock(scene, full)
+            return OpeningBlock(scene, full) if scene.block.subdivide is None else OpeningSubBlocks(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
 
