@@ -165,9 +165,7 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
         raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
     if options.rule == CONSERVING and len((form := model.form()).B) > form.contacts:
-        raise ValueError(
-            f"rule: {CONSERVING} contact is frictionless: shear must be 0 where the base can slide, got {law}"
-        )
+        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
     check_scheme(law, scheme)
 
 
