@@ -14,6 +14,7 @@ from dda.model.polygon import Section
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.response import response
 from dda.one_block.solution import Result, solve
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
@@ -24,6 +25,7 @@ from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
 from dda.system.opening import OpeningSystem, opening_subdivided
 from dda.system.opening_solution import OpeningResult, solve_opening_system
+from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
@@ -61,6 +63,7 @@ __all__ = [
     "modes",
     "one_step_operator",
     "opening_subdivided",
+    "response",
     "shared_edges",
     "solve",
     "solve_opening_system",
@@ -72,5 +75,6 @@ __all__ = [
     "static_system",
     "subdivided",
     "system_modes",
+    "system_response",
     "textbook_applicable",
 ]

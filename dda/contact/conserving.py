@@ -62,7 +62,7 @@ def _one(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float
         stiffness = p * share * (2 - share) / 2
         return -u, p * u * share / 2, stiffness / (1 + C * stiffness)
     N = -(w_f + w0) / (C + 2 / p)
-    if 2 * N >= -p * w0:
+    if -p * w0 <= 2 * N:
         return -2 * N / p - w0, N, 1 / (C + 2 / p)
     rise = w_f - w0
     root = math.sqrt(rise * rise + 2 * C * p * w0 * w0)

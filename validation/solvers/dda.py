@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -102,6 +104,15 @@ class OneBlock(Prepared):
 
         return vars(dda.diagnostics(self.model, self.scheme))
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, mode by mode."""
+        import dda
+
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
+        with naming(self.scene):
+            return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+
 
 class SubBlocks(OneBlock):
     """A block cut into glued sub-blocks."""
@@ -147,6 +158,15 @@ class SubBlocks(OneBlock):
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: diagnostics are those of one whole block."""
         raise NotReported("dda reports diagnostics of a whole block only")
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the system."""
+        import dda
+
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
+        with naming(self.scene):
+            return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
@@ -248,8 +268,11 @@ class DDA(Solver):
 
     name = "dda"
     handles = (
-        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS | features.RULES
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN})
+        | features.LOADS
+        | features.RULES
     )
+    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -258,7 +281,7 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS)
+        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
@@ -273,6 +296,10 @@ class DDA(Solver):
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.blocks import BlockColumn
+
+            return BlockColumn(scene, scheme_of(scene))
         if features.UNILATERAL in features.of(scene):
             return OpeningBlock(scene, full) if scene.block.subdivide is None else OpeningSubBlocks(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
@@ -289,6 +316,10 @@ class Printed(OneBlock):
         with naming(self.scene):
             found = dda.solve_textbook(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns)
             return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: the printed recursion is no M D'' + K D = F where mu is not zero."""
+        raise NotReported("dda-textbook reports no frequency response: the printed recursion is stepped only")
 
 
 class Textbook(DDA):

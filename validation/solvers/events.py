@@ -121,8 +121,8 @@ class Motion(Prepared):
     def spans(self, corner: str) -> list[tuple[float, float | None]]:
         """Return when each contact of a corner begins and ends [s]; None where it goes on."""
         own = [one for one in self.found or () if one.corner == corner]
-        ends = [*own[1:], None]
-        return [(a.time, None if b is None else b.time) for a, b in zip(own, ends, strict=True) if a.kind == "closes"]
+        ends = [*(one.time for one in own[1:]), None]
+        return [(one.time, end) for one, end in zip(own, ends, strict=False) if one.kind == "closes"]
 
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
