@@ -138,7 +138,10 @@ class SystemStepping:
         self.outcome, self.factorisations = COMPLETED, 0
         self.lengths: dict[float, Length] = {}
         self.observers = opening.equations.rows(columns)[0]
-        self.pressed = np.array([[name == "contact_pressure"] for name in columns]) / opening.system.base_length
+        self.pressed = (
+            np.array([name == "contact_pressure" for name in columns], dtype=float)[:, None]
+            / opening.system.base_length
+        )
         self.ledger = SystemLedger(opening, scheme.step) if options.energies else None
 
     def run(self, steps: int) -> Iterator[Row]:

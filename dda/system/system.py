@@ -190,7 +190,8 @@ class Equations:
         nothing, none = np.zeros(len(self.F)), np.zeros(len(self.pressure))
         by_D = [self.observers.get(name, nothing) for name in columns]
         by_force = [self.pressure if name == "contact_pressure" else none for name in columns]
-        return np.array(by_D).reshape(len(columns), -1), np.array(by_force).reshape(len(columns), -1)
+        shape = len(columns), len(self.F)
+        return np.array(by_D).reshape(shape), np.array(by_force).reshape(len(columns), len(self.pressure))
 
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
