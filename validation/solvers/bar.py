@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from validation.runs.contact import ContactRecord
-from validation.runs.history import History
+from validation.runs.history import Array, Complex, History
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
@@ -65,6 +65,13 @@ class NewmarkBar(Prepared):
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: the bar has no matrix and modes without end."""
         raise NotReported("bar: the exact bar has no matrix and no largest frequency")
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space."""
+        from fem_reference.exact.vibration import response
+
+        with naming(self.scene):
+            return response(self.bar, self.scheme, frequencies, BAR_COLUMNS, exact)
 
 
 class OpeningBar(Prepared):
@@ -155,10 +162,15 @@ class ContinuousBar(NewmarkBar):
         """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
         step = self.scene.time.step
         half_rate = -math.log(self.scene.time.discount) / step / 2
-        return tuple(Mode(m.frequency, m.share, _sampled(m.frequency, half_rate, step)) for m in super().modes())
+        every = super().modes()
+        return tuple(Mode(m.frequency, m.share, _factors(m.frequency, half_rate, step), None, True) for m in every)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time."""
+        return super().response(frequencies, exact=True)
 
 
-def _sampled(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
+def _factors(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
     """Return the factors by which a damped oscillation changes in a step."""
     root = cmath.sqrt(half_rate**2 - w**2)
     return cmath.exp((root - half_rate) * step), cmath.exp((-root - half_rate) * step)

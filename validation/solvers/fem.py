@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 
 from validation.errors import InputError
 from validation.runs.contact import LOST, STORED, ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -145,6 +147,15 @@ class Mesh(Prepared):
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the mesh."""
+        from fem_reference.history.response import response
+
+        check_stable(self.scene, self.model)
+        columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
+        with naming(self.scene):
+            return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
+
 
 # J, in the order of `STORED` and `LOST`
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
@@ -213,9 +224,9 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
-    sections: tuple[str, ...] = MESH_SECTIONS
-    unread = OF_SUB_BLOCKS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.COLUMN}) | features.LOADS
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "column", "input")
+    unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
     role, rank = Role.REFERENCE, 2.0
@@ -226,7 +237,7 @@ class FiniteElements(Solver):
         import fem_reference
         from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
-        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS)))
+        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
@@ -236,4 +247,8 @@ class FiniteElements(Solver):
         """Mesh the block, on locked springs or on a base that opens."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.elements import LineColumn
+
+            return LineColumn(scene, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)
