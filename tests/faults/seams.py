@@ -20,8 +20,10 @@ from dda.one_block import gap_form, solution
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
+from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, block_events
 from fem_reference.events import restitution as map_of_impacts
+from fem_reference.exact import opening_bar
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -110,6 +112,7 @@ FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
 FEM_COLUMN = Seam(fem_model, fem_model.column)
 FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
 FEM_FACTOR = Seam(fem_diagnostics.Work, fem_diagnostics.Work.factor)
+FEM_OPENED_COLUMN = Seam(fem_points, fem_points.column)
 FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 
 # The bar
@@ -120,6 +123,7 @@ BAR_TRACE = Seam(modal, modal.trace)
 BAR_SPECTRUM = Seam(modal, modal.spectrum)
 BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
 BAR_PAIR = Seam(modal, modal._pair)
+BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
