@@ -11,7 +11,7 @@ from validation.report.chapters.opened import impacts as impacts_chapter
 from validation.report.chapters.opened import rebound as rebound_chapter
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.studies import impacts, rebound
+from validation.studies.contact import impacts, rebound
 
 SWEEPS = {
     "rebound-constant": {"contact.stiffness": [2.16e10], "contact.gap": [0.0025]},

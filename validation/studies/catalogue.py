@@ -25,8 +25,8 @@ STUDIES = {
     "stability": "validation.studies.stability:full",
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
     "opening": "validation.studies.opening:OPENING",
-    "rebound": "validation.studies.rebound:STUDY",
-    "impacts": "validation.studies.impacts:STUDY",
+    "rebound": "validation.studies.contact.rebound:STUDY",
+    "impacts": "validation.studies.contact.impacts:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
