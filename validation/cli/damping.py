@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -116,14 +117,20 @@ def _print_damping(found: Damping) -> None:
         (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), "", "", "", "")
         for name, values in found.references.items()
     ]
-    _print_table([heads, *rows])
+    print_table([heads, *rows])
+    if found.alias is not None:
+        first = found.references["bar"]["frequency"] or 0.0
+        typer.echo(
+            f"\nalias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
+            f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
+        )
 
 
 def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
     typer.echo(found.sentence)
     for solution, error in zip(found.solutions, errors, strict=True):
         typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
-        _print_table(_facts(solution, error))
+        print_table(_facts(solution, error))
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -151,7 +158,8 @@ def _percent(value: float | None) -> str:
     return "-" if value is None else f"{100 * value + 0.0:.4g}"
 
 
-def _print_table(rows: list[tuple[str, ...]]) -> None:
+def print_table(rows: list[tuple[str, ...]]) -> None:
+    """Print rows in aligned columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
         typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

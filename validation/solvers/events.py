@@ -243,7 +243,7 @@ class BlockEvents(Solver):
     """The block of one strain on springs that carry no tension, exact in time: what `dda` tends to as dt -> 0."""
 
     name = "block-events"
-    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT}) | features.RULES
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
@@ -269,7 +269,7 @@ class BarEvents(BlockEvents):
     """The bar on a spring that carries no tension, exact in space and time: what `fem` tends to."""
 
     name = "bar-events"
-    handles = frozenset({features.UNILATERAL, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
 

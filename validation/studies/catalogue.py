@@ -27,6 +27,7 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
+    "waves": "validation.studies.waves.study:study",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")
