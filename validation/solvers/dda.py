@@ -226,7 +226,7 @@ class OpeningBlock(Prepared):
         return ContactRecord(
             time=r.time,
             force=force,
-            impulse=opened.summed(force, scheme.step, 1.0 if self.options.rule != "newmark" else scheme.delta),
+            impulse=self._impulse(force, r.velocity),
             penetration=np.maximum(0.0, -gaps).max(axis=0),
             gap=np.maximum(0.0, gaps).max(axis=0),
             open_share=1 - np.mean([r.closed_m, r.closed_n], axis=0),
@@ -239,6 +239,13 @@ class OpeningBlock(Prepared):
             solves=r.step_solves.astype(float),
             cuts=r.step_cuts.astype(float),
         )
+
+    def _impulse(self, force: NDArray[np.float64], velocity: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the contact's impulse, from the forces, or from the momentum where another force acts in a step."""
+        rule, scheme = self.options.rule, self.scheme
+        if rule == "energy-conserving":
+            return opened.taken(self.scene, velocity)
+        return opened.summed(force, scheme.step, scheme.delta if rule == "newmark" else 1.0)
 
 
 class DDA(Solver):

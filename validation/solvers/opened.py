@@ -44,6 +44,13 @@ def summed(force: Array, step: float, late: float) -> Array:
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
 
 
+def taken(scene: Scene, velocity: Array) -> Array:
+    """Return the contact's impulse from the momentum, sum(m (V_(n+1) - gg V_n) + F dt) with F the loads [N s]."""
+    before = scene.time.discount * np.concatenate(([scene.block.velocity], velocity[:-1]))
+    steps = mass(scene) * (velocity - before) + pushing(scene) * scene.time.step
+    return np.asarray(np.cumsum(steps), dtype=np.float64)
+
+
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
     """Return the contacts of all corners between steps, in the order of their beginning."""
     found = [one for gap in gaps for one in rebounds_of_steps(gap, step)]
