@@ -55,7 +55,13 @@ class Rayleigh:
         _check_points(first, second)
         (w1, x1), (w2, x2) = ((2 * math.pi * f, xi) for f, xi in (first, second))
         apart = (w2 - w1) * (w2 + w1)
-        return cls(2 * w1 * w2 * (w2 * x1 - w1 * x2) / apart, 2 * (w2 * x2 - w1 * x1) / apart)
+        mass, stiffness = _difference(w2 * x1, w1 * x2), _difference(w2 * x2, w1 * x1)
+        return cls(2 * w1 * w2 * mass / apart, 2 * stiffness / apart)
+
+
+def _difference(a: float, b: float) -> float:
+    """Return a - b, exactly zero where only rounding is left of it."""
+    return 0.0 if abs(a - b) <= 1e-14 * max(abs(a), abs(b)) else a - b
 
 
 def scheme_of(values: Mapping[str, float]) -> Stepping:
