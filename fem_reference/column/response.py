@@ -56,11 +56,14 @@ def line_response(
     mesh = line_mesh(ground, elements, degree)
     model = Model.of(mesh, ground.impedance)
     omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
-    squared, rate = squares(omega / (2 * np.pi), scheme, exact), 1j * omega if exact else rates(scheme, omega)
-    still = np.zeros_like(rate)
-    parts = (
-        np.array([still + 1, 1j * omega, -(omega**2) + still, still]) if base else np.array([still] * 3 + [still + 1])
-    )
+    squared, rate = squares(omega / (2 * np.pi), scheme, exact), rates(scheme, omega)
+    if exact:
+        rate[:] = 1j * omega
+    parts = np.zeros((4, len(omega)), complex)
+    if base:
+        parts[:3] = np.ones_like(omega), 1j * omega, -(omega**2)
+    else:
+        parts[3] = 1.0
     D = np.zeros((mesh.size, len(omega)), complex)
     D[model.free] = _solved(model, squared, rate, model.loads() @ parts)
     V, A = rate * D, -squared * D
