@@ -65,7 +65,7 @@ def line_response(
     else:
         parts[3] = 1.0
     D = np.zeros((mesh.size, len(omega)), complex)
-    D[model.free] = _solved(model, squared, rate, model.loads() @ parts)
+    D[model.free] = _solved(model, squared, rate, np.asarray(model.loads() @ parts, complex))
     V, A = rate * D, -squared * D
     if ground.impedance is None:
         D[model.base], A[model.base] = parts[0], parts[2]
