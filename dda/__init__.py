@@ -18,7 +18,8 @@ from dda.one_block.response import response
 from dda.one_block.solution import Result, solve
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, UnilateralResult, solve_unilateral
+from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges

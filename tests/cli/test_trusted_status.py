@@ -64,6 +64,27 @@ def test_a_scene_without_gates_that_ran_well_says_that_nothing_was_judged(scene_
     assert done.returncode == 0 and "small: has no gates: nothing was judged" in done.stdout
 
 
+def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(
+    scene_file: Path, tmp_path: Path
+) -> None:
+    text = SCENE + RUN.format('["dda", "bar"]')
+    scene_file.write_text(text)
+    shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
+    left = shown.partition("nothing was judged\n")[2]
+    row = next(line.split() for line in left.splitlines() if "dda" in line)
+    assert row[:3] == ["small", "dda", "bar"] and all(0 < float(value) < 100 for value in row[3:])
+    gate = "\n".join(line.strip() for line in left.splitlines() if line.startswith("  "))
+    assert f"# {float(row[3]) / 100:.3g} here" in gate
+    scene_file.write_text(text + gate.replace('"..."', '"a reason"'))
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 0 and "1 PASS, 0 FAIL" in done.stdout and "[[gate]]" not in done.stdout
+
+
+def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE + RUN.format('["dda"]'))
+    assert "next: name two solvers or more" in typed("run", scene_file, "--results", tmp_path / "r").stdout
+
+
 def test_gates_of_which_none_was_judged_are_no_green(scene_file: Path, tmp_path: Path) -> None:
     text = gated("[-1.0, 1.0]", '["dda-textbook"]', '["dda", "dda-textbook"]')
     scene_file.write_text(text.replace("steps = 50", "steps = 50\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -117,6 +118,12 @@ def _print_damping(found: Damping) -> None:
         for name, values in found.references.items()
     ]
     print_table([heads, *rows])
+    if found.alias is not None:
+        first = found.references["bar"]["frequency"] or 0.0
+        typer.echo(
+            f"\nalias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
+            f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
+        )
 
 
 def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:

@@ -102,8 +102,8 @@ def run(
     from validation.engine.cluster import executor
     from validation.engine.run import run_study
     from validation.runs.results import Results
-    from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.scenes.scene import parse_assignment, scene_names
+    from validation.studies.catalogue import STUDIES, resolve
 
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
@@ -129,6 +129,9 @@ def run(
             tables.print_changes(since)
         for sentence in (*measured.unjudged(runs), *sentences):
             typer.echo(sentence)
+        for run in runs:
+            if not run.verdicts and run.study.name not in STUDIES:
+                tables.print_differences(kept, run.study.name, run.study.name not in scene_names())
     raise typer.Exit(status)
 
 

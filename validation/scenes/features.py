@@ -25,6 +25,7 @@ class Feature:
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
 UNILATERAL, DEAD_BAND = "unilateral contact", "dead bands"
 COLUMN = "column"
+IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
@@ -33,8 +34,11 @@ FEATURES = (
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
+    Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
+    Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
 )
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
+RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
 
 

@@ -83,6 +83,16 @@ class Scene(SceneTables):
         return self
 
     @model_validator(mode="after")
+    def _check_rule(self) -> Self:
+        given = self.time.alpha, self.time.delta
+        if self.column is None and self.contact.rule != "newmark" and given != (0.25, 0.5):
+            raise ValueError(
+                f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: time.alpha must be "
+                f"0.25 and time.delta 0.5, got {given[0]:g} and {given[1]:g}"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _check_files(self) -> Self:
         for field, name in self.files():
             try:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
@@ -187,7 +188,8 @@ class OpeningBlock(Prepared):
             law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
             loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
             self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
-            self.options = dda.UnilateralOptions(solve_limit=c.solve_limit, cut=c.cut, full=full)
+            self.scheme = scheme_of(scene)
+            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, full=full)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -197,11 +199,15 @@ class OpeningBlock(Prepared):
         check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
         asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = dda.solve_unilateral(self.model, scheme_of(self.scene), self.scene.time.steps, asked, self.options)
+            r = dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, asked, self.options)
         self.result = r
-        contact = {name: getattr(r, name) for name in (*GAPS, *FORCES)}
-        counts = {"solves": r.step_solves.astype(float), "cuts": r.step_cuts.astype(float)}
-        return opened_run(self.scene, r, {**r.columns, **contact, **counts})
+        return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
+
+    def _contact(self, r: dda.UnilateralResult) -> dict[str, NDArray[np.float64]]:
+        """Return the asked columns of the contacts, which are made when they are asked for."""
+        counts = {"solves": "step_solves", "cuts": "step_cuts"}
+        names = [name for name in self.scene.run.columns if name in (*GAPS, *FORCES, *COUNTS)]
+        return {name: np.asarray(getattr(r, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
@@ -240,7 +246,9 @@ class DDA(Solver):
 
     name = "dda"
     handles = (
-        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN}) | features.LOADS
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN})
+        | features.LOADS
+        | features.RULES
     )
     sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)

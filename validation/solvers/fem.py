@@ -89,6 +89,13 @@ def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
 
 
+def moving_base(scene: Scene) -> str | None:
+    """Return None, or that a base which carries no tension may not move."""
+    if {features.UNILATERAL, features.BASE_MOTION} <= set(features.of(scene)):
+        return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+    return None
+
+
 class Mesh(Prepared):
     """A block meshed and assembled once."""
 
@@ -222,12 +229,7 @@ class FiniteElements(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        if features.UNILATERAL not in features.of(scene):
-            return None
-        if features.BASE_MOTION in features.of(scene):
-            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-        spread = scene.fem.foundation == "distributed"
-        return None if spread else f"unilateral contact needs a distributed foundation, not {scene.fem.foundation!r}"
+        return moving_base(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""

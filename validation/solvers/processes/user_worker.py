@@ -112,7 +112,7 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     scene = parse_scene(request["scene"], "scene")
     unknown = [name for name in request["features"] if name not in getattr(solver, "handles", features.FIRST)]
     if unknown:
-        return {"inapplicable": f"it does not say that it handles {', '.join(unknown)} (give it `handles`)"}
+        return {"inapplicable": f"the solver does not state that it handles {', '.join(unknown)} (give it `handles`)"}
     try:
         found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
     except NotImplementedError as error:

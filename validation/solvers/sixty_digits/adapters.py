@@ -95,6 +95,7 @@ class PreciseBar(ExactBar):
     """The bar under the Newmark scheme in sixty-digit arithmetic."""
 
     name = "bar-60"
+    handles = frozenset({features.SUB_BLOCKS})
     sources = ("validation.solvers.sixty_digits",)
     role, rank = Role.REPEAT, 9.0
     line = None
