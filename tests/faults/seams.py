@@ -14,12 +14,17 @@ import pytest
 
 import dda
 import fem_reference.exact.bar as exact_bar
+import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
+from dda.column import equations as column_equations
+from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
+from fem_reference.column import mesh as line_mesh
+from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, block_events
 from fem_reference.events import restitution as map_of_impacts
@@ -129,6 +134,19 @@ BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
 EVENTS_BAR = Seam(bar_events, bar_events.solve)
 RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
+
+# Columns
+COLUMN_INERTIA = Seam(column_equations, column_equations.inertia)
+COLUMN_STIFFNESS = Seam(column_equations, column_equations.stiffness)
+COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.effective_matrix)
+COLUMN_PREDICTORS = Seam(column_stepping, column_stepping.predictors)
+COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
+COLUMN_SPRINGS = Seam(column_equations, column_equations.opening_stiffness)
+COLUMN_RUN = Seam(column_stepping.Stepper, column_stepping.Stepper.run)
+LINE_VELOCITY = Seam(line_stepping, line_stepping.velocity_predictor)
+LINE_SPRINGS = Seam(line_mesh, line_mesh._springs)
+LINE_RUN = Seam(line_stepping.DampedStepper, line_stepping.DampedStepper.run)
+LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
 CAUSES_FURTHER = Seam(causes, causes._further)
