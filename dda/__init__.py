@@ -14,13 +14,16 @@ from dda.model.polygon import Section
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.response import response
 from dda.one_block.solution import Result, solve
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, UnilateralResult, solve_unilateral
+from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
@@ -55,6 +58,7 @@ __all__ = [
     "modal_form",
     "modes",
     "one_step_operator",
+    "response",
     "shared_edges",
     "solve",
     "solve_system",
@@ -65,5 +69,6 @@ __all__ = [
     "static_system",
     "subdivided",
     "system_modes",
+    "system_response",
     "textbook_applicable",
 ]

@@ -209,7 +209,11 @@ class Stepper:
         return own
 
     def _start(self, F: Array) -> Array:
-        return _factorised(self.M)(F) if self.scheme.start == "consistent" else np.zeros_like(F)
+        if self.scheme.start != "consistent":
+            return np.zeros_like(F)
+        if not self.system.told and 0 in self.system.openings:
+            raise ValueError("start: must be 'zero' where a spring lies between half-space and column")
+        return _factorised(self.M)(F)
 
 
 def _factorised(matrix: Bands) -> Callable[[Array], Array]:

@@ -43,7 +43,7 @@ class Contact:
     trial: Trial | None  # forces and gaps; None where no states are consistent, or more than one set may be
     closed: Flags  # closed points, shape (points,)
     solves: int  # solutions for the forces of given states [-]; a fallback counts as one
-    failure: str = ""  # why `trial` is None, in words
+    failure: str = ""  # why `trial` is None, in words: none was found, or several were
 
 
 def corrected(trial: Trial, closed: Flags) -> Flags:
@@ -70,7 +70,7 @@ def iterate(forces: Callable[[Flags], Trial], closed: Flags, limit: int) -> Cont
         if np.array_equal(following, closed) and trial.settled:
             return Contact(trial, closed, solves)
         closed = following
-    return Contact(None, closed, limit, "the open-close iteration does not converge")
+    return Contact(None, closed, limit, "no consistent contact state")
 
 
 def frictionless(C: Array, compliance: Array, free: Array, closed: Flags, limit: int) -> Contact:

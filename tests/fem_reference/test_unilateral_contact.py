@@ -118,8 +118,8 @@ def test_glued_bases_without_a_unique_set_of_states_say_so():
     assert {"", none} <= {glued(random_glued(rng, 2), 6).failure for _ in range(300)}
     # an iteration that stops at once leaves the choice to the trial of all states
     assert {"", none, several} <= {glued(random_glued(rng, 2), 1).failure for _ in range(300)}
-    many = [glued(random_glued(rng, 9), 2).failure for _ in range(20)]
-    assert "the open-close iteration does not converge" in many
+    many = [glued(random_glued(rng, 9), 2) for _ in range(20)]
+    assert (none, 2) in {(found.failure, found.solves) for found in many}
 
 
 def test_points_of_the_base_share_it_with_positive_weights():

@@ -14,9 +14,9 @@ from validation.runs.row import Row, Value
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
 
-OWN = "dda"
-SOLVERS = (OWN, "block-events", "bar-events")
 Line = tuple[str, ...]
 LINES = (  # what a line is called, its metric, and how the value is scaled and written
     ("switches", "switches.count", 1.0, ""),
@@ -35,6 +35,16 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
 LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
 
 
+def of_role(role: Role) -> str:
+    """Return the solver of a role that handles unilateral contact."""
+    return next(name for name in by_role(role) if features.UNILATERAL in get_solver(name).handles)
+
+
+def own() -> str:
+    """Return the judged solver."""
+    return of_role(Role.JUDGED)
+
+
 def scenes(scene: Scene) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
 
@@ -50,7 +60,7 @@ def scenes(scene: Scene) -> dict[str, Scene]:
         )
     plain = scene.with_values({"run.columns": ["displacement", "contact_pressure"]})
     free = plain.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else plain
-    return {name: plain if name == OWN else free for name in SOLVERS}
+    return {own(): plain, of_role(Role.LIMIT): free, of_role(Role.TRUTH): free}
 
 
 def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: float) -> dict[str, Any]:
@@ -90,7 +100,7 @@ def measured(row: Row) -> dict[str, Value]:
 
 def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
     """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
-    for name in ("block-events", OWN):
+    for name in (of_role(Role.LIMIT), own()):
         value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
         if isinstance(value, float):
             return value

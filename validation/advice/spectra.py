@@ -115,6 +115,7 @@ def single(scene: Scene) -> Scene:
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    features.refuse_column(scene, "damping")
     if not features.linear(scene):
         has = ", ".join(features.of(scene))
         raise InputError(f"{scene.name}: modes and damping ratios exist for linear scenes only, got one with {has}")

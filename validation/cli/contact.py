@@ -42,7 +42,7 @@ def contact(
         typer.echo(json.dumps(found | {"absent": absent}, indent=1, allow_nan=False))
     else:
         typer.echo("\n".join(contact_page.page(case, found, absent)))
-    return PASSED if contact_page.OWN in rows else NUMERICAL_FAILURE
+    return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
 def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
@@ -53,7 +53,7 @@ def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
     InputError
         The judged method does not take the scene.
     """
-    from validation.advice.contact_page import OWN
+    from validation.advice.contact_page import own
     from validation.engine.case import Case
     from validation.engine.measure import execute
     from validation.errors import InputError
@@ -62,7 +62,7 @@ def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
     rows, absent = {}, {}
     for name, scene in scenes.items():
         row, _ = execute(Case(scene, name), "", "contact")
-        if name == OWN and row.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+        if name == own() and row.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
             raise InputError(f"{scene.name}: {'; '.join(row.notes)}")
         if row.outcome is Outcome.COMPLETED:
             rows[name] = row

@@ -117,7 +117,7 @@ def _print_damping(found: Damping) -> None:
         (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), "", "", "", "")
         for name, values in found.references.items()
     ]
-    _print_table([heads, *rows])
+    print_table([heads, *rows])
     if found.alias is not None:
         first = found.references["bar"]["frequency"] or 0.0
         typer.echo(
@@ -130,7 +130,7 @@ def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
     typer.echo(found.sentence)
     for solution, error in zip(found.solutions, errors, strict=True):
         typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
-        _print_table(_facts(solution, error))
+        print_table(_facts(solution, error))
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -158,7 +158,8 @@ def _percent(value: float | None) -> str:
     return "-" if value is None else f"{100 * value + 0.0:.4g}"
 
 
-def _print_table(rows: list[tuple[str, ...]]) -> None:
+def print_table(rows: list[tuple[str, ...]]) -> None:
+    """Print rows in aligned columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
         typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.options import BaselineOption, RanksOption, SummaryOption
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -26,9 +24,12 @@ from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
     RESULTS,
+    BaselineOption,
     FullOption,
+    RanksOption,
     ResultsOption,
     SetOption,
+    SummaryOption,
     _progress,
     app,
     one_case,

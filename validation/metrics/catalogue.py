@@ -107,6 +107,9 @@ def _of_switches() -> Iterator[Metric]:
     for part, opens in (("first_opening", True), ("first_closing", False)):
         says = f"time of the {part.replace('_', ' ')} after t = 0"
         yield Metric(f"switches.{part}", "s", says, asked, partial(contact.first, opens=opens), "switches")
+    for part, opens in (("second_opening", True), ("second_closing", False)):
+        says = f"time of the {part.replace('_', ' ')} after t = 0, corners that switch together as one"
+        yield Metric(f"switches.{part}", "s", says, asked, partial(contact.second, opens=opens), "switches")
     for name, unit, says, function in contact.parts():
         seen = partial(contact.reported, part=function)
         yield Metric(name, unit, says, frozenset({CONTACT}), seen, "switches")

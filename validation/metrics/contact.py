@@ -29,6 +29,14 @@ def first(m: Measurable, opens: bool) -> Value:
     return next((switch.time for switch in m.switches if switch.opens is opens), UNDEFINED)
 
 
+def second(m: Measurable, opens: bool) -> Value:
+    """Time at which a corner opens, or closes, for the second time [s]; corners that switch together count as one."""
+    if m.switches is None:
+        return NOT_REPORTED
+    times = sorted({switch.time for switch in m.switches if switch.opens is opens})
+    return times[1] if len(times) > 1 else UNDEFINED
+
+
 def reported(m: Measurable, part: Part) -> Value:
     """Return a part of what the contact did, not reported where there is no record of it."""
     return NOT_REPORTED if m.contact is None or not len(m.contact.time) else part(m.contact)
@@ -75,7 +83,7 @@ def cuts(record: ContactRecord) -> Value:
 
 
 def restitution(record: ContactRecord) -> Value:
-    """Greatest speed of the centre of mass upwards after the first landing over its speed at the landing."""
+    """Greatest speed of the centre of mass upwards in flight after the first landing over its speed before it."""
     if record.velocity is None:
         return NOT_REPORTED
     before, after = landing(record)
@@ -85,7 +93,7 @@ def restitution(record: ContactRecord) -> Value:
 
 
 def landing(record: ContactRecord) -> tuple[float, Array]:
-    """Return the velocity before the first landing, zero where there is none, and the velocities after it [m/s].
+    """Return the velocity before the first landing, zero where there is none, and those in flight after it [m/s].
 
     The first landing is the first step with a contact force.
     """
@@ -94,7 +102,7 @@ def landing(record: ContactRecord) -> tuple[float, Array]:
         return 0.0, np.zeros(0)
     first = int(np.argmax(pressed))
     before = record.start_velocity if first == 0 else float(record.velocity[first - 1])
-    return before, record.velocity[first:]
+    return before, record.velocity[first:][~pressed[first:]]
 
 
 def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float]) -> Value:

@@ -136,6 +136,7 @@ class ContactSection(Section):
     law: Literal["locked", "unilateral"] = "locked"
     stiffness: Positive  # p, N/m per corner spring
     shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
+    rule: Literal["newmark", "implicit", "energy-conserving"] = "newmark"  # how a step takes the contact force
     gap: NonNegative = 0.0  # m, between block and springs at t = 0
     band: tuple[NonNegative, NonNegative] = (0.0, 0.0)  # m: closes below -band[0], opens above band[1]
     solve_limit: Count = 6  # solves of the open-close iteration before every contact state is tried
@@ -143,9 +144,11 @@ class ContactSection(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        alone = sorted(self.model_fields_set & {"gap", "band", "solve_limit", "cut"})
+        alone = sorted(self.model_fields_set & {"rule", "gap", "band", "solve_limit", "cut"})
         if self.law == "locked" and alone:
             raise ValueError(f'{alone[0]} goes with law = "unilateral" only, got it with a locked contact')
+        if self.rule == "energy-conserving" and any(self.band):
+            raise ValueError(f'band goes with rule = "newmark" or "implicit", got {list(self.band)} with {self.rule!r}')
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self

@@ -121,8 +121,8 @@ class Motion(Prepared):
     def spans(self, corner: str) -> list[tuple[float, float | None]]:
         """Return when each contact of a corner begins and ends [s]; None where it goes on."""
         own = [one for one in self.found or () if one.corner == corner]
-        ends = [*own[1:], None]
-        return [(a.time, None if b is None else b.time) for a, b in zip(own, ends, strict=True) if a.kind == "closes"]
+        ends = [*(one.time for one in own[1:]), None]
+        return [(one.time, end) for one, end in zip(own, ends, strict=False) if one.kind == "closes"]
 
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
@@ -243,7 +243,7 @@ class BlockEvents(Solver):
     """The block of one strain on springs that carry no tension, exact in time: what `dda` tends to as dt -> 0."""
 
     name = "block-events"
-    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT}) | features.RULES
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
@@ -269,7 +269,7 @@ class BarEvents(BlockEvents):
     """The bar on a spring that carries no tension, exact in space and time: what `fem` tends to."""
 
     name = "bar-events"
-    handles = frozenset({features.UNILATERAL, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
 

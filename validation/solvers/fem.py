@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 
 from validation.errors import InputError
 from validation.runs.contact import STORED, ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
@@ -87,6 +89,13 @@ def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
 
 
+def moving_base(scene: Scene) -> str | None:
+    """Return None, or that a base which carries no tension may not move."""
+    if {features.UNILATERAL, features.BASE_MOTION} <= set(features.of(scene)):
+        return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+    return None
+
+
 class Mesh(Prepared):
     """A block meshed and assembled once."""
 
@@ -136,6 +145,15 @@ class Mesh(Prepared):
         from fem_reference.scheme.diagnostics import diagnostics
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the mesh."""
+        from fem_reference.history.response import response
+
+        check_stable(self.scene, self.model)
+        columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
+        with naming(self.scene):
+            return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
 
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")  # J, in the order of `STORED`
@@ -194,9 +212,9 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
-    sections: tuple[str, ...] = MESH_SECTIONS
-    unread = OF_SUB_BLOCKS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.COLUMN}) | features.LOADS
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "column", "input")
+    unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
     role, rank = Role.REFERENCE, 2.0
@@ -207,19 +225,18 @@ class FiniteElements(Solver):
         import fem_reference
         from fem_reference.history.unilateral import UNILATERAL_COLUMNS
 
-        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS)))
+        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        if features.UNILATERAL not in features.of(scene):
-            return None
-        if features.BASE_MOTION in features.of(scene):
-            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-        spread = scene.fem.foundation == "distributed"
-        return None if spread else f"unilateral contact needs a distributed foundation, not {scene.fem.foundation!r}"
+        return moving_base(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.elements import LineColumn
+
+            return LineColumn(scene, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

@@ -24,7 +24,10 @@ GIGABYTE = 1e9
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
+    if scene.column is not None:
+        model = _column(scene, solver)
+    else:
+        model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
 
 
@@ -40,6 +43,13 @@ def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
     saves = solver.saves and scene.fem.cells == "quadrilaterals"
     unknowns = 2 * along if saves and uniform and scene.load.centred else 2 * along * along
     return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
+
+
+def _column(scene: Scene, solver: Solver) -> tuple[float, str]:
+    """Bytes of the few diagonals of a column's matrices."""
+    blocks = float(sum(layer.blocks for layer in scene.column.layer)) if scene.column else 0.0
+    each = scene.fem.degree * scene.fem.per_side if solver.meshed else 2
+    return UNKNOWN * blocks * each, "column.layer"
 
 
 def _blocks(scene: Scene) -> tuple[float, str]:

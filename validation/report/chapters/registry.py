@@ -13,6 +13,7 @@ CHAPTERS: dict[str, str] = {
     "subblocks": "validation.report.chapters.subblocks:chapter",
     "stability": "validation.report.chapters.stability:stability_chapter",
     "stability-small": "validation.report.chapters.stability:stability_chapter",
+    "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
     "stiff-contact": "validation.report.chapters.stiff_contact:contact_chapter",
 }

@@ -108,6 +108,8 @@ def _applies(study: str, gate: Gate) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study):
         return False
     case = cases(study)[gate.cases[0]]
+    if case.scene.column is not None:
+        return False
     return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
 
 

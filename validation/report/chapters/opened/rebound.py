@@ -115,11 +115,8 @@ def conclusion(maps: Sequence[Group]) -> str:
         solves = [value for case in group.cases if (value := case.number("dda", "contact.most_solves")) is not None]
         if rises and solves:
             words = WORDS.get(scheme(group), group.title)
-            gain = (
-                "gains no energy"
-                if max(rises) < 1e-9
-                else f"multiplies the energy given by up to {short(max(rises), 3)}"
-            )
+            most = max(rises)
+            gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
     said = "; ".join(parts)
     return (
@@ -197,7 +194,7 @@ def _number(value: float) -> str:
     """Return a number that fits into a cell."""
     if abs(value) < 1e-9:
         return "0"
-    return "<0.001" if abs(value) < 1e-3 else short(value, 2) if value < 100 else f"{value:.0f}"
+    return "<0.001" if abs(value) < 1e-3 else short(value, 3) if value < 100 else f"{value:.0f}"
 
 
 def budget_table(maps: Sequence[Group]) -> Table:
