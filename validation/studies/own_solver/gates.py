@@ -15,7 +15,7 @@ from validation.engine.finished import Derived
 from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
-from validation.metrics.catalogue import CATALOGUE, MODES
+from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import about, near
 from validation.studies.catalogue import get_study, judged_studies
@@ -31,6 +31,7 @@ GROUPS = {  # in the order in which a person looks: a fault in one shows in thos
     "digits": "displacement, step by step",
     "pressure": "contact pressure: its formula, its time",
 }
+REPORTABLE = frozenset({HISTORY, STATIC, MODES, REFERENCE})  # what a user's solver, or a reference, can report
 FIRST = 1e-3  # relative: what a file of few digits may lose in the first row
 SHOWN = ("displacement.static", "mode1.frequency", "mode1.damping", "mode1.measured_damping")  # by a history
 
@@ -104,8 +105,11 @@ def recipes(study: str) -> Mapping[tuple[str, str], Derived]:
 
 
 def _applies(study: str, gate: Gate) -> bool:
-    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history."""
-    if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study):
+    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history.
+
+    What a user's solver has no way to report, such as the solves of a step, is not asked of it.
+    """
+    if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
         return False
     case = cases(study)[gate.cases[0]]
     if case.scene.column is not None:

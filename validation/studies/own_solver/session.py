@@ -86,7 +86,7 @@ class Session:
             why = f"not tried, since {PATIENCE} scenes reached their time limit"
             return Verdict(judged, None, Status.NOT_RUN, why)
         if row.outcome is not Outcome.COMPLETED:
-            why = "; ".join(row.notes) or row.outcome.sentence
+            why = row.notes[-1] if row.notes else row.outcome.sentence  # what came before is said of a history
             absent = row.outcome in (Outcome.NOT_APPLICABLE, Outcome.NOT_RUN)
             return Verdict(judged, None, Status.NOT_RUN if absent else Status.FAIL, why)
         return self._judged(study, gate, judged, case, row)
