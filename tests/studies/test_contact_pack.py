@@ -52,6 +52,11 @@ def test_the_numbers_are_those_of_the_independent_program(numbers: Numbers) -> N
                     assert abs(value - expected) <= uncertainty + opening.half_unit(expected), (name, motion, n)
 
 
+def test_every_number_states_an_uncertainty_of_its_size(numbers: Numbers) -> None:
+    assert all(u >= 1e-13 * abs(value) for value, u in numbers.values())
+    assert all(u <= 1e-11 * abs(value) for (_, _, what), (value, u) in numbers.items() if "pressure" not in what)
+
+
 def test_impacts_state_their_restitution(numbers: Numbers) -> None:
     kept = {key[1]: value for key, (value, _) in numbers.items() if key[2] == "restitution" and "1e+09" in key[0]}
     assert kept == pytest.approx({"block-events": 0.930732420604, "bar-events": 0.975858485361}, abs=1e-11)
