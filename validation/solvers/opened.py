@@ -44,11 +44,11 @@ def summed(force: Array, step: float, late: float) -> Array:
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
 
 
-def taken(scene: Scene, velocity: Array) -> Array:
-    """Return the contact's impulse from the momentum, sum(m (V_(n+1) - gg V_n) + F dt) with F the loads [N s]."""
-    before = scene.time.discount * np.concatenate(([scene.block.velocity], velocity[:-1]))
-    steps = mass(scene) * (velocity - before) + pushing(scene) * scene.time.step
-    return np.asarray(np.cumsum(steps), dtype=np.float64)
+def balanced(scene: Scene, velocity: Array) -> Array:
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
+    before = np.concatenate(([scene.block.velocity], velocity[:-1]))
+    gained = mass(scene) * np.cumsum(velocity - scene.time.discount * before)
+    return np.asarray(gained + pushing(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64)
 
 
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:

@@ -15,6 +15,7 @@ CHAPTERS: dict[str, str] = {
     "stability-small": "validation.report.chapters.stability:stability_chapter",
     "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
+    "waves": "validation.report.chapters.waves:chapter",
     "stiff-contact": "validation.report.chapters.stiff_contact:contact_chapter",
 }
 DEFAULT_CHAPTER = "validation.report.chapters.scene:scene_chapter"
