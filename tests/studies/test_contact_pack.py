@@ -15,6 +15,7 @@ from validation.studies import opening
 from validation.studies.contact.pack import write_contact_pack
 from validation.studies.pack import slug
 
+pytestmark = pytest.mark.long  # the motions themselves are gates
 Numbers = dict[tuple[str, str, str], tuple[float, float]]
 
 
