@@ -26,7 +26,7 @@ from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
 from validation.studies.own_solver import evidence, gates
 from validation.studies.own_solver.block import block, first, outside
-from validation.studies.own_solver.history import FREQUENCY, PENCIL, natural_frequency, rest, root
+from validation.studies.own_solver.history import PENCIL, natural_frequency, rest, root
 from validation.studies.own_solver.session import Session, Told
 
 ROOT = Path(__file__).parents[2]
@@ -135,7 +135,7 @@ def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slo
 
 AUTHORS = {  # of tests/oracles/plain_dda.py: what the block says once
     "raises_in_one_scene": r"^raised: ZeroDivisionError: no step left \(plain_dda\.py:\d+, in raise_it\)\n  \d+ gates",
-    "not_a_number": r"^not a number: displacement at step 4\n  \d+ gates: .* scenes$",
+    "not_a_number": r"^not a number: displacement at step 4\n  \d+ gates: ",
     "short": r"^wrong shape: displacement has shape \(\d+,\), not \(\d+,\)\n",
     "millimetres": r"^wrong units: displacement is 1000 times what is expected in SI, mm\?\n",
     "prints": r"^right:  statics, frequency, damping, start, digits, pressure\n",
@@ -186,10 +186,11 @@ def test_the_strongest_root_is_known_to_the_error_that_is_stated(
     values = {"time.step": step, "time.alpha": alpha, "time.delta": delta, "time.steps": steps}
     scene = load_scene("figure-8").with_values(values)
     found, wanted = root(scene, swinging(scene, steps, noise)), closed_forms.dda_frequency(scene)
-    assert found is not None and found.error <= 100 * noise + PENCIL
-    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + PENCIL)
+    assert found is not None and found.error <= 20 * noise + 1e-9
+    least = 1e-8 if noise else PENCIL
+    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + least)
     w = natural_frequency(scene, found.frequency, found.ratio)
-    assert w == pytest.approx(wanted, rel=found.error + FREQUENCY)
+    assert w == pytest.approx(wanted, rel=2 * found.error + least)
 
 
 def test_what_is_no_sum_of_two_modes_shows_none() -> None:
