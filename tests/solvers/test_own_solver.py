@@ -9,6 +9,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -334,3 +335,18 @@ def test_the_scene_that_tells_most_is_short_and_holds_the_fault() -> None:
 def test_the_page_states_the_grace_of_exit_hooks_and_the_allowance_of_a_step() -> None:
     assert f"exit hooks have {GRACE:g} s after" in page()
     assert f"and {1000 * ALLOWANCE:g} ms for each of its steps" in page()
+
+
+@pytest.mark.parametrize(
+    ("causes", "said"), [(["start"], "causes: start"), (["unexplained"], "not explained: "), ([], "a sentence")]
+)
+def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = gates.starts()[0]
+    failed = of(scene=scene.name, study="own-solver", status="FAIL", value=2.0)
+    x = np.ones(scene.time.steps)
+    monkeypatch.setattr(Results, "history", lambda self, key: History(x, {"displacement": x}))
+    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
+    lines = block([failed])
+    assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-1].startswith(f"  {said}")
+    monkeypatch.setattr(evidence, "compare", lambda *given: 1 / 0)
+    assert block([failed])[-1] == "  nothing can be said: division by zero"

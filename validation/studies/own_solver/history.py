@@ -99,7 +99,8 @@ def root(scene: Scene, history: History) -> Root | None:
 
 def _bound(z: complex, samples: int) -> float:
     """Error of ln z over that of the samples, relative to the amplitude: N^(-3/2) of the N samples that swing."""
-    return float(max(0.0, 1 - abs(z) ** 2) + 1 / samples) ** 1.5
+    lost = max(0.0, 1 - abs(z) ** 2) + 1 / samples
+    return lost * math.sqrt(lost)
 
 
 def natural_frequency(scene: Scene, numerical: float, ratio: float) -> Value:
