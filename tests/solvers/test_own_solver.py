@@ -36,6 +36,7 @@ SLIPS = {  # of tests/oracles/plain_dda.py: groups that the fault lies in, group
     "delta_missing": (["damping"], ["statics", "frequency", "start"]),
     "half_springs": (["statics"], []),
     "zero_start": (["start"], ["statics", "frequency", "damping"]),
+    "consistent_start": (["start"], ["statics", "frequency", "damping"]),
     "late_pressure": (["pressure"], ["statics", "frequency", "damping", "start", "digits"]),
     "double_density": (["frequency"], ["statics"]),
 }
@@ -46,7 +47,7 @@ SLIPS = {  # of tests/oracles/plain_dda.py: groups that the fault lies in, group
 
 def few() -> list[str]:
     """Return gates of every group, on scenes that cost little."""
-    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start=consistent]", "figure-8[time.alpha=0.25")
+    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start", "figure-8[time.alpha=0.25")
     return [name for name, (_, gate) in gates.applying().items() if gate.scene.startswith(scenes)]
 
 
@@ -152,6 +153,12 @@ def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
     )
     assert len(re.findall(AUTHORS[author], shown, re.M)) == 1, shown
     assert "not tried, since 2 scenes" in shown if author == "hangs" else "not tried" not in shown
+
+
+def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    shown = through_the_gates("my_solver.py", tmp_path)
+    assert "ERROR: --dda-solver: must be module:attribute, or a name that `dda-validate list` shows" in shown
+    assert "what the gates tell" not in shown
 
 
 # ---- what a history shows -------------------------------------------------------------------------------------------
