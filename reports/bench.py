@@ -41,7 +41,7 @@ from validation.solvers.registry import get_solver  # noqa: E402
 TABLE = HERE.parent / "docs" / "speed.md"
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 PAPER = (0.5, 1.0, 1.0, 1e-3)  # alpha, delta, gg, dt [s]
-OPENING = ((10**5, 1e-3, 1e9), (10**5, 1e-4, 1e9), (10**5, 1e-5, 1e9), (10**6, 1e-5, 1e9), (10**6, 1e-6, 1e10))
+OPENING = ((10**5, 1e-3, 1e9), (10**5, 1e-4, 1e9), (10**5, 1e-5, 1e9), (10**6, 1e-5, 1e9), (10**6, 1e-6, 1e9))
 History = tuple[np.ndarray, ...]  # displacement [m], contact pressure [Pa]
 
 

@@ -38,6 +38,7 @@ elements = 4
 
 TOGETHER = (  # modules whose tests share what takes long to make
     "test_opened_chapters",
+    "test_contact_pack",
     "test_subblocks_chapter",
     "test_changes",
     "test_claims",

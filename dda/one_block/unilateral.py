@@ -165,11 +165,14 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
         raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
     if options.rule == CONSERVING and len((form := model.form()).B) > form.contacts:
-        raise ValueError(
-            f"rule: {CONSERVING} contact is frictionless: shear must be 0 where the base can slide, got {law}"
-        )
-    if math.isinf(model.contact.stiffness) and scheme.alpha == 0:
-        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {model.contact.stiffness}")
+        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
+    check_scheme(law, scheme)
+
+
+def check_scheme(law: Unilateral, scheme: Scheme) -> None:
+    """Raise ValueError where an explicit scheme meets a rigid stop."""
+    if math.isinf(law.stiffness) and scheme.alpha == 0:
+        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
 
 
 class Stepping:

@@ -209,6 +209,21 @@ class UnilateralResult(Result):
         return both
 
     @property
+    def normal(self) -> Array:
+        """N at M and N, (2, steps) [N]."""
+        return self._contacts["normal"]
+
+    @property
+    def gap(self) -> Array:
+        """W at M and N, (2, steps) [m]."""
+        return self._contacts["gap"]
+
+    @property
+    def closed(self) -> NDArray[np.bool_]:
+        """State of M and N, (2, steps)."""
+        return np.array([self.closed_m, self.closed_n])
+
+    @property
     def normal_force_m(self) -> Array:
         """N at M [N], away from the base."""
         return self._of("normal", 0)

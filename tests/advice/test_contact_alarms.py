@@ -45,6 +45,8 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-6]}, set()),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [1e-3, 0.0]}, {kinds.GAINED}),  # p (1 mm)^2 a landing
         ({"contact.law": "locked"}, set()),
+        (STIFF | AVERAGE | {"contact.rule": "implicit"}, {kinds.LARGE_STEP}),
+        (STIFF | AVERAGE | {"contact.rule": "energy-conserving"}, set()),
     ],
 )
 def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expected: set[str], tmp_path: Path) -> None:
@@ -88,9 +90,11 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
         assert contact.hidden_from(PAPER.with_values(none)) is None
 
 
-@pytest.mark.parametrize("scheme", [{}, AVERAGE, {"time.alpha": 0.3025, "time.delta": 0.6}])
+@pytest.mark.parametrize(
+    "scheme", [{}, AVERAGE, AVERAGE | {"contact.rule": "implicit"}, {"time.alpha": 0.3025, "time.delta": 0.6}]
+)
 @pytest.mark.parametrize("error", [0.01, 0.05])
-def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, float], error: float) -> None:
+def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, Any], error: float) -> None:
     scene = PAPER.with_values(scheme)
     found = contact.needed(scene, 3.757, error, 1e-4)
     assert found.restitution is not None

@@ -25,8 +25,10 @@ from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
+from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, block_events
 from fem_reference.events import restitution as map_of_impacts
+from fem_reference.exact import opening_bar
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -97,7 +99,7 @@ SYSTEM_MASS = Seam(system, system._without_rounding)
 SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
-SYSTEM_RUN = Seam(system_solution._Stepper, system_solution._Stepper.run)
+SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
 
 # Finite elements
@@ -115,6 +117,7 @@ FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
 FEM_COLUMN = Seam(fem_model, fem_model.column)
 FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
 FEM_FACTOR = Seam(fem_diagnostics.Work, fem_diagnostics.Work.factor)
+FEM_OPENED_COLUMN = Seam(fem_points, fem_points.column)
 FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 
 # The bar
@@ -125,6 +128,7 @@ BAR_TRACE = Seam(modal, modal.trace)
 BAR_SPECTRUM = Seam(modal, modal.spectrum)
 BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
 BAR_PAIR = Seam(modal, modal._pair)
+BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)

@@ -13,8 +13,8 @@ from faults import seams
 from faults.fault import Fault
 from faults.kill_matrix import check_kill_matrix
 
-from validation.studies import impacts
 from validation.studies.bands import cases
+from validation.studies.contact import impacts
 
 
 def faulty(**factors: float) -> Callable[[Callable[..., Any]], Callable[..., Any]]:

@@ -16,8 +16,8 @@ from faults.fault import Fault
 from faults.kill_matrix import check_kill_matrix
 
 from validation.gates.gate import Gate
-from validation.studies import rebound
 from validation.studies.bands import cases
+from validation.studies.contact import rebound
 
 Change = Callable[[Any], dict[str, Any]]
 
