@@ -198,9 +198,9 @@ class Stepper:
             A = self.solve(push @ part - self.C @ V - self.K @ D)
             D, V = D + s.alpha * s.step**2 * A, V + s.delta * s.step * A
             found[:, n] = by_D @ D + by_V @ V + by_A @ A
-        return found + self._told(rows) @ parts[1:].T
+        return found + self.told(rows) @ parts[1:].T
 
-    def _told(self, rows: Observers) -> Array:
+    def told(self, rows: Observers) -> Array:
         """Return the rows of the drive, with what the told base adds by its displacement and acceleration."""
         own = rows.drive.copy()
         if self.first:

@@ -72,30 +72,6 @@ def amplitudes(
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
 
 
-def response(
-    ground: Ground,
-    scheme: Scheme,
-    frequencies: Array,
-    base: bool = True,
-    columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
-    heights: Sequence[float] = (),
-) -> dict[str, Complex]:
-    """Complex amplitudes for 1 m of motion of the base, or of the wave that comes up, else for 1 Pa on the top.
-
-    Raises
-    ------
-    ValueError
-        For gg = 0, an unknown column or a height outside.
-    """
-    check_columns(columns, heights)
-    ground.check_heights(heights)
-    if reason := applicable(scheme):
-        raise ValueError(f"gg: {reason}")
-    w = np.asarray(2 * np.pi * np.atleast_1d(np.asarray(frequencies, float)), complex)
-    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
-    return {name: 1j * w * moved[name] if base else pressed[name] for name in columns}
-
-
 def _damped(scheme: Scheme, w: Complex) -> Complex:
     """Return w^2 - i c w with the rate c of the kinetic discount."""
     return np.asarray(w * w + 1j * math.log(scheme.gg) / scheme.step * w)
