@@ -32,6 +32,7 @@ State = tuple[Complex, Complex]  # u and sigma
 ROUND = 1e-10  # e^{-sT}: what comes round from the end of a period
 PERIODS = 2.0  # period of the transform over the window
 TOLERANCE = 1e-6  # of a column's maximum: change by the last halving at which the samples are dense enough
+LARGEST = 200.0  # s times the way's time: the weight's growth through the column stays within the range of numbers
 MOST_SAMPLES = 2**17  # a drive with kinks needs more; its error is then what the last halving changed
 
 
@@ -194,7 +195,9 @@ def _synthesis(
     from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
     spacing = scheme.step / count
-    samples = next_fast_len(math.ceil(PERIODS * steps * count), real=True)
+    travel = sum(x.thickness * math.sqrt(x.density / x.modulus(ground.motion)) for x in ground.strata)
+    period = max(PERIODS * steps * scheme.step, -math.log(ROUND) * travel / LARGEST)
+    samples = next_fast_len(math.ceil(period / spacing), real=True)
     shift = -math.log(ROUND) / (samples * spacing)
     time = spacing * np.arange(samples)
     weight = np.exp(-shift * time)
