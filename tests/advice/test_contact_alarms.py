@@ -39,6 +39,7 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         ({}, {kinds.LARGE_STEP}),
         ({"time.step": 2e-3}, {kinds.HIDDEN}),
         ({"time.gg": 0.98}, {kinds.LARGE_STEP, kinds.DRAG}),
+        ({"time.gg": 0.98, "time.step": 2e-3}, {kinds.HIDDEN}),
         (STIFF | AVERAGE, {kinds.LARGE_STEP, kinds.MAY_GAIN, kinds.GAINED, kinds.PENALTY}),
         (STIFF | {"time.step": 2e-5, "time.steps": 400}, {kinds.PENALTY}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-4]}, {kinds.PULLING}),
@@ -52,6 +53,11 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
 def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expected: set[str], tmp_path: Path) -> None:
     solvers = ("dda", "bar-events") if kinds.PENALTY in expected else ("dda",)
     assert set(raised(PAPER.with_values(values), tmp_path, *solvers)) == expected
+
+
+def test_a_peak_not_far_above_that_of_the_bar_is_no_alarm(tmp_path: Path) -> None:
+    scene = PAPER.with_values({"contact.stiffness": 2.5e9, "time.step": 2e-5, "time.steps": 400})
+    assert not raised(scene, tmp_path, "dda", "bar-events")  # 1.4 times, of springs stiffer than the bar
 
 
 def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:

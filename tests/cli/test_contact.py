@@ -26,6 +26,7 @@ def test_the_page_states_what_json_holds() -> None:
         "at once",
         f"{block['switches.first_closing']:.7g} s",
         f"{1e-6 * block['contact.peak_force']:.4g} MN",
+        f" {100 * block['contact.open_share']:.4g} %",
         f"{100 * found['runs']['dda']['energy.switching_gain']:.4g} %",
         f"w_c dt = {found['omega']:.3g}",
         "restitution within 2 % and a penetration below 0.0002 m",

@@ -266,7 +266,7 @@ def trapezoid(monkeypatch):
             N = (N + p * (max(-w0, 0.0) + max(-(w_f + C * N), 0.0)) / 2) / 2
         return w_f + C * N, N, slope
 
-    monkeypatch.setattr(conserving, "_one", faulty)
+    monkeypatch.setattr(conserving, conserving._one.__name__, faulty)
 
 
 def whole_springs(monkeypatch):

@@ -35,7 +35,8 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.compare import causes, diagnosis, reading
+from validation.compare import diagnosis, reading, readings, search
+from validation.compare.fits import bar
 from validation.engine import origin
 from validation.runs import provenance
 from validation.solvers import fenicsx, registry
@@ -149,10 +150,11 @@ LINE_RUN = Seam(line_stepping.DampedStepper, line_stepping.DampedStepper.run)
 LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
-CAUSES_FURTHER = Seam(causes, causes._further)
-CAUSES_OPENED = Seam(causes, causes.opened)
-CAUSES_BETTER = Seam(causes, causes.better)
-DIAGNOSIS_FACTORS = Seam(diagnosis, diagnosis._factors)
+SEARCH_MOVES = Seam(search, search.moves)
+SEARCH_ACCEPTED = Seam(search, search._accepted)
+DIAGNOSIS_OPENED = Seam(diagnosis, diagnosis._opened)
+READINGS_FACTORS = Seam(readings, readings._factors)
+BAR_EXPLAINED = Seam(bar, bar.explained)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)

@@ -15,6 +15,7 @@ from validation.studies import opening
 from validation.studies.contact.pack import write_contact_pack
 from validation.studies.pack import slug
 
+pytestmark = pytest.mark.long  # the motions themselves are gates
 Numbers = dict[tuple[str, str, str], tuple[float, float]]
 
 
@@ -50,6 +51,11 @@ def test_the_numbers_are_those_of_the_independent_program(numbers: Numbers) -> N
                 for column, expected in zip(("displacement", "contact_pressure"), row, strict=True):
                     value, uncertainty = numbers[name, motion, f"{column} at {t!r} s"]
                     assert abs(value - expected) <= uncertainty + opening.half_unit(expected), (name, motion, n)
+
+
+def test_every_number_states_an_uncertainty_of_its_size(numbers: Numbers) -> None:
+    assert all(u >= 1e-13 * abs(value) for value, u in numbers.values())
+    assert all(u <= 1e-11 * abs(value) for (_, _, what), (value, u) in numbers.items() if "pressure" not in what)
 
 
 def test_impacts_state_their_restitution(numbers: Numbers) -> None:
