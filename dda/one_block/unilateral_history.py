@@ -7,7 +7,7 @@ only the first of every `BLOCK` is kept; a quantity is made from these when it i
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -193,11 +193,19 @@ class UnilateralResult(Result):
     """
 
     outcome: str  # "completed", or why the history ends early, in words
-    energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
+    balance: Callable[[], dict[str, Array]] | None  # makes the energies
     history: History
     form: UnilateralForm
     law: Unilateral
     momentum: Array  # (2, n) horizontal and vertical velocity of the centroid by P [1/(kg s)]
+
+    @cached_property
+    def energies(self) -> dict[str, Array] | None:
+        """By `ENERGIES` [J], losses summed from t = 0 on; None if not asked for."""
+        if self.balance is None:
+            return None
+        with np.errstate(all="ignore"):
+            return self.balance()
 
     @cached_property
     def _contacts(self) -> dict[str, Array]:
