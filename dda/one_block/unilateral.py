@@ -224,7 +224,7 @@ class Stepping:
             if history.steps == steps or self.jump is None:
                 break
             after, found = self.jump.step(v, closed, self.options.solve_limit)
-            if found.corners is None or not math.isfinite(after.sum()):
+            if found.corners is None or not math.isfinite(after.dot(after)):
                 break
             v, closed = after, found.corners.closed
             history.add(Step(v, closed, found.solves, 0))
@@ -240,11 +240,11 @@ class Stepping:
 
     def phase_of(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
         """Return the steps of a contact state, or why they are made singly."""
-        if self.options.full:
-            return "all savings off"
-        if self.options.rule != NEWMARK:
-            return f"the rule {self.options.rule}"
         if closed not in self.phases:
+            if self.options.full:
+                return "all savings off"
+            if self.options.rule != NEWMARK:
+                return f"the rule {self.options.rule}"
             self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
         return self.phases[closed]
 
