@@ -46,7 +46,6 @@ def amplitudes(
     columns: Sequence[str],
     heights: Sequence[float] = (),
     squared: ArrayLike | None = None,
-    rate: ArrayLike | None = None,
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
     """Return the complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
@@ -55,13 +54,10 @@ def amplitudes(
     omega
         Angular frequencies, real or complex [rad/s], not zero.
     squared
-        What stands for w^2 in the layers [1/s2], such as the squared frequency of a time-stepping scheme.
-    rate
-        What stands for iw between displacement and velocity at the half-space [1/s].
+        What stands for w^2 in the layers [1/s2], where they are damped.
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)
-    iw = np.asarray(1j * w if rate is None else rate, complex)
     one, zero = np.ones_like(w), np.zeros_like(w)
     free = dict(_descend(ground, heights, w2, (one, zero)))
     pressed = dict(_descend(ground, heights, w2, (zero, -one)))
@@ -70,10 +66,39 @@ def amplitudes(
     else:
         z = ground.impedance
         given = np.asarray(-2 * z * one)
-        left, kept = (np.asarray(state[1] - z * iw * state[0]) for state in (free[-1], pressed[-1]))
+        left, kept = (np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1]))
     by_base, by_top = given / left, -kept / left
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
+
+
+def response(
+    ground: Ground,
+    scheme: Scheme,
+    frequencies: Array,
+    base: bool = True,
+    columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
+    heights: Sequence[float] = (),
+) -> dict[str, Complex]:
+    """Complex amplitudes for 1 m of motion of the base, or of the wave that comes up, else for 1 Pa on the top.
+
+    Raises
+    ------
+    ValueError
+        For gg = 0, an unknown column or a height outside.
+    """
+    check_columns(columns, heights)
+    ground.check_heights(heights)
+    if reason := applicable(scheme):
+        raise ValueError(f"gg: {reason}")
+    w = np.asarray(2 * np.pi * np.atleast_1d(np.asarray(frequencies, float)), complex)
+    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
+    return {name: 1j * w * moved[name] if base else pressed[name] for name in columns}
+
+
+def _damped(scheme: Scheme, w: Complex) -> Complex:
+    """Return w^2 - i c w with the rate c of the kinetic discount."""
+    return np.asarray(w * w + 1j * math.log(scheme.gg) / scheme.step * w)
 
 
 def _part(states: dict[int, State], name: str) -> Complex:
@@ -199,7 +224,7 @@ def _synthesis(
     weight = np.exp(-shift * time)
     w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
     given = drive(time)
-    moved, pressed = amplitudes(ground, w, columns, heights, w * w + 1j * math.log(scheme.gg) / scheme.step * w)
+    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
     velocity, pressure = rfft(weight * given.velocity), rfft(weight * given.pressure)
     picked = count * np.arange(1, steps + 1)
     found = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]

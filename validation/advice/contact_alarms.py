@@ -78,7 +78,7 @@ def _number(row: Row | None, metric: str) -> float | None:
 
 
 def _large_step(seen: Seen) -> Iterator[Alarm]:
-    if not seen.opens or seen.omega <= contact.WRONG:
+    if not seen.opens or seen.omega <= contact.WRONG or seen.scene.contact.rule == "energy-conserving":
         return
     said = f"w_c dt = {seen.omega:.3g}, w_c = sqrt(8 p / m): "
     found = contact.restitution(seen.scene, seen.omega)
@@ -102,10 +102,10 @@ def _gained(seen: Seen) -> Iterator[Alarm]:
 
 def _may_gain(seen: Seen) -> Iterator[Alarm]:
     t = seen.scene.time
-    if seen.opens and t.delta < 1 and seen.omega > 1:
+    if seen.opens and t.delta < 1 and seen.omega > 1 and seen.scene.contact.rule == "newmark":
         said = (
-            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1 keeps opening and closing from "
-            "putting energy in"
+            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1, or a rule "
+            "of contact that cannot gain, keeps opening and closing from putting energy in"
         )
         yield seen.alarm(MAY_GAIN, said, omega=seen.omega, delta=t.delta)
 

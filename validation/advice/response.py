@@ -106,7 +106,7 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
         found = chosen.prepare(scene).response(f, exact)
     except NotReported as error:
         raise InputError(f"{scene.name}: solver {chosen.name}: {error}") from None
-    base = scene.load.base_motion is not None
+    base = scene.load.base_motion is not None if scene.column is None else scene.input.at == "base"
     return Response(scene.name, chosen.name, exact, base, f, {name: found[name] for name in (DISPLACEMENT, PRESSURE)})
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from validation.runs.history import Array, Complex
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import OF_COLUMN, column_of
+from validation.solvers.columns.names import OF_COLUMN, column_of, vibration
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.translation import naming, no_fields, to_run
 
@@ -34,6 +36,15 @@ class ExactColumn(Prepared):
         with naming(self.scene):
             found = solve_layers(self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights)
         return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time."""
+        from fem_reference.exact.layers import response
+
+        base, size = vibration(self.scene, frequencies)
+        with naming(self.scene):
+            found = response(self.ground, self.scheme, frequencies, base)
+        return {name: size * values for name, values in found.items()}
 
 
 def _scheme_of(scene: Scene) -> fem_reference.Scheme:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from validation.errors import InputError
-from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.column import MOST_HEIGHTS, ColumnSection
 from validation.scenes.scene import Scene
 
@@ -28,3 +30,17 @@ def column_of(scene: Scene) -> ColumnSection:
     if unknown:
         raise InputError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
     return scene.column
+
+
+def vibration(scene: Scene, frequencies: Array) -> tuple[bool, float]:
+    """Return whether a column answers to its base, per metre, and else the pressure on its top [Pa].
+
+    Raises
+    ------
+    InputError
+        A frequency is zero, at which a half-space does not hold the column.
+    """
+    if np.any(np.asarray(frequencies) == 0):
+        raise InputError(f"{scene.name}: frequencies: must be greater than 0 for a column, got 0")
+    pressure = scene.input.pressure
+    return scene.input.at == "base", 1.0 if pressure is None else pressure

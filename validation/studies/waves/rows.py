@@ -199,3 +199,23 @@ def base_gates() -> Iterator[Gate]:
         guide = wave.guide
         R = base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
         yield Gate(wave.scene.name, (wave.name,), "base.reflected", *about(float(abs(R)), JOINT), why)
+
+
+# ---- what the page draws --------------------------------------------------------------------------------------------
+
+
+def curves() -> dict[str, list[dict[str, object]]]:
+    """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
+    found: list[dict[str, object]] = []
+    blocks = np.geomspace(7.5, 110, 60)
+    for case in cases("waves-blocks"):
+        guide = Guide.of(case, 10)
+        omega = 2 * np.pi * guide.speed / (blocks * guide.column.height)
+        k = guide.column.wavenumber(guide.stepping.squared_frequency(omega))
+        left = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
+        scheme = "(1/2, 1)" if (case.time.alpha, case.time.delta) == CONSTANT else "(1/4, 1/2)"
+        rounded = {"speed": omega / k.real / guide.speed - 1, "left": left, "blocks": blocks}
+        values = {name: [float(f"{x:.5g}") for x in part] for name, part in rounded.items()}
+        courant = round(guide.speed * case.time.step / guide.column.height, 6)
+        found.append({"scheme": scheme, "courant": courant, **values})
+    return {"curves": found}

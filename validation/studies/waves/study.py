@@ -72,4 +72,5 @@ def study() -> Study:
         extra=_fem_too(),
         gates=gates,
         derived=derived,
+        data=rows.curves,
     )
