@@ -50,18 +50,16 @@ class GluedBase:
     shear_stiffness: Array  # k_t of each point [N/m], shape (points,)
     _factors: dict[bytes, Factor] = field(default_factory=dict)
 
-    def factor(self, states: Flags, phi: Array) -> Factor:
-        """The equations of the closed points, N / k + w = 0 and T + k_t phi s = 0, factorised."""
-        settled = bool(np.all(phi == 1))
+    def factor(self, states: Flags, phi: Array | None) -> Factor:
+        """The equations of the closed points, N / k + w = 0 and T + k_t phi s = 0, factorised; phi = 1 if None."""
+        if phi is not None:
+            return self._factorised(states, phi)
         key = states.tobytes()
-        if settled and key in self._factors:
-            return self._factors[key]
-        if len(self._factors) >= KEPT:
-            self._factors.clear()
-        found = self._factorised(states, phi)
-        if settled:
-            self._factors[key] = found
-        return found
+        if key not in self._factors:
+            if len(self._factors) >= KEPT:
+                self._factors.clear()
+            self._factors[key] = self._factorised(states, np.ones(len(states)))
+        return self._factors[key]
 
     def _factorised(self, states: Flags, phi: Array) -> Factor:
         points = len(states)
@@ -90,7 +88,7 @@ class GluedStep:
         """Forces and gaps for given states, with the crossings that belong to them: phi for phi(forces(phi))."""
         closing = states & ~self.closed
         if not closing.any():
-            return self._linear(states, np.ones(len(states)))
+            return self._linear(states, None)
         phi = np.where(closing, 0.5, 1.0)
         weight, last = 1.0, np.inf
         for _ in range(PASSES):
@@ -110,7 +108,7 @@ class GluedStep:
         way = depth + np.maximum(self.gap, 0.0)
         return np.divide(depth, way, out=np.ones_like(way), where=way > 0)
 
-    def _linear(self, states: Flags, phi: Array) -> Trial:
+    def _linear(self, states: Flags, phi: Array | None) -> Trial:
         """Forces for given states and crossings."""
         points, factor = len(states), self.base.factor(states, phi)
         found = np.zeros(2 * points)

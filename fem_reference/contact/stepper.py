@@ -104,8 +104,8 @@ class ContactStepper:
         if contact.trial is None:
             return None, contact
         N, T = contact.trial.normal, contact.trial.shear
-        forces = np.concatenate([N, T])[: len(moved)]
-        A = free + own.response @ forces
+        forces = np.concatenate([N, T]) if self.shear == "glued" else N
+        A = free + own.response @ forces if contact.closed.any() else free
         motion = State(ahead + scheme.alpha * scheme.step**2 * A, velocity(old, A, scheme), A)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
         gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
