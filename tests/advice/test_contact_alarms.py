@@ -56,8 +56,8 @@ def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expecte
 
 
 def test_a_peak_not_far_above_that_of_the_bar_is_no_alarm(tmp_path: Path) -> None:
-    scene = PAPER.with_values({"contact.stiffness": 2.5e9, "time.step": 2e-5, "time.steps": 400})
-    assert not raised(scene, tmp_path, "dda", "bar-events")  # 1.4 times, of springs stiffer than the bar
+    scene = PAPER.with_values({"contact.stiffness": 2.2e9, "time.step": 2e-5, "time.steps": 400})
+    assert not raised(scene, tmp_path, "dda", "bar-events")  # 1.4 times and less, of springs stiffer than the bar
 
 
 def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:

@@ -92,6 +92,15 @@ def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: flo
     }
 
 
+def plain(value: Any) -> Any:
+    """Return data in which None stands for what is not finite, such as w_c of a rigid contact."""
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [plain(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
     kept = ("switches.", "contact.", "energy.", "horizon.")
