@@ -120,6 +120,24 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
+def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() -> None:
+    tried: list[float] = []
+
+    def probe(p: float) -> float:
+        tried.append(p)
+        return 3e-4 * (tried[0] / p) ** 0.5  # three times too deep at first
+
+    found = contact.needed(PAPER, 1.0, 0.05, 1e-4, probe)
+    assert found.first_guess == tried[0] == pytest.approx(10800 / 8e-8)
+    assert found.stiffness == pytest.approx(9 * tried[0]) and found.depth == pytest.approx(1e-4)
+    assert contact.omega(PAPER.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})) == (
+        pytest.approx(found.omega)
+    )
+    never = contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: 2e-4)
+    assert never.depth == 2e-4 and never.stiffness > 1e4 * never.first_guess
+    assert contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: None).depth is None
+
+
 def test_the_stated_examples() -> None:
     """At p = 100E and 5 %: 7.4 us at (1/2, 1) and 73 us at (1/4, 1/2)."""
     stiff = PAPER.with_values(STIFF)
