@@ -157,4 +157,8 @@ def test_the_restitution_of_a_phase_lies_in_the_range_of_the_map() -> None:
     found = contact.restitution(PAPER, math.inf)
     assert found is not None and (found.low, found.high) == pytest.approx((0.0, 1.0), abs=1e-12)
     assert impact_restitution(0.5, 1.0, 1.0, math.inf, 0.25) == pytest.approx(0.5)
+    constant = contact.restitution(PAPER, 10.0)
+    rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}
+    assert contact.restitution(rules["implicit"], 10.0) == constant
+    assert contact.restitution(rules["energy-conserving"], 10.0) == contact.Restitution(1.0, 1.0, 1.0, 1.0)
     assert contact.restitution(PAPER.with_values({"time.alpha": 0.1, "time.delta": 0.9}), 1.0) is None

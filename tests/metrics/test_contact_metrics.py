@@ -201,3 +201,12 @@ def test_histories_are_gated_up_to_the_horizon(tmp_path: Any) -> None:
     assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
     assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
     assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
+def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule: str) -> None:
+    scene = impact(**{"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": rule, "contact.gap": 0.0117})
+    metrics = execute(Case(scene, "dda"), "", "")[0].metrics
+    e = {"newmark": 1.0, "implicit": 1 / 3, "energy-conserving": 1.0}[rule]
+    assert metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)
+    assert metrics["contact.impulse"] == pytest.approx(10800 * (1 + e), rel=1e-6)
