@@ -59,6 +59,7 @@ def test_the_whole_chapter(tmp_path: Path) -> None:
     assert "DDA is 14.5\u00a0% off at the surface" in texts[2]
 
 
+@pytest.mark.long
 def test_parts_of_the_study_make_parts_of_the_chapter(tmp_path: Path) -> None:
     blocks = told(part("waves-discount"), tmp_path)
     assert [type(block) for block in blocks] == [Heading, Paragraph, Table]

@@ -187,11 +187,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
             assert np.abs(values - exact[name]).max() < 2e-4 * np.abs(exact[name]).max(), (solver, name)
 
 
-def test_half_spaces_have_no_static_response(site: Scene) -> None:
-    with pytest.raises(InputError, match="frequencies: must be greater than 0 for a column"):
-        response(site, 0.0, "dda")
-
-
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
