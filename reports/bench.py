@@ -289,7 +289,7 @@ the last column is the greatest difference of the two answers over the maximum. 
 
 ## Contact that opens
 
-Constant acceleration. The rest of the time over that of locked contact is that of the switches, some 30 microseconds
+Constant acceleration. The rest of the time over that of locked contact is that of the switches, some 20 microseconds
 each, which are found, stepped singly and left again; single steps are those of `--full`.
 
 | p | dt [s] | steps | switches | locked [s] | opens [s] | over locked | single steps over it | difference |

@@ -35,12 +35,12 @@ def conserving(law: Unilateral, before: Corners, free: Free) -> Iteration:
     """
     p, w0, C, w_f = law.stiffness, before.gap, free.C, free.gap
     if len(w0) == 1:
-        w1, N, _ = _one(p, C[0][0], w0[0], w_f[0])
+        w1, N, _ = one_contact(p, C[0][0], w0[0], w_f[0])
         return _found(law, (w1,), (N,), 1)
     forces, residual = [0.0, 0.0], math.inf
     for solves in range(1, ROUNDS + 1):
-        w_M, N_M, s_M = _one(p, C[0][0], w0[0], w_f[0] + C[0][1] * forces[1])
-        w_N, N_N, s_N = _one(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
+        w_M, N_M, s_M = one_contact(p, C[0][0], w0[0], w_f[0] + C[0][1] * forces[1])
+        w_N, N_N, s_N = one_contact(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
         change = N_N - forces[1]
         slope = C[0][1] * C[1][0] * s_M * s_N
         if abs(change) <= SETTLED * abs(N_N):
@@ -52,7 +52,7 @@ def conserving(law: Unilateral, before: Corners, free: Free) -> Iteration:
     return Iteration(None, ROUNDS, NONE)
 
 
-def _one(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:
+def one_contact(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:
     """Return w1 and N of one contact, and -dN/dw_f [N/m]."""
     if w0 >= 0 and w_f >= 0:
         return w_f, 0.0, 0.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,13 +39,13 @@ class OpeningBlock(Prepared):
             law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
             loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
             self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
-            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, full=full)
+            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
-    def solve(self, columns: Sequence[str], options: dda.UnilateralOptions) -> dda.UnilateralResult | dda.OpeningResult:
+    def solve(self, columns: Sequence[str]) -> dda.UnilateralResult | dda.OpeningResult:
         """Make the steps."""
         import dda
 
-        return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, options)
+        return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, self.options)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -56,7 +55,7 @@ class OpeningBlock(Prepared):
         check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
         asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = self.solve(asked, self.options)
+            r = self.solve(asked)
         self.result = r
         return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
 
@@ -74,9 +73,10 @@ class OpeningBlock(Prepared):
         return flips({"M": r.closed_m.astype(float), "N": r.closed_n.astype(float)}, r.time)
 
     def contact_record(self) -> ContactRecord:
-        """Return what the contact did, from the same steps with their energies."""
-        r, scheme = self.solve((), replace(self.options, energies=True)), self.scheme
-        gaps, force = r.gap, r.normal.sum(axis=0)
+        """Return what the contact did in the history that was run."""
+        if self.result is None:
+            raise NotReported("dda: the scene was not run")
+        r, gaps, force = self.result, self.result.gap, self.result.normal.sum(axis=0)
         return ContactRecord(
             time=r.time,
             force=force,
@@ -88,7 +88,7 @@ class OpeningBlock(Prepared):
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
             velocity=r.velocity,
-            rebounds=opened.rebounds(gaps, scheme.step),
+            rebounds=opened.rebounds(gaps, self.scheme.step),
             energies=r.energies or {},
             solves=r.step_solves.astype(float),
             cuts=r.step_cuts.astype(float),
@@ -114,8 +114,8 @@ class OpeningSubBlocks(OpeningBlock):
             columns, rows = b.subdivide or (1, 1)
             self.opening = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
 
-    def solve(self, columns: Sequence[str], options: dda.UnilateralOptions) -> dda.OpeningResult:
+    def solve(self, columns: Sequence[str]) -> dda.OpeningResult:
         """Make the steps."""
         import dda
 
-        return dda.solve_opening_system(self.opening, self.scheme, self.scene.time.steps, columns, options)
+        return dda.solve_opening_system(self.opening, self.scheme, self.scene.time.steps, columns, self.options)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle
 from validation.solvers.registry import get_solver, is_solver
 
@@ -59,6 +60,7 @@ COLUMNS = {
     "contact_pressure": ("Contact pressure", "Pa"),
     "horizontal_displacement": ("Horizontal displacement", "m"),
     "rotation": ("Rotation", "rad"),
+    **{name: (name.replace("_", " ").capitalize(), "m" if name.startswith("d") else "Pa") for name in AT_HEIGHTS},
 }
 
 
