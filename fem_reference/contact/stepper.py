@@ -28,6 +28,8 @@ from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_
 SHEARS = ("frictionless", "glued")
 KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
+DENSE = 256
+"""Greatest number of forces whose responses are kept, eight bytes an unknown each."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class _Matrices:
 
     scheme: Scheme
     solve: Callable[[Array], Array]
-    response: Array  # S^-1 B', shape (unknowns, forces)
+    response: Array | None  # S^-1 B', shape (unknowns, forces); None for many forces, where steps solve twice
     C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
     small: FrictionlessBase | GluedBase  # the problem of the forces
 
@@ -98,14 +100,17 @@ class ContactStepper:
         own = self._matrices(self.scheme.step if length is None else length)
         scheme, model, old = own.scheme, self.model, state.motion
         ahead = predictor(old, scheme)
-        free = own.solve(model.F - model.K @ ahead)
+        residual = model.F - model.K @ ahead
+        free = own.solve(residual)
         moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
         contact = self._contact(state, own, moved)
         if contact.trial is None:
             return None, contact
         N, T = contact.trial.normal, contact.trial.shear
         forces = np.concatenate([N, T]) if self.shear == "glued" else N
-        A = free + own.response @ forces if contact.closed.any() else free
+        A = free
+        if contact.closed.any():
+            A = own.solve(residual + self._B.T @ forces) if own.response is None else free + own.response @ forces
         motion = State(ahead + scheme.alpha * scheme.step**2 * A, velocity(old, A, scheme), A)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
         gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
@@ -141,10 +146,21 @@ class ContactStepper:
             share = length / self.scheme.step
             scheme = replace(self.scheme, step=length, gg=self.scheme.gg**share)
             solve = self.work.factor(effective_matrix(self.model.M, self.model.K, scheme))
-            response = np.stack([solve(row) for row in self._B.toarray()], axis=1)
-            C = scheme.alpha * length**2 * (self._B @ response)
-            C, compliance = (C + C.T) / 2, 1 / self.model.stiffness
+            response, C = self._responses(solve)
+            C, compliance = scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
             glue = self.shear == "glued"
             small = GluedBase(C, compliance, self.model.shear_stiffness) if glue else FrictionlessBase(C, compliance)
             self._lengths[length] = _Matrices(scheme, solve, response, C, small)
         return self._lengths[length]
+
+    def _responses(self, solve: Callable[[Array], Array]) -> tuple[Array | None, Array]:
+        """S^-1 B', where it is kept, and B S^-1 B'."""
+        count = self._B.shape[0]
+        response = np.empty((self._B.shape[1], count)) if count <= DENSE else None
+        C = np.empty((count, count))
+        for i in range(count):
+            found = solve(self._B[[i]].toarray()[0])
+            C[:, i] = self._B @ found
+            if response is not None:
+                response[:, i] = found
+        return response, C

@@ -32,6 +32,7 @@ State = tuple[Complex, Complex]  # u and sigma
 ROUND = 1e-10  # e^{-sT}: what comes round from the end of a period
 PERIODS = 2.0  # period of the transform over the window
 TOLERANCE = 1e-6  # of a column's maximum: change by the last halving at which the samples are dense enough
+LARGEST = 200.0  # s times the way's time: the weight's growth through the column stays within the range of numbers
 MOST_SAMPLES = 2**17  # a drive with kinks needs more; its error is then what the last halving changed
 
 
@@ -70,30 +71,6 @@ def amplitudes(
     by_base, by_top = given / left, -kept / left
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
-
-
-def response(
-    ground: Ground,
-    scheme: Scheme,
-    frequencies: Array,
-    base: bool = True,
-    columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
-    heights: Sequence[float] = (),
-) -> dict[str, Complex]:
-    """Complex amplitudes for 1 m of motion of the base, or of the wave that comes up, else for 1 Pa on the top.
-
-    Raises
-    ------
-    ValueError
-        For gg = 0, an unknown column or a height outside.
-    """
-    check_columns(columns, heights)
-    ground.check_heights(heights)
-    if reason := applicable(scheme):
-        raise ValueError(f"gg: {reason}")
-    w = np.asarray(2 * np.pi * np.atleast_1d(np.asarray(frequencies, float)), complex)
-    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
-    return {name: 1j * w * moved[name] if base else pressed[name] for name in columns}
 
 
 def _damped(scheme: Scheme, w: Complex) -> Complex:
@@ -218,7 +195,9 @@ def _synthesis(
     from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
     spacing = scheme.step / count
-    samples = next_fast_len(math.ceil(PERIODS * steps * count), real=True)
+    travel = sum(x.thickness * math.sqrt(x.density / x.modulus(ground.motion)) for x in ground.strata)
+    period = max(PERIODS * steps * scheme.step, -math.log(ROUND) * travel / LARGEST)
+    samples = next_fast_len(math.ceil(period / spacing), real=True)
     shift = -math.log(ROUND) / (samples * spacing)
     time = spacing * np.arange(samples)
     weight = np.exp(-shift * time)

@@ -118,6 +118,21 @@ def test_what_the_command_refuses(options: list[str], rule: str) -> None:
         CliRunner().invoke(app, ["advise", "figures-3-4", "--set", "time.step=0.01", *options], catch_exceptions=False)
 
 
+def test_layers_of_a_column_are_cut_each_for_its_own_speed() -> None:
+    found = advise_wave(load_scene("waves-site"), 8.0, 0.1)
+    assert found.advised is not None
+    assert found.limits_step == "phase error"  # average acceleration loses nothing
+    assert len(found.blocks) == 4
+    heights = found.advised.heights
+    speeds = np.array([500.0, 350.0, 220.0, 150.0])
+    assert np.all(np.array(heights) * 8.0 / speeds < 0.3)
+    lossy = load_scene("waves-site").with_values({"time.alpha": 0.5, "time.delta": 1.0})
+    stepping, w = Stepping.of(lossy), 2 * np.pi * 8.0
+    thickness = np.array([15.0, 10.0, 8.0, 5.0])
+    exponent = np.sum(thickness / speeds) * stepping.rayleigh()[1] * w**2 / 2
+    assert -np.log(1 - advise_wave(lossy, 8.0, 0.1).present.loss) == pytest.approx(exponent, rel=0.01)
+
+
 def test_a_block_that_is_no_rectangle_is_refused() -> None:
     with pytest.raises(InputError, match="must be an upright rectangle"):
         advise_wave(load_scene("quadrilateral"), 5.0, 0.1)

@@ -7,7 +7,7 @@ import pytest
 from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
-from fem_reference.contact import points
+from fem_reference.contact import points, stepper
 from fem_reference.contact.glued import GluedBase, GluedStep, glued
 from fem_reference.contact.open_close import Contact, FrictionlessBase, Trial, complementary, iterate
 from fem_reference.contact.stepper import ContactStepper
@@ -120,6 +120,20 @@ def test_glued_bases_without_a_unique_set_of_states_say_so():
     assert {"", none, several} <= {glued(random_glued(rng, 2), 1).failure for _ in range(300)}
     many = [glued(random_glued(rng, 9), 2) for _ in range(20)]
     assert (none, 2) in {(found.failure, found.solves) for found in many}
+
+
+@pytest.mark.parametrize("shear", ["frictionless", "glued"])
+def test_many_forces_are_solved_for_twice(shear, monkeypatch):
+    problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8)
+    contact = Unilateral(gap=1e-5, velocity=-0.1, shear=shear)
+    few = solve_unilateral(problem, replace(SCHEME, step=2e-4), 150, contact)
+    monkeypatch.setattr(stepper, "DENSE", 4)
+    many = solve_unilateral(problem, replace(SCHEME, step=2e-4), 150, contact)
+    assert 0 < few.columns["open_share"].mean() < 1 and many.solves > few.solves
+    for name, values in few.columns.items():
+        # rounding of the energies lost is that of the energies
+        size = max(np.abs(values).max(), np.abs(few.columns["strain_energy"]).max() if "loss" in name else 0.0)
+        assert np.abs(many.columns[name] - values).max() <= 1e-10 * size, name
 
 
 def test_points_of_the_base_share_it_with_positive_weights():

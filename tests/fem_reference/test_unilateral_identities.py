@@ -90,6 +90,29 @@ def test_glued_springs_gain_no_energy_either(p):
     assert np.diff(total).max() <= 1e-12 * run.columns["strain_energy"].max()
 
 
+def test_glued_points_bear_their_stretch_from_where_they_closed():
+    problem = replace(make(elements=4, eccentricity=0.3, poisson=0.25, p=1e9, shear=4e8), traction=2e5)
+    model = build(problem)
+    stepper, k_t = ContactStepper(model, replace(CONSTANT, step=1e-4), "glued"), model.shear_stiffness
+    state, again, wider = stepper.start(), 0, 0.0
+    for _ in range(400):
+        new, _ = stepper.advance(state)
+        assert new is not None  # every step has its contact at once
+        closed, size = new.closed, np.abs(new.slip).max()
+        assert np.abs(model.tangential @ new.motion.D - new.slip).max() <= 1e-11 * size
+        assert np.abs(new.shear + k_t * (new.slip - new.reference))[closed].max(initial=0) <= 1e-10 * k_t.max() * size
+        assert not new.shear[~closed].any() and np.array_equal(new.reference[~closed], new.slip[~closed])
+        stuck, closing = closed & state.closed, closed & ~state.closed
+        assert np.array_equal(new.reference[stuck], state.reference[stuck])
+        share = state.gap / (state.gap - new.gap + (state.gap == new.gap))
+        crossing = state.slip + share * (new.slip - state.slip)
+        assert np.abs(new.reference - crossing)[closing].max(initial=0) <= 1e-10 * size
+        again += np.count_nonzero(closing)
+        wider = max(wider, float(np.abs(new.slip - crossing)[closing].max(initial=0)) / size)
+        state = new
+    assert again > 10 and wider > 1e-3
+
+
 def test_the_energies_of_a_base_that_stays_closed_add_up_to_nothing():
     # average acceleration keeps the energy, which begins at zero
     problem = replace(make(elements=3, p=1e8, poisson=0.2, shear=3e7, degree=1), traction=1e5, gravity=9.81)

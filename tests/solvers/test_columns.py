@@ -187,11 +187,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
             assert np.abs(values - exact[name]).max() < 2e-4 * np.abs(exact[name]).max(), (solver, name)
 
 
-def test_half_spaces_have_no_static_response(site: Scene) -> None:
-    with pytest.raises(InputError, match="frequencies: must be greater than 0 for a column"):
-        response(site, 0.0, "dda")
-
-
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
@@ -203,6 +198,14 @@ def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
             solve(site, name)
     with pytest.raises(InputError, match="takes columns only"):
         solve(load_scene("figures-3-4").expand()[0], "layers")
+
+
+def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
+    """A feature is one that columns can have, or it looks at a table that they have not."""
+    for feature in features.FEATURES:
+        if not feature.of_columns:
+            with pytest.raises(InputError, match="got a scene of a column"):
+                feature.present(site)
 
 
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:

@@ -9,6 +9,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
 from validation.studies.own_solver import evidence, gates
 from validation.studies.own_solver.block import block, first, outside
-from validation.studies.own_solver.history import FREQUENCY, PENCIL, natural_frequency, rest, root
+from validation.studies.own_solver.history import PENCIL, natural_frequency, rest, root
 from validation.studies.own_solver.session import Session, Told
 
 ROOT = Path(__file__).parents[2]
@@ -35,6 +36,7 @@ SLIPS = {  # of tests/oracles/plain_dda.py: groups that the fault lies in, group
     "delta_missing": (["damping"], ["statics", "frequency", "start"]),
     "half_springs": (["statics"], []),
     "zero_start": (["start"], ["statics", "frequency", "damping"]),
+    "consistent_start": (["start"], ["statics", "frequency", "damping"]),
     "late_pressure": (["pressure"], ["statics", "frequency", "damping", "start", "digits"]),
     "double_density": (["frequency"], ["statics"]),
 }
@@ -45,7 +47,7 @@ SLIPS = {  # of tests/oracles/plain_dda.py: groups that the fault lies in, group
 
 def few() -> list[str]:
     """Return gates of every group, on scenes that cost little."""
-    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start=consistent]", "figure-8[time.alpha=0.25")
+    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start", "figure-8[time.alpha=0.25")
     return [name for name, (_, gate) in gates.applying().items() if gate.scene.startswith(scenes)]
 
 
@@ -135,7 +137,7 @@ def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slo
 
 AUTHORS = {  # of tests/oracles/plain_dda.py: what the block says once
     "raises_in_one_scene": r"^raised: ZeroDivisionError: no step left \(plain_dda\.py:\d+, in raise_it\)\n  \d+ gates",
-    "not_a_number": r"^not a number: displacement at step 4\n  \d+ gates: .* scenes$",
+    "not_a_number": r"^not a number: displacement at step 4\n  \d+ gates: ",
     "short": r"^wrong shape: displacement has shape \(\d+,\), not \(\d+,\)\n",
     "millimetres": r"^wrong units: displacement is 1000 times what is expected in SI, mm\?\n",
     "prints": r"^right:  statics, frequency, damping, start, digits, pressure\n",
@@ -151,6 +153,12 @@ def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
     )
     assert len(re.findall(AUTHORS[author], shown, re.M)) == 1, shown
     assert "not tried, since 2 scenes" in shown if author == "hangs" else "not tried" not in shown
+
+
+def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    shown = through_the_gates("my_solver.py", tmp_path)
+    assert "ERROR: --dda-solver: must be module:attribute, or a name that `dda-validate list` shows" in shown
+    assert "what the gates tell" not in shown
 
 
 # ---- what a history shows -------------------------------------------------------------------------------------------
@@ -186,10 +194,11 @@ def test_the_strongest_root_is_known_to_the_error_that_is_stated(
     values = {"time.step": step, "time.alpha": alpha, "time.delta": delta, "time.steps": steps}
     scene = load_scene("figure-8").with_values(values)
     found, wanted = root(scene, swinging(scene, steps, noise)), closed_forms.dda_frequency(scene)
-    assert found is not None and found.error <= 100 * noise + PENCIL
-    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + PENCIL)
+    assert found is not None and found.error <= 20 * noise + 1e-9
+    least = 1e-8 if noise else PENCIL
+    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + least)
     w = natural_frequency(scene, found.frequency, found.ratio)
-    assert w == pytest.approx(wanted, rel=found.error + FREQUENCY)
+    assert w == pytest.approx(wanted, rel=2 * found.error + least)
 
 
 def test_what_is_no_sum_of_two_modes_shows_none() -> None:
@@ -333,3 +342,18 @@ def test_the_scene_that_tells_most_is_short_and_holds_the_fault() -> None:
 def test_the_page_states_the_grace_of_exit_hooks_and_the_allowance_of_a_step() -> None:
     assert f"exit hooks have {GRACE:g} s after" in page()
     assert f"and {1000 * ALLOWANCE:g} ms for each of its steps" in page()
+
+
+@pytest.mark.parametrize(
+    ("causes", "said"), [(["start"], "causes: start"), (["unexplained"], "not explained: "), ([], "a sentence")]
+)
+def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = gates.starts()[0]
+    failed = of(scene=scene.name, study="own-solver", status="FAIL", value=2.0)
+    x = np.ones(scene.time.steps)
+    monkeypatch.setattr(Results, "history", lambda self, key: History(x, {"displacement": x}))
+    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
+    lines = block([failed])
+    assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-1].startswith(f"  {said}")
+    monkeypatch.setattr(evidence, "compare", lambda *given: 1 / 0)
+    assert block([failed])[-1] == "  nothing can be said: division by zero"

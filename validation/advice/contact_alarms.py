@@ -18,6 +18,7 @@ tension of a dead band
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 from validation.advice import contact
@@ -69,7 +70,7 @@ class Seen:
 
     def alarm(self, kind: str, sentence: str, **values: float) -> Alarm:
         """Return an alarm on this run."""
-        return Alarm(kind, self.scene.name, sentence, values)
+        return Alarm(kind, self.scene.name, sentence, {k: v for k, v in values.items() if math.isfinite(v)})
 
 
 def _number(row: Row | None, metric: str) -> float | None:

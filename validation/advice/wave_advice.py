@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from validation.advice.rayleigh import hidden, ratio
-from validation.advice.spectra import percent, single
+from validation.advice.response import check_scene
+from validation.advice.spectra import percent
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
@@ -128,8 +129,9 @@ def advise_wave(
     Parameters
     ----------
     scene
-        A scene without a sweep whose block is an upright rectangle; its rows of sub-blocks are the blocks. Its scheme
-        and discount stay (a discount stated as `gg_rate` as a rate), and so does its glue.
+        A scene without a sweep, with a column or with a block that is an upright rectangle, whose rows of sub-blocks
+        are the blocks. Its scheme and discount stay (a discount stated as `gg_rate` as a rate), and so does its glue;
+        joints and reflections between layers are left out.
     frequency
         Of the wave [Hz].
     loss
@@ -145,7 +147,8 @@ def advise_wave(
         A number is out of range, or the scene is not linear or no such column.
     """
     _check(frequency, loss, wavelengths, phase_error)
-    layers = layers_of(single(scene))
+    check_scene(scene)
+    layers = layers_of(scene)
     way = _Way(layers, frequency, 1.0)
     if wavelengths is not None:
         way = replace(way, times=wavelengths / way.wavelengths)
@@ -171,13 +174,16 @@ def advise_wave(
 
 
 def layers_of(scene: Scene) -> tuple[Layer, ...]:
-    """Return the layers of a scene: its block, cut into rows of sub-blocks.
+    """Return the layers of a scene: those of its column, or its block, cut into rows of sub-blocks.
 
     Raises
     ------
     InputError
         The block is no upright rectangle.
     """
+    if scene.column is not None:
+        c = scene.column
+        return tuple(Layer(x.thickness, x.density, c.modulus(x), x.blocks, c.glue) for x in c.layer)
     b = scene.block
     points = b.outline
     upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]

@@ -42,7 +42,8 @@ def export_pack(
     """
     from validation.studies.contact.pack import write_contact_pack
     from validation.studies.pack import write_pack
+    from validation.studies.waves.pack import write_waves_pack
 
-    written, numbers = write_pack(directory), write_contact_pack(directory)
+    written, numbers, waves = write_pack(directory), write_contact_pack(directory), write_waves_pack(directory)
     counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
-    typer.echo(f"wrote {directory}: {counts}; of contact that opens {numbers} exact numbers")
+    typer.echo(f"wrote {directory}: {counts}; of contact that opens {numbers} exact numbers, of waves {waves}")

@@ -54,7 +54,7 @@ def response(
     _print_peaks(case, answers)
 
 
-EXACT = "exact in time"
+EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a column
 
 
 def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
@@ -101,13 +101,14 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
     from validation.solvers.registry import get_solver
 
     shown = dict(answers)
-    if get_solver("continuum").refusal(case) is None:
-        shown["continuum"] = answer(case, answers[EXACT].frequency, "continuum")
+    truth = next((name for name in TRUTHS if get_solver(name).refusal(case) is None), None)
+    if truth is not None:
+        shown[truth] = answer(case, answers[EXACT].frequency, truth)
     curves = []
     for name, found in shown.items():
-        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == "continuum")
+        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == truth)
         columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
-        label = {EXACT: f"{found.solver}, exact in time", "continuum": "continuum"}.get(name, f"{name} as stepped")
+        label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
         curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
     typer.echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
 

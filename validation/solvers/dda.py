@@ -171,7 +171,7 @@ class DDA(Solver):
 
     name = "dda"
     handles = (
-        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN})
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | features.LOADS
         | features.RULES
     )
@@ -191,8 +191,8 @@ class DDA(Solver):
         own = set(features.of(scene))
         if {features.UNILATERAL, features.BASE_MOTION} <= own:
             return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-        if features.SUB_BLOCKS in own and (rule := own & features.RULES):
-            return f"it does not handle {min(rule)} together with {features.SUB_BLOCKS}"
+        if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
+            return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         return None
 
     def build(self, scene: Scene, full: bool) -> Prepared:

@@ -141,8 +141,17 @@ def as_toml(scene: Scene) -> str:
 
 
 def _line(item: tuple[str, Any]) -> str:
-    """Return a key and its value in TOML, which writes numbers, words and lists as JSON does."""
-    return f"{item[0]} = {json.dumps(item[1], ensure_ascii=False)}"
+    """Return a key and its value in TOML."""
+    return f"{item[0]} = {_value(item[1])}"
+
+
+def _value(value: Any) -> str:
+    """Return a value in TOML, which writes numbers, words and lists as JSON does; tables stand in their line."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(map(_line, value.items()))} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _history(scene: Scene, solver: str) -> Any:

@@ -12,11 +12,11 @@ from dda.column.column import Column, Layer, Spring
 from dda.column.frequency import highest_frequency
 from dda.column.response import column_response
 from dda.column.stepping import Drive, solve_column
-from validation.runs.history import Array, Complex
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import column_of, vibration
+from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming, no_fields, to_run
@@ -36,20 +36,17 @@ class BlockColumn(Prepared):
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         no_fields("dda with a column", self.scene, fields)
-        self._check_step()
+        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = Drive(**vars(motion_at(self.scene, instants)))
         with naming(self.scene):
             found = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
         return to_run(self.scene, found)
 
-    def _check_step(self) -> None:
-        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
-
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
-        """Return the frequency response, per metre of the base's motion or under the pressure on the top."""
-        self._check_step()
-        base, size = vibration(self.scene, frequencies)
+        """Return the frequency response per metre at the base, or under the pressure on the top."""
+        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
+        at = self.scene.input.at
         with naming(self.scene):
-            found = column_response(self.column, self.scheme, frequencies, base=base, exact=exact)
-        return {name: size * values for name, values in found.items()}
+            found = column_response(self.column, self.scheme, frequencies, at, (DISPLACEMENT, PRESSURE), exact)
+        return {name: amplitude(self.scene) * values for name, values in found.items()}

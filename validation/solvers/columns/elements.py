@@ -9,11 +9,11 @@ import numpy as np
 
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.problem.problem import Array, Scheme
-from validation.runs.history import Complex
+from validation.runs.history import DISPLACEMENT, PRESSURE, Complex
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import column_of, vibration
+from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming, no_fields, to_run
@@ -44,32 +44,28 @@ class LineColumn(Prepared):
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
+        from fem_reference.column.frequency import highest_frequency
         from fem_reference.column.stepping import solve_line
+        from fem_reference.scheme.limits import critical_omega
 
         no_fields("fem with a column", self.scene, fields)
         degree, columns = self.scene.fem.degree, self.scene.run.columns
-        self._check_step()
+        check_step(self.scene, critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = excitation(self.scene, instants)
         with naming(self.scene):
             found = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
         return to_run(self.scene, found)
 
-    def _check_step(self) -> None:
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response per metre at the base, or under the pressure on the top."""
         from fem_reference.column.frequency import highest_frequency
+        from fem_reference.column.vibration import line_response
         from fem_reference.scheme.limits import critical_omega
 
-        degree = self.scene.fem.degree
-        check_step(self.scene, critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
-
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
-        """Return the frequency response, per metre of the base's motion or under the pressure on the top."""
-        from fem_reference.column.response import line_response
-
-        self._check_step()
-        base, size = vibration(self.scene, frequencies)
+        ground, elements, degree = self.ground, self.elements, self.scene.fem.degree
+        check_step(self.scene, critical_omega, lambda: highest_frequency(ground, elements, degree))
+        asked = self.scene.input.at == "top", (DISPLACEMENT, PRESSURE), exact
         with naming(self.scene):
-            found = line_response(
-                self.ground, self.elements, self.scene.fem.degree, self.scheme, frequencies, base=base, exact=exact
-            )
-        return {name: size * values for name, values in found.items()}
+            found = line_response(ground, elements, degree, self.scheme, frequencies, *asked)
+        return {name: amplitude(self.scene) * values for name, values in found.items()}

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from validation.errors import InputError
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.column import MOST_HEIGHTS, ColumnSection
 from validation.scenes.scene import Scene
 
 STRESS = "stress"
 AT_HEIGHTS = tuple(f"{part}_{number + 1}" for part in (DISPLACEMENT, STRESS) for number in range(MOST_HEIGHTS))
 OF_COLUMN = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
+
+
+def amplitude(scene: Scene) -> float:
+    """Return the size of a vibration: 1 m at the base; on the top the pulse's pressure, or 1 Pa under a record."""
+    drive = scene.input
+    return float(drive.pressure) if drive.at == "top" and drive.pressure is not None else 1.0
 
 
 def column_of(scene: Scene) -> ColumnSection:
@@ -30,17 +34,3 @@ def column_of(scene: Scene) -> ColumnSection:
     if unknown:
         raise InputError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
     return scene.column
-
-
-def vibration(scene: Scene, frequencies: Array) -> tuple[bool, float]:
-    """Return whether a column answers to its base, per metre, and else the pressure on its top [Pa].
-
-    Raises
-    ------
-    InputError
-        A frequency is zero, at which a half-space does not hold the column.
-    """
-    if np.any(np.asarray(frequencies) == 0):
-        raise InputError(f"{scene.name}: frequencies: must be greater than 0 for a column, got 0")
-    pressure = scene.input.pressure
-    return scene.input.at == "base", 1.0 if pressure is None else pressure

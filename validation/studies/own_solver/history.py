@@ -35,7 +35,7 @@ POWERS = 5  # of the two-block model
 SAMPLES = 400  # enough for a pencil, few enough for its singular values
 TURN = 0.5  # rad between two samples at most, where rows are left out: far from the half turn that would be an alias
 HELD = 1e-4  # of the maximum: what the powers do not give back to four digits is no such sum
-AMPLIFIED = 10.0  # error of xi and of w' / w over that of the mode's samples: 1 / (w dt between them), above 0.1
+MARGIN = 50.0  # of a pencil's error over the bound of Cramer and Rao for one swinging power in noise
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,14 @@ def root(scene: Scene, history: History) -> Root | None:
         return None
     amplitude, strongest = max(swings, key=lambda swing: swing[0])
     logarithm = complex(np.log(strongest))
-    return Root(abs(logarithm) / step, -logarithm.real / abs(logarithm), AMPLIFIED * misfit / (2 * amplitude))
+    error = float(MARGIN * misfit / (2 * amplitude) * _bound(strongest, len(y)) / abs(logarithm))
+    return Root(abs(logarithm) / step, -logarithm.real / abs(logarithm), error)
+
+
+def _bound(z: complex, samples: int) -> float:
+    """Error of ln z over that of the samples, relative to the amplitude: N^(-3/2) of the N samples that swing."""
+    lost = max(0.0, 1 - abs(z) ** 2) + 1 / samples
+    return lost * math.sqrt(lost)
 
 
 def natural_frequency(scene: Scene, numerical: float, ratio: float) -> Value:
