@@ -29,13 +29,24 @@ def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
     omega : array_like
         Angular frequencies w of the load [rad/s].
     """
-    half = np.asarray(omega, float) * (scheme.step / 2)
-    forward = 2j * np.sin(half) * np.exp(1j * half)  # z - 1, all digits of a slow load
-    kept = forward + (1 - scheme.gg)  # z - gg
-    moved = scheme.gg * (1 + scheme.delta * forward) + (0.5 + scheme.alpha * forward) * kept
-    eps = np.finfo(float).eps
-    moved = np.where(np.abs(moved) > eps, moved, eps)  # a load that turns every step may move nothing
+    forward, kept, moved = _parts(scheme, omega)
     return np.asarray(-(forward / scheme.step) * (kept / scheme.step) / moved)
+
+
+def _parts(scheme: Scheme, omega: ArrayLike) -> tuple[Complex, Complex, Complex]:
+    """Return z - 1 and z - gg, and (z - 1)(z - gg) D / (dt^2 A), which the two lines give."""
+    half = np.asarray(omega, float) * (scheme.step / 2)
+    forward: Complex = np.asarray(2j * np.sin(half) * np.exp(1j * half))  # all digits of a slow load
+    kept: Complex = np.asarray(forward + (1 - scheme.gg))
+    moved: Complex = scheme.gg * (1 + scheme.delta * forward) + (0.5 + scheme.alpha * forward) * kept
+    eps = np.finfo(float).eps
+    return forward, kept, np.where(np.abs(moved) > eps, moved, eps)  # a load that turns every step may move nothing
+
+
+def velocity_factor(scheme: Scheme, omega: ArrayLike) -> Complex:
+    """Return S = V / D of the stepped system [1/s]; it tends to i w as dt does to zero."""
+    forward, _, moved = _parts(scheme, omega)
+    return np.asarray(forward * (1 + scheme.delta * forward) / (scheme.step * moved))
 
 
 def limit_squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:

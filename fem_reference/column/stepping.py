@@ -59,7 +59,7 @@ def solve_line(
     began = perf_counter()
     mesh = line_mesh(ground, elements, degree)
     model = Model.of(mesh, ground.impedance)
-    rows = [_row(mesh, model, name, heights) for name in columns]
+    rows = [row_of(mesh, model, name, heights) for name in columns]
     work = Work()
     stepper = DampedStepper(model, scheme, work)
     ready = perf_counter()
@@ -122,7 +122,8 @@ class Observation:
     excitation: Array
 
 
-def _row(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) -> Observation:
+def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) -> Observation:
+    """Return how a column of the history is observed."""
     none, parts = np.zeros(mesh.size), np.zeros(4)
     if name == PRESSURE and model.impedance is None:  # the force that holds the base's own equation
         D, A = (matrix[[model.base]].toarray()[0] for matrix in (model.K, model.M))

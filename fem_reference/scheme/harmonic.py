@@ -37,11 +37,26 @@ def squares(frequencies: Array, scheme: Scheme, exact: bool = False) -> Complex:
     return np.asarray(w * (w + 1j * np.log(scheme.gg) / scheme.step))
 
 
+def rates(frequencies: Array, scheme: Scheme, exact: bool = False) -> Complex:
+    """V / D at frequencies in Hz [1/s]: as stepped, or i w."""
+    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    if exact:
+        return np.asarray(1j * w)
+    away, _, determinant = _cramer(w * scheme.step, scheme)
+    return np.asarray(away * (1 + scheme.delta * away) / (scheme.step * determinant))
+
+
 def _stepped(turn: Array, scheme: Scheme) -> Complex:
     """W2 dt^2 for w dt = `turn`; where the load moves nothing at all, as large as rounding lets it be."""
+    away, left, determinant = _cramer(turn, scheme)
+    return np.asarray(-away * left / determinant)
+
+
+def _cramer(turn: Array, scheme: Scheme) -> tuple[Complex, Complex, Complex]:
+    """Z - 1, z - gg and the determinant, kept off zero."""
     # z - 1 = (cos - 1) + i sin, the real part as a square: no digit of a slow load is lost
     away = -2 * np.sin(turn / 2) ** 2 + 1j * np.sin(turn)
     left = away + (1 - scheme.gg)
     determinant = scheme.gg * (1 + scheme.delta * away) + left * (0.5 + scheme.alpha * away)
     least = np.finfo(float).eps
-    return np.asarray(-away * left / np.where(abs(determinant) < least, least, determinant))
+    return away, left, np.where(abs(determinant) < least, least, determinant)

@@ -58,3 +58,19 @@ def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(t
 def test_what_a_response_refuses(options: list[str], rule: str) -> None:
     with pytest.raises(InputError, match=rule):
         CliRunner().invoke(app, ["response", *CASE, *options], catch_exceptions=False)
+
+
+def test_rayleigh_translates_a_step_and_back(tmp_path: Path) -> None:
+    text = said("rayleigh", "--dt", "0.01", "--from", "5", "--to", "20")
+    words = [line.split() for line in text.splitlines()]
+    assert "dt = 0.01 s, (alpha, delta) = (0.5, 1), gg = 1 hides the Rayleigh damping" in text
+    assert ["leading", "order", "0", "0.005", "-", "-"] in words
+    assert ["5", "7.8459", "7.854"] in words
+    assert "gg = 0.98 hides" in said("rayleigh", *CASE, "--gg", "0.98")
+    path = tmp_path / "xi.svg"
+    back = said("rayleigh", "--dt", "0.001", "--ratio", "5=0.05", "--ratio", "50=0.05", "--figure", str(path))
+    assert "to leading order: dt = 0.000578745 s" in back
+    assert "exactly at both frequencies: dt = 0.000578506 s" in back
+    assert path.stat().st_size > 5000
+    assert "dt = 0.004 s" in said("rayleigh", "--dt", "1", "--a1", "0.002")
+    assert "exactly: damping: no scheme" in said("rayleigh", "--dt", "1", "--ratio", "5=0.005", "--ratio", "50=0.05")

@@ -100,6 +100,34 @@ def test_a_discount_is_a_rate_of_mass_damping() -> None:
     assert found.columns["contact_pressure"][-1] == pytest.approx(1e5, rel=1e-4)
 
 
+def test_a_window_that_ends_before_the_wave_arrives() -> None:
+    """Ten steps of 1e-5 s: the surface, 39 ms away, is at rest, and the base feels a half-space of the column's own."""
+    ground = Ground((SOIL,), "shear", (), SOIL.density * SPEED)
+    scheme = fem_reference.Scheme(0.25, 0.5, 1.0, 1e-5, "zero")
+
+    def sine(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, np.sin(2e4 * time) ** 4, 0 * time, 0 * time)
+
+    found = layers.solve_layers(ground, scheme, 10, sine, ("displacement", "contact_pressure"))
+    exact = SOIL.density * SPEED * np.sin(2e4 * found.time) ** 4
+    assert np.abs(found.columns["contact_pressure"] - exact).max() < 1e-5 * exact.max()
+    assert np.abs(found.columns["displacement"]).max() < 1e-12
+
+
+def test_the_surface_feels_a_pressure_at_once() -> None:
+    """A pressure p pushes the surface at p / (rho c), until the echo from the base is back."""
+    ground = Ground((SOIL,), "pressure", (), 1e7)
+    impedance = (SOIL.density * SOIL.modulus("pressure")) ** 0.5
+
+    def pressed(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.01, 1.0))
+
+    found = layers.solve_layers(ground, STEPS, 20, pressed, ("displacement",))
+    early = found.time < 2 * SOIL.thickness * SOIL.density / impedance
+    ramp = np.where(found.time < 0.01, found.time**2 / 0.02, found.time - 0.005)
+    assert np.allclose(found.columns["displacement"][early], -1e5 / impedance * ramp[early], rtol=2e-4)
+
+
 def test_no_rate_without_velocity() -> None:
     scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
     with pytest.raises(ValueError, match="gg = 0 has no rate"):

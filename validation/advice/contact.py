@@ -57,10 +57,16 @@ def omega(scene: Scene) -> float:
 
 
 def restitution(scene: Scene, at: float) -> Restitution | None:
-    """Return what the scene's scheme makes of a contact at Omega; None where the map of the scheme is not defined."""
-    t = scene.time
+    """Return what the scene's scheme makes of a contact at Omega; None where the map of the scheme is not defined.
+
+    A contact force that is fully implicit acts as constant acceleration does; energy-conserving contact returns all.
+    """
+    t, rule = scene.time, scene.contact.rule
+    if rule == "energy-conserving" and t.discount == 1:
+        return Restitution(1.0, 1.0, 1.0, 1.0)
+    scheme = (0.5, 1.0) if rule == "implicit" else (t.alpha, t.delta)
     try:
-        return Restitution(*impact_statistics(t.alpha, t.delta, t.discount, at))
+        return Restitution(*impact_statistics(*scheme, t.discount, at))
     except ValueError:
         return None
 
@@ -101,7 +107,7 @@ def largest_omega(scene: Scene, error: float) -> float:
 
     4 y / (pi (2 delta - 1)) of algorithmic damping, and sqrt(8 y) of the phase; the smaller of the two.
     """
-    over = 2 * scene.time.delta - 1
+    over = 1.0 if scene.contact.rule == "implicit" else 2 * scene.time.delta - 1
     phase = math.sqrt(8 * error)
     return min(phase, 4 * error / (math.pi * over)) if over > 0 else phase
 

@@ -92,6 +92,15 @@ def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: flo
     }
 
 
+def plain(value: Any) -> Any:
+    """Return data in which None stands for what is not finite, such as w_c of a rigid contact."""
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [plain(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
     kept = ("switches.", "contact.", "energy.", "horizon.")
@@ -146,13 +155,13 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
 
 
 def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
-    """Return when a run first opens or lands, in words; a block that touches may leave its springs at once."""
+    """Return when a run first opens or lands, in words; a block that touches may do either at once."""
     opening, closing = (run.get(f"switches.first_{name}") for name in ("opening", "closing"))
-    at_once = scene.contact.gap == 0 and isinstance(closing, float)
-    at_once = at_once and not (isinstance(opening, float) and isinstance(closing, float) and opening < closing)
-    if opens and at_once:
+    value, other = (opening, closing) if opens else (closing, opening)
+    before = isinstance(other, float) and not (isinstance(value, float) and value < other)
+    touching = scene.contact.gap == 0 and (opens or scene.block.velocity < 0)
+    if touching and before:
         return "at once"
-    value = opening if opens else closing
     return f"{value:.7g} s" if isinstance(value, float) else "never"
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.advice.spectra import checked, single
+from validation.advice.spectra import checked
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Solver
 
@@ -76,7 +77,8 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     ----------
     scene
         A scene without a sweep; its loads vibrate in phase, with the amplitudes that it gives them. Where its base
-        moves, the response is that to the base alone, per metre along its direction.
+        moves, the response is that to the base alone, per metre along its direction. A column answers per metre of its
+        base, or of the wave that comes up through a transmitting base, or under the pressure on its top.
     frequencies
         Frequencies f [Hz], not negative. Above 1 / (2 dt), half the sampling frequency, the steps see a load's alias.
     solver
@@ -99,15 +101,26 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     [11.545937, 31.441911]
     """
     f = _checked(frequencies)
-    chosen = checked(solver, single(scene)) if isinstance(solver, str) else solver
+    check_scene(scene)
+    chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
     try:
         found = chosen.prepare(scene).response(f, exact)
     except NotReported as error:
         raise InputError(f"{scene.name}: solver {chosen.name}: {error}") from None
-    base = scene.load.base_motion is not None
+    base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
     return Response(scene.name, chosen.name, exact, base, f, {name: found[name] for name in (DISPLACEMENT, PRESSURE)})
+
+
+def check_scene(scene: Scene) -> None:
+    """Refuse a scene with a sweep, or one that is not linear."""
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if not features.linear(scene):
+        has = ", ".join(features.of(scene))
+        raise InputError(f"{scene.name}: a frequency response exists for linear scenes only, got one with {has}")
 
 
 def _checked(frequencies: ArrayLike) -> Array:

@@ -39,7 +39,7 @@ def contact(
     rows, absent = _rows(contact_page.scenes(case))
     found = contact_page.answer(case, rows, error, penetration)
     if as_json:
-        typer.echo(json.dumps(found | {"absent": absent}, indent=1, allow_nan=False))
+        typer.echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
     else:
         typer.echo("\n".join(contact_page.page(case, found, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE

@@ -1,4 +1,4 @@
-"""The commands of frequencies: ``response``."""
+"""The commands of frequencies: ``response`` and ``rayleigh``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import typer
 from validation.cli.app import SetOption, app, one_case
 
 if TYPE_CHECKING:
+    from validation.advice.rayleigh import Rayleigh
     from validation.advice.response import Response
+    from validation.gates.waves import Stepping
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
 
@@ -52,7 +54,7 @@ def response(
     _print_peaks(case, answers)
 
 
-EXACT = "exact in time"
+EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a column
 
 
 def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
@@ -99,13 +101,14 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
     from validation.solvers.registry import get_solver
 
     shown = dict(answers)
-    if get_solver("continuum").refusal(case) is None:
-        shown["continuum"] = answer(case, answers[EXACT].frequency, "continuum")
+    truth = next((name for name in TRUTHS if get_solver(name).refusal(case) is None), None)
+    if truth is not None:
+        shown[truth] = answer(case, answers[EXACT].frequency, truth)
     curves = []
     for name, found in shown.items():
-        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == "continuum")
+        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == truth)
         columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
-        label = {EXACT: f"{found.solver}, exact in time", "continuum": "continuum"}.get(name, f"{name} as stepped")
+        label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
         curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
     typer.echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
 
@@ -131,3 +134,111 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     limit = 0.5 / case.time.step
     if found.frequency[-1] > limit * (1 + 1e-12):
         typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+@app.command()
+def rayleigh(
+    scene: Annotated[str | None, typer.Argument(help="Scene whose scheme is translated; or give --dt.")] = None,
+    assignments: SetOption = None,
+    dt: Annotated[float | None, typer.Option("--dt", help="Time step.", metavar="S")] = None,
+    alpha: Annotated[float | None, typer.Option("--alpha", help="The scheme's alpha.")] = None,
+    delta: Annotated[float | None, typer.Option("--delta", help="The scheme's delta.")] = None,
+    gg: Annotated[float | None, typer.Option("--gg", help="Discount of a step.")] = None,
+    a0: Annotated[float | None, typer.Option("--a0", help="Back: mass damping that is wanted.", metavar="1/S")] = None,
+    a1: Annotated[float | None, typer.Option("--a1", help="Back: stiffness damping.", metavar="S")] = None,
+    ratios: Annotated[
+        list[str] | None,
+        typer.Option("--ratio", help="Back: a ratio at a frequency, 5=0.02; give two.", metavar="HZ=XI"),
+    ] = None,
+    keep_step: Annotated[bool, typer.Option("--keep-dt", help="Back: find delta and gg at this dt.")] = False,
+    low: Annotated[float | None, typer.Option("--from", help="Lowest frequency shown.", metavar="HZ")] = None,
+    high: Annotated[float | None, typer.Option("--to", help="Highest frequency shown.", metavar="HZ")] = None,
+    figure: FigureOption = None,
+) -> None:
+    """Translate the damping that a time step hides into Rayleigh's a0 and a1, or a wanted one into dt, delta and gg.
+
+    Example: [bold]dda-validate rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
+
+    C = a0 M + a1 K, as other codes take it. Back: --ratio 2=0.05 --ratio 20=0.05, or --a0 and --a1.
+    """
+    from dataclasses import replace
+
+    from validation.advice import rayleigh as advice
+
+    check_figure(figure)
+    scheme, points = _scheme(scene, assignments, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg}), []
+    if ratios or a0 is not None or a1 is not None:
+        points = advice.points(ratios or [], a0, a1)
+        scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
+    ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
+    band = low or ends[0], high or ends[1]
+    advice.check_band(*band)
+    _print_scheme(scheme, band)
+    if figure is not None:
+        _draw_ratios(scheme, band, figure)
+
+
+def _scheme(scene: str | None, assignments: list[str] | None, given: dict[str, float | None]) -> Stepping:
+    """Return the scheme of a scene, or of the options, which go before it."""
+    from dataclasses import asdict
+
+    from validation.advice.rayleigh import scheme_of
+    from validation.gates.waves import Stepping
+
+    own = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
+    return scheme_of(own | {name: value for name, value in given.items() if value is not None})
+
+
+def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
+    """Say which scheme hides a wanted damping, and return the best one."""
+    from validation.advice.rayleigh import exact_settings, settings
+    from validation.errors import InputError
+
+    found = settings(wanted, scheme, keep_step)
+    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s\nto leading order: {found.words}")
+    if not points:
+        return found
+    try:
+        found = exact_settings(points[0], points[1], scheme, keep_step)
+    except InputError as error:
+        typer.echo(f"exactly: {error}")
+    else:
+        typer.echo(f"exactly at both frequencies: {found.words}")
+    return found
+
+
+def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
+    """Print a0 and a1 of a scheme and its damping ratio over frequency."""
+    import numpy as np
+
+    from validation.advice.rayleigh import hidden, matched, ratio
+    from validation.cli.damping import print_table
+
+    leading, fitted = hidden(scheme), matched(scheme, *band)
+    typer.echo(f"\n{scheme.words} hides the Rayleigh damping")
+    rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
+    for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
+        least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
+        rows.append((name, f"{damping.a0 + 0.0:.6g}", f"{damping.a1:.6g}", *least))
+    print_table(rows)
+    frequency = np.geomspace(*band, 8)
+    columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
+    typer.echo("")
+    heads = ("frequency [Hz]", "xi [%]", "leading order")
+    print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
+
+
+def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> None:
+    """Draw the damping ratio over frequency, exact, to leading order and matched at the ends of the band."""
+    import numpy as np
+
+    from validation.advice.rayleigh import hidden, matched, ratio
+    from validation.report.figures.response import ratio_figure, save_as
+
+    f = np.geomspace(*band, 300)
+    lines = {
+        "as stepped": ratio(scheme, f),
+        "Rayleigh, leading order": hidden(scheme).ratio(f),
+        "Rayleigh, exact at both ends": matched(scheme, *band).ratio(f),
+    }
+    typer.echo(f"wrote {save_as(ratio_figure(f, lines), path)}")

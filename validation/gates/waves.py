@@ -42,6 +42,11 @@ class Stepping:
         t = scene.time
         return cls(t.step, t.alpha, t.delta, t.discount)
 
+    @property
+    def words(self) -> str:
+        """The numbers in words."""
+        return f"dt = {self.step:.6g} s, (alpha, delta) = ({self.alpha:.6g}, {self.delta:.6g}), gg = {self.gg:.9g}"
+
     def squared_frequency(self, omega: ArrayLike) -> Complex:
         """Return W2 [1/s^2] at angular frequencies w [rad/s]: A = -W2 D."""
         half = 0.5 * self.step * np.asarray(omega, float)

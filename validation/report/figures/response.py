@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +13,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from validation.report.figures.curves import COLUMNS, engineering, style_of
-from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, save
+from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, one_axes, save
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
+COLORS = ("#d55e00", "#0072b2", "#009e73")
 DASHED = (4.0, 1.6)
 DOTS = 200  # an inch, of PNG files
 UNDATED: dict[str, dict[str, None]] = {".pdf": {"CreationDate": None}, ".png": {"Software": None}}
@@ -48,6 +50,20 @@ def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metr
         colors = {curve.name: style_of(curve.solver).color for curve in curves}
         phases[0].set_ylabel("phase [rad]")
         label_ends(sizes[1], ends, colors=colors)
+    return figure
+
+
+def ratio_figure(frequency: Array, lines: Mapping[str, Array]) -> Figure:
+    """Draw damping ratios over frequency, the first line solid and the others dashed."""
+    with house_style():
+        figure, axes = one_axes(46.0, Margins(14.0, 46.0, 3.0, 9.5), ("frequency [Hz]", "damping ratio [%]"))
+        axes.set_xscale("log")
+        axes.set_xlim(frequency[0], frequency[-1])
+        colors = dict(zip(lines, itertools.cycle(COLORS), strict=False))
+        for i, (name, values) in enumerate(lines.items()):
+            axes.plot(frequency, 100 * values, color=colors[name], lw=1.0, ls=(0, DASHED) if i else "-")
+        axes.set_ylim(bottom=0)
+        label_ends(axes, {name: 100 * float(values[-1]) for name, values in lines.items()}, colors=colors)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,13 @@ import numpy as np
 import dda
 from dda.column.column import Column, Layer, Spring
 from dda.column.frequency import highest_frequency
+from dda.column.response import column_response
 from dda.column.stepping import Drive, solve_column
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import column_of
+from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming, no_fields, to_run
@@ -39,3 +42,11 @@ class BlockColumn(Prepared):
         with naming(self.scene):
             found = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
         return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response per metre at the base, or under the pressure on the top."""
+        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
+        at = self.scene.input.at
+        with naming(self.scene):
+            found = column_response(self.column, self.scheme, frequencies, at, (DISPLACEMENT, PRESSURE), exact)
+        return {name: amplitude(self.scene) * values for name, values in found.items()}

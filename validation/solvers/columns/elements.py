@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.problem.problem import Array, Scheme
+from validation.runs.history import DISPLACEMENT, PRESSURE, Complex
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import column_of
+from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming, no_fields, to_run
@@ -54,3 +56,16 @@ class LineColumn(Prepared):
         with naming(self.scene):
             found = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
         return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response per metre at the base, or under the pressure on the top."""
+        from fem_reference.column.frequency import highest_frequency
+        from fem_reference.column.vibration import line_response
+        from fem_reference.scheme.limits import critical_omega
+
+        ground, elements, degree = self.ground, self.elements, self.scene.fem.degree
+        check_step(self.scene, critical_omega, lambda: highest_frequency(ground, elements, degree))
+        asked = self.scene.input.at == "top", (DISPLACEMENT, PRESSURE), exact
+        with naming(self.scene):
+            found = line_response(ground, elements, degree, self.scheme, frequencies, *asked)
+        return {name: amplitude(self.scene) * values for name, values in found.items()}

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.columns.names import OF_COLUMN, column_of
+from validation.solvers.columns.names import OF_COLUMN, amplitude, column_of
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.translation import naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import fem_reference
+
+
+STILL = 1e-9  # Hz, for a frequency of zero, at which transfer matrices divide by zero
 
 
 class ExactColumn(Prepared):
@@ -34,6 +41,20 @@ class ExactColumn(Prepared):
         with naming(self.scene):
             found = solve_layers(self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights)
         return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time; at rest it is that of next to nothing."""
+        from fem_reference.exact.layers import amplitudes
+        from fem_reference.scheme.harmonic import squares
+
+        f = np.maximum(np.atleast_1d(np.asarray(frequencies, float)), STILL)
+        with naming(self.scene):
+            W2 = squares(f, self.scheme, exact=True)
+        w, names = 2 * np.pi * f, (DISPLACEMENT, PRESSURE)
+        moved, pressed = amplitudes(self.ground, w, names, squared=W2)
+        if self.scene.input.at == "top":
+            return {name: amplitude(self.scene) * pressed[name] for name in names}
+        return {name: 1j * w * moved[name] for name in names}
 
 
 def _scheme_of(scene: Scene) -> fem_reference.Scheme:

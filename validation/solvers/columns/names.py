@@ -12,6 +12,12 @@ AT_HEIGHTS = tuple(f"{part}_{number + 1}" for part in (DISPLACEMENT, STRESS) for
 OF_COLUMN = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
 
 
+def amplitude(scene: Scene) -> float:
+    """Return the size of a vibration: 1 m at the base; on the top the pulse's pressure, or 1 Pa under a record."""
+    drive = scene.input
+    return float(drive.pressure) if drive.at == "top" and drive.pressure is not None else 1.0
+
+
 def column_of(scene: Scene) -> ColumnSection:
     """Return the column of a scene, whose columns of the history are checked.
 

@@ -20,7 +20,7 @@ from validation.studies.declaration import Study
 from validation.studies.opening import half_unit
 
 BLOCK, BAR = "block-events", "bar-events"
-SCENES = ("impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
+SCENES = ("unlocked-other", "impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
 WALLS = ("ansys-vm265", "siconos-bar")  # next to rigid
 # p/E -> first release over a / c and restitution of the block, then of the bar, by an independent program.
 IMPACTS = {
@@ -33,6 +33,21 @@ IMPACTS = {
 FALLS = {
     1.0: (0.0089485487848081, 0.0094942023919859, None, None),
     100.0: (0.00036738771005667, 0.0066019935521345, 0.0022040919388594, 0.0025951314402221),
+}
+# Openings and closings of another block under a pressure: first and second, of the block and of the bar [s].
+OTHERS = {
+    BLOCK: {
+        "first_closing": 0.0013278582077407,
+        "first_opening": 0.0054491055360487,
+        "second_closing": 0.0072447406133871,
+        "second_opening": 0.012414067088762,
+    },
+    BAR: {
+        "first_opening": 0.0069218140380999,
+        "first_closing": 0.0077222679298686,
+        "second_opening": 0.012238800061209,
+        "second_closing": 0.012590286189158,
+    },
 }
 # 2 p h / E -> release, second impact and second release of the bouncing bar [s].
 BOUNCES = {
@@ -87,11 +102,19 @@ def bounce(scene: Scene) -> tuple[float, float, float]:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*impact_gates(), *fall_gates(), *bouncing_bar_gates(), *wall_gates(), *mass_gates())
+    return (*other_gates(), *impact_gates(), *fall_gates(), *bouncing_bar_gates(), *wall_gates(), *mass_gates())
 
 
 def _near(scene: Scene, solver: str, metric: str, value: float, half: float) -> Gate:
     return Gate(scene.name, (solver,), metric, *about(value, half + 1e-11 * abs(value)), PRINTED, OTHER, half)
+
+
+def other_gates() -> Iterator[Gate]:
+    """Yield the gates on the switches of a block of other data under a pressure."""
+    (case,) = cases("unlocked-other")
+    for solver, switches in OTHERS.items():
+        for name, time in switches.items():
+            yield _near(case, solver, f"switches.{name}", time, half_unit(time))
 
 
 def impact_gates() -> Iterator[Gate]:
