@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles.layers_by_stiffness import assembled
 
 import fem_reference
 from fem_reference.column.problem import Excitation, Ground, Stratum
@@ -98,6 +99,38 @@ def test_a_discount_is_a_rate_of_mass_damping() -> None:
     static = -1e5 * (SOIL.thickness / SOIL.modulus("pressure") + 1e-7)
     assert found.columns["displacement"][-1] == pytest.approx(static, rel=1e-4)
     assert found.columns["contact_pressure"][-1] == pytest.approx(1e5, rel=1e-4)
+
+
+def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
+    """Return a random column with joints anywhere, some where layers meet, and heights, some of them at joints."""
+    strata = tuple(
+        Stratum(round(rng.uniform(0.5, 6), 2), rng.uniform(1500, 2500), 10 ** rng.uniform(7, 9.5), rng.uniform(0, 0.45))
+        for _ in range(int(rng.integers(1, 5)))
+    )
+    tops = np.cumsum([stratum.thickness for stratum in strata])
+    places = [0.0] * (rng.random() < 0.3) + [float(top) for top in tops[:-1] if rng.random() < 0.5]
+    places += [round(rng.uniform(0.05, 0.95) * tops[-1], 3) for _ in range(int(rng.integers(0, 4)))]
+    joints = tuple((round(place, 9), 10 ** rng.uniform(6, 9)) for place in dict.fromkeys(places))
+    heights = [0.0, float(tops[-1]), float(tops[0]), rng.uniform(0, tops[-1]), *(place for place, _ in joints[:2])]
+    impedance = None if rng.random() < 0.5 else 10 ** rng.uniform(5, 7)
+    motion = "shear" if rng.random() < 0.5 else "pressure"
+    some = rng.permutation(heights)[: int(rng.integers(1, len(heights) + 1))]
+    return Ground(strata, motion, joints, impedance), [float(height) for height in some]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground, heights = drawn(rng)
+    omega = rng.uniform(1, 300)
+    names = [f"displacement_{number + 1}" for number in range(len(heights))]
+    stiffness = omega * max((x.density * x.modulus(ground.motion)) ** 0.5 for x in ground.strata)
+    both = layers.amplitudes(ground, [omega], (*names, "contact_pressure"), heights)
+    for found, base in zip(both, (True, False), strict=True):
+        displaced, pressure = assembled(ground, omega, heights, base)
+        size = max(map(abs, displaced))
+        assert max(abs(found[name][0] - x) for name, x in zip(names, displaced, strict=True)) < 1e-8 * size
+        assert abs(found["contact_pressure"][0] - pressure) < 1e-8 * (stiffness * size + abs(pressure))
 
 
 def test_a_window_that_ends_before_the_wave_arrives() -> None:

@@ -200,6 +200,14 @@ def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
         solve(load_scene("figures-3-4").expand()[0], "layers")
 
 
+def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
+    """A feature is one that columns can have, or it looks at a table that they have not."""
+    for feature in features.FEATURES:
+        if not feature.of_columns:
+            with pytest.raises(InputError, match="got a scene of a column"):
+                feature.present(site)
+
+
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:
     with pytest.raises(InputError, match="site: damping takes scenes of a block only"):
         damping(site)
