@@ -60,7 +60,7 @@ def check(seed: int) -> bool:
     column, ground, elements, numbers = draw(rng)
     at_top, degree = bool(rng.random() < 0.5), int(rng.integers(1, 3))
     w = rng.uniform(0.1, 1.5) / numbers["step"]
-    steps = 6000
+    steps = 3000
     t = numbers["step"] * np.arange(steps + 1.0)
     wave, rate, turn = np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)
     still = np.zeros_like(t)
@@ -89,13 +89,14 @@ def ends_there(history: Result | FemResult, found: dict[str, np.ndarray], w: flo
     return sharp
 
 
-def test_stepped_columns_end_where_the_closed_form_says() -> None:
-    assert check(0)
+@pytest.mark.parametrize("seed", [2, 3, 5])  # a told base, a half-space, a pressure on the top
+def test_stepped_columns_end_where_the_closed_form_says(seed: int) -> None:
+    assert check(seed)
 
 
 @pytest.mark.long
 def test_many_stepped_columns_end_where_the_closed_form_says() -> None:
-    assert sum(check(seed) for seed in range(1, 21)) > 5
+    assert sum(check(seed) for seed in range(6, 26)) > 15
 
 
 @pytest.mark.parametrize("scheme", [{}, {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.99}])
