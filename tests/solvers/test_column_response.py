@@ -89,7 +89,7 @@ def ends_there(history: Result | FemResult, found: dict[str, np.ndarray], w: flo
     return sharp
 
 
-@pytest.mark.parametrize("seed", [2, 3, 5])  # a told base, a half-space, a pressure on the top
+@pytest.mark.parametrize("seed", [12, 3, 5])  # a told base, a half-space, a pressure on the top
 def test_stepped_columns_end_where_the_closed_form_says(seed: int) -> None:
     assert check(seed)
 
