@@ -80,6 +80,7 @@ def compare(scene: Scene, foreign: Foreign) -> Answer:
         The scene has a sweep or is not linear, or the history is zero throughout or does not fit the scene.
     """
     features.refuse_column(scene, "compare")
+    features.refuse_damping(scene, "compare")
     if not features.linear(scene):
         raise InputError(
             f"{scene.name}: compare takes linear scenes only, got one with {', '.join(features.of(scene))}"

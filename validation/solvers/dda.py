@@ -52,8 +52,8 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
     import dda
 
-    t = scene.time
-    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+    t, d = scene.time, scene.damping
+    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
 class OneBlock(Prepared):
@@ -246,11 +246,11 @@ class DDA(Solver):
 
     name = "dda"
     handles = (
-        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN})
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN, features.DAMPING})
         | features.LOADS
         | features.RULES
     )
-    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
+    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -267,7 +267,7 @@ class DDA(Solver):
         apart = own & {features.SUB_BLOCKS, features.BASE_MOTION}
         if features.UNILATERAL in own and apart:
             return f"it does not handle {', '.join(sorted(apart))} together with {features.UNILATERAL}"
-        return None
+        return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
