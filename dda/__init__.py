@@ -23,6 +23,8 @@ from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.opening import OpeningSystem, opening_subdivided
+from dda.system.opening_solution import OpeningResult, solve_opening_system
 from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
@@ -43,6 +45,8 @@ __all__ = [
     "Material",
     "ModalForm",
     "Mode",
+    "OpeningResult",
+    "OpeningSystem",
     "Result",
     "Scheme",
     "Section",
@@ -58,9 +62,11 @@ __all__ = [
     "modal_form",
     "modes",
     "one_step_operator",
+    "opening_subdivided",
     "response",
     "shared_edges",
     "solve",
+    "solve_opening_system",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

@@ -38,6 +38,7 @@ elements = 4
 
 TOGETHER = (  # modules whose tests share what takes long to make
     "test_opened_chapters",
+    "test_contact_pack",
     "test_subblocks_chapter",
     "test_changes",
     "test_claims",
@@ -48,6 +49,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_kept_numbers",
     "test_paper_chapter",
     "test_report",
+    "test_site_program",
     "test_walls",
     "test_work_precision",
 )

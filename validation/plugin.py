@@ -40,7 +40,12 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "validation: the accuracy gates of dda-validation, one test a gate")
     # pytest-xdist registers it as well; without xdist the gates still carry it.
     config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
-    if config.getoption("--dda-solver", None):
+    if user := config.getoption("--dda-solver", None):
+        from validation.solvers.registry import is_solver
+
+        if not is_solver(user):
+            known = "module:attribute, or a name that `dda-validate list` shows"
+            raise pytest.UsageError(f"--dda-solver: must be {known}, got {user!r}")
         os.environ["DDA_VALIDATE_TIMEOUT"] = str(config.getoption("--dda-timeout"))
 
 

@@ -143,8 +143,13 @@ def _numbers(column: Column) -> tuple[list[Face], list[Face], dict[int, int], in
 def _add_springs(column: Column, K: Bands, openings: dict[int, int]) -> None:
     """Add the springs; the one on a base that is told joins two displacements, every other one is an unknown's own."""
     for block, unknown in openings.items():
-        value = column.springs[block]
-        K.add(unknown, unknown, value or 0.0)
+        value = opening_stiffness(column, block)
+        K.add(unknown, unknown, value)
         if block == 0 and column.impedance is None:
-            K.add(0, 0, value or 0.0)
-            K.add(unknown, 0, -(value or 0.0))
+            K.add(0, 0, value)
+            K.add(unknown, 0, -value)
+
+
+def opening_stiffness(column: Column, block: int) -> float:
+    """Return the stiffness of the spring below a block [Pa/m]."""
+    return column.springs[block] or 0.0

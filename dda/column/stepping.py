@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.column.column import Column
-from dda.column.equations import Bands, Equations, equations
+from dda.column.equations import WIDTH, Bands, Equations, equations
 from dda.one_block.solution import Result, bound_overflow, step_times
 from dda.scheme.newmark import Scheme
 
@@ -189,15 +189,16 @@ class Stepper:
         """Return the observed rows at every step, (rows, steps)."""
         s, push = self.scheme, self.push
         parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
-        by_D, by_V, by_A = (matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A))
+        by_state = np.hstack([matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A)])
+        K, C = _product(self.K), _product(self.C)
         D = np.zeros(len(push))
         V, A = np.zeros_like(D), self._start(push @ parts[0])
-        found = np.empty((len(by_D), len(parts) - 1))
+        found = np.empty((len(by_state), len(parts) - 1))
         for n, part in enumerate(parts[1:]):
             D, V = predictors(s, D, V, A)
-            A = self.solve(push @ part - self.C @ V - self.K @ D)
+            A = self.solve(push @ part - C(V) - K(D))
             D, V = D + s.alpha * s.step**2 * A, V + s.delta * s.step * A
-            found[:, n] = by_D @ D + by_V @ V + by_A @ A
+            found[:, n] = by_state @ np.concatenate((D, V, A))
         return found + self.told(rows) @ parts[1:].T
 
     def told(self, rows: Observers) -> Array:
@@ -216,12 +217,20 @@ class Stepper:
         return _factorised(self.M)(F)
 
 
+def _product(matrix: Bands) -> Callable[[Array], Array]:
+    """Return the product of a matrix with vectors, by one call of BLAS."""
+    from scipy.linalg.blas import dsbmv
+
+    rows = np.asfortranarray(matrix.rows)
+    return lambda x: np.asarray(dsbmv(WIDTH, 1.0, rows, x, lower=1))
+
+
 def _factorised(matrix: Bands) -> Callable[[Array], Array]:
     """Return the solver of right-hand sides of a positive definite matrix, factorised now."""
     from scipy.linalg import cholesky_banded
     from scipy.linalg.lapack import dpbtrs
 
-    factor = cholesky_banded(matrix.rows, lower=True)
+    factor = np.asfortranarray(cholesky_banded(matrix.rows, lower=True))
 
     def solve(right: Array) -> Array:
         solution: Array = dpbtrs(factor, right, lower=1)[0]

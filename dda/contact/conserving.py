@@ -35,12 +35,12 @@ def conserving(law: Unilateral, before: Corners, free: Free) -> Iteration:
     """
     p, w0, C, w_f = law.stiffness, before.gap, free.C, free.gap
     if len(w0) == 1:
-        w1, N, _ = _one(p, C[0][0], w0[0], w_f[0])
+        w1, N, _ = one_contact(p, C[0][0], w0[0], w_f[0])
         return _found(law, (w1,), (N,), 1)
     forces, residual = [0.0, 0.0], math.inf
     for solves in range(1, ROUNDS + 1):
-        w_M, N_M, s_M = _one(p, C[0][0], w0[0], w_f[0] + C[0][1] * forces[1])
-        w_N, N_N, s_N = _one(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
+        w_M, N_M, s_M = one_contact(p, C[0][0], w0[0], w_f[0] + C[0][1] * forces[1])
+        w_N, N_N, s_N = one_contact(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
         change = N_N - forces[1]
         slope = C[0][1] * C[1][0] * s_M * s_N
         if abs(change) <= SETTLED * abs(N_N):
@@ -52,24 +52,25 @@ def conserving(law: Unilateral, before: Corners, free: Free) -> Iteration:
     return Iteration(None, ROUNDS, NONE)
 
 
-def _one(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:
+def one_contact(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:
     """Return w1 and N of one contact, and -dN/dw_f [N/m]."""
     if w0 >= 0 and w_f >= 0:
         return w_f, 0.0, 0.0
     if w0 >= 0:
-        w1 = -_penetration(p * C + 2, w0, -w_f)
-        N = p * w1 * w1 / (w0 - w1) / 2
-        stiffness = p * w1 * (w1 - 2 * w0) / (w0 - w1) ** 2 / 2
-        return w1, N, stiffness / (1 + C * stiffness)
+        u = _penetration(p * C + 2, w0, -w_f)
+        share = u / (w0 + u) if u else 0.0
+        stiffness = p * share * (2 - share) / 2
+        return -u, p * u * share / 2, stiffness / (1 + C * stiffness)
     N = -(w_f + w0) / (C + 2 / p)
     if -p * w0 <= 2 * N:
         return -2 * N / p - w0, N, 1 / (C + 2 / p)
     rise = w_f - w0
     root = math.sqrt(rise * rise + 2 * C * p * w0 * w0)
     N = p * w0 * w0 / (rise + root) if rise > 0 else (root - rise) / (2 * C)
-    w1 = w_f + C * N
-    stiffness = N / (w1 - w0)
-    return w1, N, stiffness / (1 + C * stiffness)
+    if N == 0:  # of a penetration whose square is below all numbers
+        return w_f, 0.0, 0.0
+    risen = p * w0 * w0 / (2 * N)
+    return w0 + risen, N, N / (risen + C * N)
 
 
 def _penetration(c: float, w0: float, u_f: float) -> float:

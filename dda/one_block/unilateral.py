@@ -84,6 +84,11 @@ class UnilateralModel:
         """All loads."""
         return Load(self.pressure, self.eccentricity, self.traction, self.gravity)
 
+    @cached_property
+    def reduced(self) -> UnilateralForm:
+        """Matrices and load in the unknowns that move."""
+        return self.form()
+
     def form(self, full: bool = False) -> UnilateralForm:
         """Return matrices and load in the unknowns that move; in all six if `full`."""
         return unilateral_form(self.block, self.contact, self.base, self.top, self.applied, self.velocity, full)
@@ -102,7 +107,7 @@ class UnilateralOptions:
     rule: str = NEWMARK  # or "implicit", "energy-conserving": the block by average acceleration, contact of its own
     solve_limit: int = 6  # solves of the open-close iteration before all states are tried
     cut: float = 0.3  # length of a cut step over that of the failed one
-    energies: bool = False  # keep the energies of every step
+    energies: bool = False  # keep what the energies of every step are made of
     full: bool = False  # keep all six unknowns and both corners where the motion is symmetric, make every step singly
 
     def __post_init__(self) -> None:
@@ -164,12 +169,15 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
     law = model.contact
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
         raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
-    if options.rule == CONSERVING and len((form := model.form()).B) > form.contacts:
-        raise ValueError(
-            f"rule: {CONSERVING} contact is frictionless: shear must be 0 where the base can slide, got {law}"
-        )
-    if math.isinf(model.contact.stiffness) and scheme.alpha == 0:
-        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {model.contact.stiffness}")
+    if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
+        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
+    check_scheme(law, scheme)
+
+
+def check_scheme(law: Unilateral, scheme: Scheme) -> None:
+    """Raise ValueError where an explicit scheme meets a rigid stop."""
+    if math.isinf(law.stiffness) and scheme.alpha == 0:
+        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
 
 
 class Stepping:
@@ -179,7 +187,7 @@ class Stepping:
         self.model, self.scheme, self.options = model, scheme, options
         if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
             model = replace(model, contact=replace(model.contact, shear=0.0))
-        self.law, self.form = model.contact, model.form(options.full)
+        self.law, self.form = model.contact, model.form(True) if options.full else model.reduced
         self.outcome, self.factorisations = COMPLETED, 0
         self.lengths: dict[float, StepLength] = {}
         self.phases: dict[tuple[bool, ...], Phase | str] = {}
@@ -208,7 +216,7 @@ class Stepping:
         """Return the state after some steps that are made at once, and how many to make singly then."""
         history, v, closed = self.history, np.array(vector(state)), state.corners.closed
         began = history.steps
-        while history.steps < steps and not isinstance(phase := self._phase(closed, steps), str):
+        while history.steps < steps and not isinstance(phase := self.phase_of(closed, steps), str):
             made = glide(phase, v, closed, history.steps, steps - history.steps)
             if made:
                 v = made[1]
@@ -216,7 +224,7 @@ class Stepping:
             if history.steps == steps or self.jump is None:
                 break
             after, found = self.jump.step(v, closed, self.options.solve_limit)
-            if found.corners is None or not math.isfinite(after.sum()):
+            if found.corners is None or not math.isfinite(after.dot(after)):
                 break
             v, closed = after, found.corners.closed
             history.add(Step(v, closed, found.solves, 0))
@@ -230,13 +238,13 @@ class Stepping:
         """Single steps of frictionless contacts; None where they are glued."""
         return None if len(self.form.B) > self.form.contacts else Jump(self.form, self.law, self._length(1.0))
 
-    def _phase(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
+    def phase_of(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
         """Return the steps of a contact state, or why they are made singly."""
-        if self.options.full:
-            return "all savings off"
-        if self.options.rule != NEWMARK:
-            return f"the rule {self.options.rule}"
         if closed not in self.phases:
+            if self.options.full:
+                return "all savings off"
+            if self.options.rule != NEWMARK:
+                return f"the rule {self.options.rule}"
             self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
         return self.phases[closed]
 
@@ -275,8 +283,11 @@ class Stepping:
 def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: float) -> UnilateralResult:
     form, model, history = stepping.form, stepping.model, stepping.history
     values = observed(form, history, base_directions(model.block, model.base)[2], columns)
-    ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule)
-    kept = energies(ledger, history, stepping.start, stepping.cut_steps) if stepping.options.energies else None
+
+    def balance() -> dict[str, Array]:
+        ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule)
+        return energies(ledger, history, stepping.start, stepping.cut_steps)
+
     ended = perf_counter()
     return UnilateralResult(
         time=step_times(stepping.scheme, history.steps),
@@ -289,7 +300,7 @@ def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: flo
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
         outcome=stepping.outcome,
-        energies=kept,
+        balance=balance if stepping.options.energies else None,
         history=history,
         form=form,
         law=stepping.law,

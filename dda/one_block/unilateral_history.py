@@ -7,7 +7,7 @@ only the first of every `BLOCK` is kept; a quantity is made from these when it i
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -58,31 +58,32 @@ def glide(phase: Phase, v: Array, closed: tuple[bool, ...], first: int, left: in
     open-close iteration. NaN agrees with nothing.
     """
     z, constant = phase.start(v)
-    limits = (phase.limits - phase.watched @ constant).tolist()
-    blocks = fresh = z[None]
-    done, level = 0, BLOCK.bit_length() - 1
-    while True:
-        upto = min(left - done, BLOCK * len(fresh))
-        kept = upto
-        for rows, limit in zip(phase.watch, limits, strict=True):
-            good = (fresh @ rows.T).ravel()[:kept] >= limit
-            worst = int(good.argmin())
-            if not good[worst]:
-                kept = worst
-            if not kept:
-                break
-        done += kept
-        if kept < upto or done == left:
-            break
+    limits = [limit - constant.item(at) for at, limit in phase.watched]
+    kept, upto = _agreed([rows @ z for rows in phase.watch], limits, min(left, BLOCK))
+    done, blocks, level = kept, z[None], BLOCK.bit_length() - 1
+    while kept == upto and done < left:
         fresh = blocks @ phase.maps[level].T
-        blocks, level = np.concatenate([blocks, fresh]), level + 1
+        tested = [(fresh @ rows.T).ravel() for rows in phase.watch]
+        kept, upto = _agreed(tested, limits, min(left - done, BLOCK * len(fresh)))
+        done, blocks, level = done + kept, np.concatenate([blocks, fresh]), level + 1
     if done == 0:
         return None
     last, rest = divmod(done - 1, BLOCK)
     end = phase.shown @ phase.after(blocks[last], rest + 1) + constant
-    if not math.isfinite(end.sum()):
+    if not math.isfinite(end.dot(end)):
         return None
     return Glide(first, done, phase, closed, blocks[: last + 1], constant), end
+
+
+def _agreed(tested: Sequence[Array], limits: Sequence[float], upto: int) -> tuple[int, int]:
+    """Return how many of the first `upto` steps come before one in which a quantity is below its limit, and `upto`."""
+    kept = upto
+    for values, limit in zip(tested, limits, strict=True):
+        good = values[:kept] >= limit
+        worst = int(good.argmin()) if kept else 0
+        if kept and not good[worst]:
+            kept = worst
+    return kept, upto
 
 
 def state_of(form: UnilateralForm, law: Unilateral, dt: float, before: Corners, v: Array) -> State:
@@ -137,10 +138,11 @@ class History:
         less = np.zeros(len(rows)) if less is None else less
         out = np.empty((len(rows), self.steps))
         out[:, numbers] = rows @ values.T - less[:, None] + 0.0
-        for part in self.glides:
-            constants = (rows @ part.constant - less).tolist()
-            for line, inner, constant in zip(out, part.phase.table(rows), constants, strict=True):
-                _fill(line[part.first : part.first + part.steps], part.blocks, inner, constant)
+        constants = np.array([part.constant for part in self.glides]).reshape(-1, self.layout.size) @ rows.T - less
+        for part, constant in zip(self.glides, constants.tolist(), strict=True):
+            lines = out[:, part.first : part.first + part.steps]
+            for line, inner, value in zip(lines, part.phase.table(rows), constant, strict=True):
+                _fill(line, part.blocks, inner, value)
         return out
 
     def closed(self, contact: int) -> NDArray[np.bool_]:
@@ -193,11 +195,19 @@ class UnilateralResult(Result):
     """
 
     outcome: str  # "completed", or why the history ends early, in words
-    energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
+    balance: Callable[[], dict[str, Array]] | None  # makes the energies
     history: History
     form: UnilateralForm
     law: Unilateral
     momentum: Array  # (2, n) horizontal and vertical velocity of the centroid by P [1/(kg s)]
+
+    @cached_property
+    def energies(self) -> dict[str, Array] | None:
+        """By `ENERGIES` [J], losses summed from t = 0 on; None if not asked for."""
+        if self.balance is None:
+            return None
+        with np.errstate(all="ignore"):
+            return self.balance()
 
     @cached_property
     def _contacts(self) -> dict[str, Array]:
@@ -207,6 +217,21 @@ class UnilateralResult(Result):
         if self.form.multiplicity == 2:  # the one contact is N, M moves and is held in the opposite direction
             both["shear"][0] = -both["shear"][0] + 0.0
         return both
+
+    @property
+    def normal(self) -> Array:
+        """N at M and N, (2, steps) [N]."""
+        return self._contacts["normal"]
+
+    @property
+    def gap(self) -> Array:
+        """W at M and N, (2, steps) [m]."""
+        return self._contacts["gap"]
+
+    @property
+    def closed(self) -> NDArray[np.bool_]:
+        """State of M and N, (2, steps)."""
+        return np.array([self.closed_m, self.closed_n])
 
     @property
     def normal_force_m(self) -> Array:

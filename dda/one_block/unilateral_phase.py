@@ -17,6 +17,7 @@ comes with its force and not with the last digit of a displacement. A mode's ste
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -25,12 +26,12 @@ from numpy.typing import NDArray
 
 from dda.contact.unilateral import SLIDES, Unilateral
 from dda.one_block.natural_modes import graded_modes
-from dda.one_block.unilateral_form import U_INDEX, Layout, UnilateralForm
+from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.blocked import doubled, mode_maps, why_stepped, with_all_digits
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
-BLOCK = 512  # steps of the table that is kept of each watched quantity
+BLOCK = 1024  # steps of the table that is kept of each watched quantity
 _LEVELS = BLOCK.bit_length() - 1
 _FEW = 32
 
@@ -39,19 +40,20 @@ _FEW = 32
 class Phase:
     """One contact state: z = (q, p and static q of every mode, zeta and pi of every rigid motion, 1), its steps."""
 
-    layout: Layout
     read: Array  # (size of z, size): z at the beginning from v
     tended: Array  # (size of z,): what is added to it
     shown: Array  # (size, size of z): change of v since the beginning from z, of P all
     maps: Array  # (levels, size of z, size of z): z after 1, 2, 4, ... steps
-    limits: Array  # (c,) what `watched` must not fall below
-    watched: Array  # (c, size) normal force of a closed contact, gap of an open one
+    watched: Sequence[
+        tuple[int, float]
+    ]  # normal force of a closed contact, gap of an open one: place in v, least value
+    kept: Array  # (size,) one, zero for P
     tables: dict[bytes, list[Array | None]] = field(default_factory=dict)
 
     @cached_property
     def watch(self) -> list[Array]:
         """The watched rows after 1, 2, ... steps, (BLOCK, size of z) each."""
-        return [self._row(row) for row in self.watched @ self.shown]
+        return [self._row(self.shown[at]) for at, _ in self.watched]
 
     def table(self, rows: Array) -> list[Array | None]:
         """Return rows over v as rows over z after 1, 2, ..., BLOCK steps, (BLOCK, size of z) each; None for zeros."""
@@ -65,9 +67,7 @@ class Phase:
 
     def start(self, v: Array) -> tuple[Array, Array]:
         """Return z and the constants of the phase, v but for P, from the state in which it begins."""
-        constant = v.copy()
-        constant[self.layout.P] = 0.0
-        return self.read @ v + self.tended, constant
+        return self.read @ v + self.tended, self.kept * v
 
     def after(self, z: Array, steps: int) -> Array:
         """Return z some steps later, `BLOCK` at most."""
@@ -173,12 +173,13 @@ class _Coordinates:
             shapes.T @ (self.F[self.e] - self.carried.T @ self.F[self.z]) / (frequencies * frequencies)
         )
         tended[-1] = 1.0
-        watched = np.zeros((self.layout.contacts, self.layout.size))
-        for i, shut in enumerate(self.closed):
-            watched[i, self.layout.contact(0 if shut else 2).start + i] = 1.0
-        limits = np.array([-self.law.pull if shut else -self.law.band[0] for shut in self.closed])
+        N, w = self.layout.contact(0).start, self.layout.contact(2).start
+        states = enumerate(self.closed)
+        watched = [(N + i, -self.law.pull) if shut else (w + i, -self.law.band[0]) for i, shut in states]
+        kept = np.ones(self.layout.size)
+        kept[self.layout.P] = 0.0
         read, shown = self._read(frequencies, shapes, units, size), self._shown(shapes, units, size)
-        return Phase(self.layout, read, tended, shown, maps, limits, watched)
+        return Phase(read, tended, shown, maps, watched, kept)
 
     def _read(self, frequencies: Array, shapes: Array, units: Array, size: int) -> Array:
         """Return z by v."""

@@ -216,8 +216,8 @@ class Jump:
     """
 
     def __init__(self, form: UnilateralForm, law: Unilateral, length: StepLength) -> None:
-        self.law, self.length, self.place = law, length, form.layout
-        place, scheme = self.place, length.scheme
+        self.law, self.length = law, length
+        place, scheme = form.layout, length.scheme
         n, c, h2 = place.unknowns, place.contacts, scheme.step * scheme.step
         k, F = np.diag(length.k), np.array(length.F)
         push, pushed = h2 * np.array(length.push), np.array(length.pushed)
@@ -235,15 +235,20 @@ class Jump:
         gaps, w = slice(n - c, n), place.contact(2)
         self.rows[w], self.constant[w], self.forced[w] = ahead[gaps], fallen[gaps], pushed[gaps]
         self.forced[place.contact(0)] = np.eye(c)
+        self.forced = self.forced.T.copy()
+        self.gaps, self.unknown_gaps = w.start, n - c
 
     def step(self, v: Array, closed: tuple[bool, ...], limit: int) -> tuple[Array, Iteration]:
         """Return v one step later and the contacts; where there are none v is what it would be without forces."""
-        place, nothing = self.place, (0.0,) * self.place.contacts
+        nothing = (0.0,) * len(closed)
         after = self.rows @ v + self.constant
-        free = Free(after[place.contact(2)].tolist(), (), self.length.C, {})
+        free = Free(after[self.gaps :].tolist(), (), self.length.C, {})
         found = open_close(self.law, Corners(closed, nothing, nothing, nothing, nothing, nothing), free, limit)
         if found.corners is None:
             return after, found
-        after += self.forced @ np.array(found.corners.normal)
-        after[place.contact(2)] = after[place.unknowns - place.contacts : place.unknowns] = found.corners.gap
+        for N, moved in zip(found.corners.normal, self.forced, strict=True):
+            if N:
+                after += N * moved
+        for i, w in enumerate(found.corners.gap):  # of a closed corner -N/p, no sum
+            after[self.gaps + i] = after[self.unknown_gaps + i] = w
         return after, found

@@ -1,8 +1,9 @@
-"""A block on springs stepped with what other programs add: weight, a softer base, moving geometry, opening.
+"""A block on springs stepped with what other programs add, and with the slips that people make in a code of their own.
 
 The two-block model is linear with a locked contact. Other programs differ from it in known ways, and to recognise them
 their histories have to be computed, many variants at a time: here every quantity is an array over the variants, and
-one pass through the steps serves them all.
+one pass through the steps serves them all. A contact that opens is stepped here only together with what
+`dda.UnilateralModel` does not have: moving geometry, a base with mass, a slip, unequal time steps.
 
 An upright rectangle of width a and height h has the unknowns (v, ey, ex); both corner springs carry the same. The
 increments x of a step solve, with the area S = a h and the base's gap g = v - (h/2) ey - b (accumulated),
@@ -13,12 +14,18 @@ increments x of a step solve, with the area S = a h and the base's gap g = v - (
 
 for (v, ey, ex, b), b the motion of a base of mass m_b on a spring kb. A base without mass stands in series with the
 contact: b is held then, and k is the stiffness of both together; kx = p_s a^2/2. Where the contact may open, the
-springs are on in a step if the base penetrates at its end, which the open-close iteration decides. Where the
-geometry moves, a, h and with them S and m follow the strain after each step.
+springs are on in a step if the base penetrates at its end, by more than the band if they were off before, which the
+open-close iteration decides. Where the geometry moves, a, h and with them S and m follow the strain after each step.
+
+Viscous damping c M V of the mass, if there is any, stands at the end of the step: M (1 + c delta dt) for M, and
+-c M (gg V + dt (1 - delta) A) among the forces. Of the slips, a coupling s in place of 1 makes the springs' matrix
+k (1, -s h/2; -s h/2, h^2/4), and what is not kept is left out of the internal forces: the stress of the block, or the
+force of the springs.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -41,13 +48,30 @@ class Variant:
     gg: float  # share of the velocity that a step starts with [-]
     start: Literal["zero", "consistent"] = "zero"
     softness: float = 0.0  # ln of the scene's spring stiffness over that in effect [-]
+    tied: bool = True  # the shear springs share the softness
     base: float = 0.0  # mass of the yielding base over that of the block; 0 is a spring in series [-]
     weight: float = 0.0  # own weight, as a share of 9.81 m/s2 [-]
     load: float = 1.0  # load over the scene's load [-]
+    density: float = 1.0  # over the scene's [-]
+    young: float = 1.0  # Young's modulus over the scene's [-]
+    poisson: float = 0.0  # added to the scene's Poisson's ratio [-]
+    other_plane: bool = False  # plane strain for plane stress, or the reverse
+    side: float = 1.0  # width and height over the scene's [-]
+    tall: float = 1.0  # height alone, in addition [-]
+    viscous: float = 0.0  # damping of the mass [1/s]
     updated: bool = False  # geometry follows the strain
     opens: bool = False  # the contact carries no tension
+    band: float = 0.0  # penetration beyond which an open contact closes [m]
+    reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
     discounted: Literal["both", "velocity", "displacement"] = "both"  # formulas in which gg stands
+    strain_load: float = 1.0  # share of the load in the row of ey [-]
+    coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]
+    kept: Literal["both", "springs", "stress"] = "both"  # forces that are carried from step to step
     shift: int = 0  # steps by which the rows come late
+    point: float = 0.0  # height of the reported point above the centroid, over half the block's height [-]
+    late: float = 0.0  # steps by which the pressure comes late; 1/2 is the mean of two steps
+    pressure_factor: float = 1.0  # reported over true pressure [-]
+    displacement_factor: float = 1.0  # reported over true displacement [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +91,9 @@ class Column:
     width: float  # a [m]
     height: float  # h [m]
     density: float  # [kg/m3]
-    c11: float  # elasticity along the axes [Pa]
-    c12: float  # elasticity across [Pa]
+    young: float  # [Pa]
+    poisson: float  # [-]
+    plane_strain: bool
     normal: float  # stiffness of both normal springs [N/m]
     shear: float  # stiffness of both shear springs [N/m]
     pressure: float  # q [Pa]
@@ -83,9 +108,19 @@ class Column:
     def static(self) -> float:
         """Static displacement of the centroid in the locked linear model [m]."""
         h, a = self.height, self.width
-        across = self.c12 / (self.c11 + self.shear * a / (4 * h))
+        c11, c12 = self.elasticity()
+        across = c12 / (c11 + self.shear * a / (4 * h))
         stress = self.pressure + self.density * h * self.gravity / 2
-        return -self.force / self.normal - stress / (self.c11 - self.c12 * across) * h / 2
+        return float(-self.force / self.normal - stress / (c11 - c12 * across) * h / 2)
+
+    def elasticity(self, variants: Sequence[Variant] = ()) -> tuple[Array, Array]:
+        """Return the elasticity along and across the axes [Pa], of each variant or of the scene."""
+        strain = np.array([self.plane_strain != v.other_plane for v in variants] or self.plane_strain)
+        young = self.young * np.array([v.young for v in variants] or 1.0)
+        mu = self.poisson + np.array([v.poisson for v in variants] or 0.0)
+        modulus, ratio = np.where(strain, young / (1 - mu**2), young), np.where(strain, mu / (1 - mu), mu)
+        c11 = modulus / (1 - ratio**2)
+        return c11, ratio * c11
 
 
 def histories(column: Column, variants: Sequence[Variant], steps: Array) -> Histories:
@@ -100,16 +135,32 @@ def histories(column: Column, variants: Sequence[Variant], steps: Array) -> Hist
     steps
         Length of each time step [s], shape (n,).
     """
-    early = max(0, *(-v.shift for v in variants))
-    longer = np.concatenate([steps, np.repeat(steps[-1:], early)])
+    longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
     with np.errstate(all="ignore"):
         rows = list(_Stepping(column, variants).run(longer))
-    found = [np.array(part) for part in zip(*rows, strict=True)]
-    for j in [j for j, variant in enumerate(variants) if variant.shift]:
-        for part in found:
-            part[:, j] = _shifted(part[:, j], variants[j].shift)
-    n = len(steps)
-    return Histories(found[0][:n], found[1][:n], found[2][:n].astype(bool), found[3][:n])
+        displacement, pressure, opened, area = (np.array(part) for part in zip(*rows, strict=True))
+        return reported(Histories(displacement, pressure, opened.astype(bool), area), variants, len(steps))
+
+
+def further_steps(variants: Sequence[Variant]) -> int:
+    """Return how many steps beyond the last row the variants report of."""
+    return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
+
+
+def reported(found: Histories, variants: Sequence[Variant], n: int) -> Histories:
+    """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
+    displacement, pressure, opened, area = found.displacement, found.pressure, found.open, found.area
+    for j, v in enumerate(variants):
+        if v.late:
+            whole, part = math.floor(v.late), v.late - math.floor(v.late)
+            P = pressure[:, j]
+            pressure[:, j] = (1 - part) * _shifted(P, whole) + (part * _shifted(P, whole + 1) if part else 0.0)
+        if v.shift:
+            for values in (displacement, pressure, area):
+                values[:, j] = _shifted(values[:, j], v.shift)
+            opened[:, j] = _shifted(opened[:, j].astype(float), v.shift) > 0
+    scale = np.array([v.displacement_factor for v in variants]), np.array([v.pressure_factor for v in variants])
+    return Histories(scale[0] * displacement[:n], scale[1] * pressure[:n], opened[:n], area[:n])
 
 
 def _shifted(values: Array, late: int) -> Array:
@@ -124,52 +175,61 @@ class _Stepping:
 
     def __init__(self, column: Column, variants: Sequence[Variant]) -> None:
         self.column = column
-        self.alpha, self.delta, gg, softness, base, weight, load = (
-            np.array([getattr(v, name) for v in variants])
-            for name in ("alpha", "delta", "gg", "softness", "base", "weight", "load")
-        )
+
+        def each(name: str) -> Array:
+            return np.array([getattr(v, name) for v in variants], dtype=float)
+
+        self.alpha, self.delta, gg, softness = each("alpha"), each("delta"), each("gg"), each("softness")
         formulas = np.array([v.discounted for v in variants])
         self.gg_displacement = np.where(formulas == "velocity", 1.0, gg)
         self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)
         self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
-        self.updated = np.array([v.updated for v in variants], dtype=float)
-        self.opens = np.array([v.opens for v in variants])
-        heavy = (base > 0) & (softness > 0)
+        self.updated, self.opens = each("updated"), each("opens").astype(bool)
+        self.closing, self.opening = each("band"), each("band") * each("reopening")
+        self.strain_load, self.coupling, self.point = each("strain_load"), each("coupling"), each("point")
+        self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
+        self.keeps_springs = np.array([v.kept != "stress" for v in variants], dtype=float)
+        heavy = (each("base") > 0) & (softness > 0)
         self.normal = column.normal * np.exp(-np.where(heavy, 0.0, softness))
+        self.shear = column.shear * np.exp(-np.where(heavy, 0.0, softness) * each("tied"))
         self.held = np.where(heavy, 0.0, 1.0)
-        self.base = np.where(heavy, base, 1.0) * column.density * column.width * column.height
+        self.density = column.density * each("density")
+        self.c11, self.c12 = column.elasticity(variants)
+        self.a, self.h = column.width * each("side"), column.height * each("side") * each("tall")
+        self.base = np.where(heavy, each("base"), 1.0) * self.density * self.a * self.h
         self.kb = column.normal / np.expm1(np.where(heavy, softness, 1.0))
-        self.gravity = column.gravity + weight * GRAVITY
-        self.force = load * column.pressure * column.width
+        self.viscous = each("viscous")
+        self.gravity = column.gravity + each("weight") * GRAVITY
+        self.force = each("load") * column.pressure * self.a
         zero = np.zeros(len(variants))
-        self.a, self.h = zero + column.width, zero + column.height
-        self.D, self.B, self.gap, self.sheared, self.sx, self.sy = zero, zero, zero, zero, zero, zero
+        self.D, self.Y, self.B, self.gap, self.sheared, self.sx, self.sy = (zero for _ in range(7))
         self.V, self.A = np.zeros((4, len(variants))), np.zeros((4, len(variants)))
         self.on = np.ones(len(variants), dtype=bool)
 
     def run(self, steps: Array) -> Iterator[tuple[Array, Array, Flags, Array]]:
         """Yield displacement, pressure, the open flags and the area of every step."""
-        inertia, h = self._inertia(), self.h
-        weights = (-self.force - inertia[0] * self.gravity, -self.force * h / 2)
+        inertia, h, a = self._inertia(), self.h, self.a
+        weights = (-self.force - inertia[0] * self.gravity, -self.strain_load * self.force * h / 2)
         load = np.stack([*weights, np.zeros_like(h), np.zeros_like(h)])
         self.A = self.consistent * load / inertia
         for dt in steps.tolist():
-            area = self.a * self.h / (self.column.width * self.column.height)
+            area = self.a * self.h / (a * h)
             self._step(dt)
-            yield self.D, np.where(self.on, -self.normal * self.gap, 0.0) / self.column.width, ~self.on, area
+            shown = self.D + self.point * h / 2 * self.Y
+            yield shown, np.where(self.on, -self.normal * self.gap, 0.0) / a, ~self.on, area
 
     def _inertia(self) -> Array:
         """Return the diagonal of M in (v, ey, ex, b), shape (4, variants)."""
-        m = self.column.density * self.a * self.h
+        m = self.density * self.a * self.h
         return np.stack([m, m * self.h**2 / 12, m * self.a**2 / 12, self.base])
 
     def _step(self, dt: float) -> None:
-        inertia = self._inertia()
+        inertia = self._inertia() * (1 + self.viscous * self.delta * dt)
         star = self.gg_displacement * dt * self.V + dt * dt * (0.5 - self.alpha) * self.A
         for _ in range(OPEN_CLOSE_ITERATIONS):
             x, acceleration = self._solve(dt, inertia, star)
             gap = self.gap + x[0] - self.h / 2 * x[1] - x[3]
-            on = np.where(self.opens, gap < 0, True)
+            on = np.where(self.opens, gap < np.where(self.on, self.opening, -self.closing), True)
             if np.array_equal(on, self.on):
                 break
             self.on = on
@@ -177,20 +237,25 @@ class _Stepping:
 
     def _solve(self, dt: float, inertia: Array, star: Array) -> tuple[Array, Array]:
         """Return the increments (v, ey, ex, b) and the accelerations at the end for the present contact state."""
-        c, S, half, free = self.column, self.a * self.h, self.h / 2, 1 - self.held
+        S, half, free = self.a * self.h, self.h / 2, 1 - self.held
+        mass = self._inertia()
+        drag = self.viscous * mass * (self.gg_velocity * self.V + dt * (1 - self.delta) * self.A)
         k = np.where(self.on, self.normal, 0.0)
-        kx = np.where(self.on, c.shear * self.a**2 / 4, 0.0)
-        Kvy, Kyy = -k * half, S * c.c11 + k * half**2
-        Kxy, Kxx = S * c.c12, S * c.c11 + kx
+        kx = np.where(self.on, self.shear * self.a**2 / 4, 0.0)
+        kept, lost = k * self.keeps_springs, (1 - self.coupling) * k * self.keeps_springs
+        Kvy, Kyy = -self.coupling * k * half, S * self.c11 + k * half**2
+        Kxy, Kxx = S * self.c12, S * self.c11 + kx
         Kvb, Kyb, Kbb = -k * free, k * half * free, k + self.kb
         F = np.stack(
             [
-                -self.force - inertia[0] * self.gravity - k * self.gap,
-                (k * self.gap - self.force) * half - S * self.sy,
-                -S * self.sx - kx * self.sheared,
-                free * (k * self.gap - self.kb * self.B - inertia[3] * self.gravity),
+                -self.force - mass[0] * self.gravity - kept * self.gap - lost * half * self.Y,
+                (kept * self.gap - self.strain_load * self.force - lost * self.D) * half
+                - S * self.sy * self.keeps_stress,
+                -S * self.sx * self.keeps_stress - kx * self.sheared * self.keeps_springs,
+                free * (kept * self.gap - self.kb * self.B - mass[3] * self.gravity),
             ]
         )
+        F = F - drag
         e = self.alpha * dt * dt
         rv, ry, rx, rb = inertia * star + e * F
         # the base and ex are eliminated first, then (v, ey) remain
@@ -214,11 +279,11 @@ class _Stepping:
 
     def _accept(self, dt: float, x: Array, acceleration: Array, gap: Array) -> None:
         """Move to the end of the step."""
-        c = self.column
         self.V = self.gg_velocity * self.V + dt * ((1 - self.delta) * self.A + self.delta * acceleration)
         self.A, self.gap, self.D, self.B = acceleration, gap, self.D + x[0], self.B + x[3]
-        self.sy = self.sy + c.c11 * x[1] + c.c12 * x[2]
-        self.sx = self.sx + c.c11 * x[2] + c.c12 * x[1]
+        self.Y = self.Y + x[1]
+        self.sy = self.sy + self.c11 * x[1] + self.c12 * x[2]
+        self.sx = self.sx + self.c11 * x[2] + self.c12 * x[1]
         self.sheared = np.where(self.on, self.sheared + x[2], 0.0)
         self.h = self.h * (1 + self.updated * x[1])
         self.a = self.a * (1 + self.updated * x[2])

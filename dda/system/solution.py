@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from dda.one_block.modes import Mode, scalar_eigenvalues
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, step_times
 from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
-from dda.system.joint_solver import factor
-from dda.system.system import BlockSystem, Equations, _inverse
+from dda.system.joint_solver import Factor, factor
+from dda.system.system import BlockSystem, Equations, inverses
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -41,7 +41,7 @@ def joint_flexibility(scheme: Scheme, C: csr_array, B: csr_array, inverse: csr_a
     return C + scheme.alpha * (B @ inverse @ B.T)
 
 
-class _Stepper:
+class Stepper:
     """The scheme on a system; everything is multiplied by dt^2 where the module says so."""
 
     def __init__(self, equations: Equations, scheme: Scheme) -> None:
@@ -50,15 +50,16 @@ class _Stepper:
         k, B = scheme.step**2 * equations.elastic, equations.B
         S = effective_matrix(scheme, equations.mass, k)
         self.k, self.B, self.Bt = equations.blockwise(k), B, B.T.tocsr()
-        self.inverse = equations.blockwise(_inverse(S))
+        self.inverse = equations.blockwise(inverses(S))
         self.BS = (B @ self.inverse).tocsr()
         self.BSt = self.BS.T.tocsr()
         self.S, self.C = equations.blockwise(S), equations.C / scheme.step**2
-        self.factor = factor(joint_flexibility(scheme, self.C, B, self.inverse))
+        flexibility = joint_flexibility(scheme, self.C, B, self.inverse)
+        self.factor = factor(flexibility) if B.shape[0] else Factor(np.copy, 0)
         stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
         self.corrections = sum(stiff > limit for limit in _STIFF)
 
-    def _increments(self, r: Array, push: Array) -> tuple[Array, Array]:
+    def increments(self, r: Array, push: Array) -> tuple[Array, Array]:
         """Return dD and dmu of S dD + alpha B' dmu = r, B dD - C' dmu = G dy.
 
         Where a block's stiffness outweighs its inertia in S, its rigid motion is a small difference
@@ -86,7 +87,7 @@ class _Stepper:
         f = F - held if s.start == "consistent" else 0 * F
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
-            dD, dmu = self._increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
+            dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
             D, mu = D + dD, mu + dmu
             held = self.k @ D + self.Bt @ mu
             f1 = F - held
@@ -111,10 +112,10 @@ class _ViscousStepper:
         self.lag, self.drag = scheme.stiffness_damping / scheme.step, scheme.mass_damping * scheme.step
         self.held, self.beta = 1 + scheme.delta * self.drag, scheme.alpha + scheme.delta * self.lag
         plain = replace(scheme, alpha=self.beta / self.held, mass_damping=0.0, stiffness_damping=0.0)
-        self.step = _Stepper(equations, plain)
+        self.step = Stepper(equations, plain)
         self.factor, self.corrections = self.step.factor, self.step.corrections
         self.M = equations.blockwise(equations.mass)
-        self.inverse = equations.blockwise(_inverse(equations.mass))
+        self.inverse = equations.blockwise(inverses(equations.mass))
 
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and of the springs' own forces at every step, (rows, steps)."""
@@ -128,7 +129,7 @@ class _ViscousStepper:
             D, v = D + s.gg * v + (0.5 - s.alpha) * q, s.gg * v + (1 - s.delta) * q  # D*, v*
             ahead, drag = D + self.lag * v, self.drag * (self.M @ v)
             held = step.k @ G + step.Bt @ mu
-            dG, dmu = step._increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - held), still)
+            dG, dmu = step.increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - held), still)
             G, mu = G + dG, mu + dmu
             q = self.inverse @ (F - drag - step.k @ G - step.Bt @ mu) / self.held
             D = D + (s.alpha / self.beta * (G - ahead) if self.beta else 0 * D)
@@ -166,7 +167,7 @@ def solve_system(
     check_damping(scheme, system.motion is not None)
     began = perf_counter()
     equations = system.equations if full else system.reached
-    stepper = _ViscousStepper(equations, scheme) if scheme.damped else _Stepper(equations, scheme)
+    stepper = _ViscousStepper(equations, scheme) if scheme.damped else Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
         observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))

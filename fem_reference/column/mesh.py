@@ -64,7 +64,8 @@ class Part:
         nodes = self.basis.mesh.p[0]
         ends = nodes[self.basis.mesh.t]
         low, high = ends.min(axis=0), ends.max(axis=0)
-        inside = np.flatnonzero((low < height) & (height <= high))  # of two that meet there, the lower one
+        near = NEAR * float(nodes.max())
+        inside = np.flatnonzero((low < height - near) & (height <= high + near))  # of two that meet there, the lower
         element = int(inside[0]) if inside.size else int(np.argmin(low))
         start, end = nodes[self.basis.mesh.t[:, element]]
         local = np.array([[(height - start) / (end - start)]])

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from fem_reference.contact.glued import GluedBase, glued
-from fem_reference.contact.open_close import Contact, Flags, frictionless
+from fem_reference.contact.glued import GluedBase, GluedStep, glued
+from fem_reference.contact.open_close import Contact, Flags, FrictionlessBase
 from fem_reference.contact.points import ContactModel
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_acceleration, predictor, velocity
@@ -28,6 +28,8 @@ from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_
 SHEARS = ("frictionless", "glued")
 KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
+DENSE = 256
+"""Greatest number of forces whose responses are kept, eight bytes an unknown each."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class ContactState:
 
     motion: State  # displacement [m], velocity [m/s] and acceleration [m/s2] of the unknowns
     gap: Array  # gap w of each point [m], negative where pressed, shape (points,)
-    slip: Array  # displacement s of each point along the base [m]
+    slip: Array  # displacement s of each point along the base [m]; zero where none is glued
     reference: Array  # slip r at which the shear spring of each point is unstrained [m]
     normal: Array  # normal force N of each point on the block [N]
     shear: Array  # tangential force T of each point on the block [N]
@@ -49,8 +51,9 @@ class _Matrices:
 
     scheme: Scheme
     solve: Callable[[Array], Array]
-    response: Array  # S^-1 B', shape (unknowns, forces)
+    response: Array | None  # S^-1 B', shape (unknowns, forces); None for many forces, where steps solve twice
     C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
+    small: FrictionlessBase | GluedBase  # the problem of the forces
 
 
 @dataclass
@@ -97,36 +100,39 @@ class ContactStepper:
         own = self._matrices(self.scheme.step if length is None else length)
         scheme, model, old = own.scheme, self.model, state.motion
         ahead = predictor(old, scheme)
-        free = own.solve(model.F - model.K @ ahead)
+        residual = model.F - model.K @ ahead
+        free = own.solve(residual)
         moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
         contact = self._contact(state, own, moved)
         if contact.trial is None:
             return None, contact
         N, T = contact.trial.normal, contact.trial.shear
-        forces = np.concatenate([N, T])[: len(moved)]
-        A = free + own.response @ forces
+        forces = np.concatenate([N, T]) if self.shear == "glued" else N
+        A = free
+        if contact.closed.any():
+            A = own.solve(residual + self._B.T @ forces) if own.response is None else free + own.response @ forces
         motion = State(ahead + scheme.alpha * scheme.step**2 * A, velocity(old, A, scheme), A)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
         gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
-        slip, reference = self._slipped(state, motion, contact.closed, T, moved + own.C @ forces)
+        slip, reference = state.slip, state.reference
+        if self.shear == "glued":
+            slip, reference = self._slipped(state, contact.closed, T, moved + own.C @ forces)
         return ContactState(motion, gap, slip, reference, N, T, contact.closed), contact
 
-    def _contact(self, state: ContactState, own: _Matrices, moved: Array) -> Contact:
-        compliance, points = 1 / self.model.stiffness, len(self.model.share)
-        free = state.gap + moved[:points]
-        if self.shear == "frictionless":
-            return frictionless(own.C, compliance, free, state.closed, self.limit)
-        slip = state.slip - state.reference + moved[points:]
-        base = GluedBase(own.C, compliance, self.model.shear_stiffness, free, slip, state.gap, state.closed)
-        return glued(base, self.limit)
+    def scheme_of(self, length: float) -> Scheme:
+        """The scheme for one length of step [s], with the share of gg that belongs to it."""
+        return self._matrices(length).scheme
 
-    def _slipped(
-        self, state: ContactState, motion: State, closed: Flags, T: Array, moved: Array
-    ) -> tuple[Array, Array]:
-        """Slips and references at the end of a step."""
-        if self.shear == "frictionless":
-            slip: Array = self.model.tangential @ motion.D
-            return slip, slip
+    def _contact(self, state: ContactState, own: _Matrices, moved: Array) -> Contact:
+        points = len(self.model.share)
+        free = state.gap + moved[:points]
+        if isinstance(own.small, FrictionlessBase):
+            return own.small.contact(free, state.closed, self.limit)
+        slip = state.slip - state.reference + moved[points:]
+        return glued(GluedStep(own.small, free, slip, state.gap, state.closed), self.limit)
+
+    def _slipped(self, state: ContactState, closed: Flags, T: Array, moved: Array) -> tuple[Array, Array]:
+        """Slips and references of a glued base at the end of a step; `moved` holds gaps, then slips."""
         slip = state.slip + moved[len(closed) :]
         k_t = self.model.shear_stiffness
         crossing = slip + np.divide(T, k_t, out=np.zeros_like(T), where=k_t > 0)
@@ -140,7 +146,21 @@ class ContactStepper:
             share = length / self.scheme.step
             scheme = replace(self.scheme, step=length, gg=self.scheme.gg**share)
             solve = self.work.factor(effective_matrix(self.model.M, self.model.K, scheme))
-            response = np.stack([solve(row) for row in self._B.toarray()], axis=1)
-            C = scheme.alpha * length**2 * (self._B @ response)
-            self._lengths[length] = _Matrices(scheme, solve, response, (C + C.T) / 2)
+            response, C = self._responses(solve)
+            C, compliance = scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
+            glue = self.shear == "glued"
+            small = GluedBase(C, compliance, self.model.shear_stiffness) if glue else FrictionlessBase(C, compliance)
+            self._lengths[length] = _Matrices(scheme, solve, response, C, small)
         return self._lengths[length]
+
+    def _responses(self, solve: Callable[[Array], Array]) -> tuple[Array | None, Array]:
+        """S^-1 B', where it is kept, and B S^-1 B'."""
+        count = self._B.shape[0]
+        response = np.empty((self._B.shape[1], count)) if count <= DENSE else None
+        C = np.empty((count, count))
+        for i in range(count):
+            found = solve(self._B[[i]].toarray()[0])
+            C[:, i] = self._B @ found
+            if response is not None:
+                response[:, i] = found
+        return response, C

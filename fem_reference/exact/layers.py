@@ -32,6 +32,7 @@ State = tuple[Complex, Complex]  # u and sigma
 ROUND = 1e-10  # e^{-sT}: what comes round from the end of a period
 PERIODS = 2.0  # period of the transform over the window
 TOLERANCE = 1e-6  # of a column's maximum: change by the last halving at which the samples are dense enough
+LARGEST = 200.0  # s times the way's time: the weight's growth through the column stays within the range of numbers
 MOST_SAMPLES = 2**17  # a drive with kinks needs more; its error is then what the last halving changed
 
 
@@ -46,7 +47,6 @@ def amplitudes(
     columns: Sequence[str],
     heights: Sequence[float] = (),
     squared: ArrayLike | None = None,
-    rate: ArrayLike | None = None,
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
     """Return the complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
@@ -55,13 +55,10 @@ def amplitudes(
     omega
         Angular frequencies, real or complex [rad/s], not zero.
     squared
-        What stands for w^2 in the layers [1/s2], such as the squared frequency of a time-stepping scheme.
-    rate
-        What stands for iw between displacement and velocity at the half-space [1/s].
+        What stands for w^2 in the layers [1/s2], where they are damped.
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)
-    iw = np.asarray(1j * w if rate is None else rate, complex)
     one, zero = np.ones_like(w), np.zeros_like(w)
     free = dict(_descend(ground, heights, w2, (one, zero)))
     pressed = dict(_descend(ground, heights, w2, (zero, -one)))
@@ -70,10 +67,15 @@ def amplitudes(
     else:
         z = ground.impedance
         given = np.asarray(-2 * z * one)
-        left, kept = (np.asarray(state[1] - z * iw * state[0]) for state in (free[-1], pressed[-1]))
+        left, kept = (np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1]))
     by_base, by_top = given / left, -kept / left
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
+
+
+def _damped(scheme: Scheme, w: Complex) -> Complex:
+    """Return w^2 - i c w with the rate c of the kinetic discount."""
+    return np.asarray(w * w + 1j * math.log(scheme.gg) / scheme.step * w)
 
 
 def _part(states: dict[int, State], name: str) -> Complex:
@@ -193,13 +195,15 @@ def _synthesis(
     from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
     spacing = scheme.step / count
-    samples = next_fast_len(math.ceil(PERIODS * steps * count), real=True)
+    travel = sum(x.thickness * math.sqrt(x.density / x.modulus(ground.motion)) for x in ground.strata)
+    period = max(PERIODS * steps * scheme.step, -math.log(ROUND) * travel / LARGEST)
+    samples = next_fast_len(math.ceil(period / spacing), real=True)
     shift = -math.log(ROUND) / (samples * spacing)
     time = spacing * np.arange(samples)
     weight = np.exp(-shift * time)
     w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
     given = drive(time)
-    moved, pressed = amplitudes(ground, w, columns, heights, w * w + 1j * math.log(scheme.gg) / scheme.step * w)
+    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
     velocity, pressure = rfft(weight * given.velocity), rfft(weight * given.pressure)
     picked = count * np.arange(1, steps + 1)
     found = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]

@@ -115,6 +115,7 @@ class OpeningBar:
             contact_pressure=base.pressure[1:],
             gap=base.gap[1:],
             closed=base.closed[1:],
+            velocity=base.velocity[1:],
             setup_seconds=ready - began,
             stepping_seconds=ended - ready,
         )
@@ -129,6 +130,7 @@ class OpeningResult:
     contact_pressure: Array  # N / W [Pa], shape (steps,)
     gap: Array  # gap w under the base [m], negative where pressed, shape (steps,)
     closed: Array  # 1 where the base is closed, 0 where open [-], shape (steps,)
+    velocity: Array  # velocity of the centre of mass, upwards [m/s], shape (steps,)
     setup_seconds: float  # time for the weights of the convolutions [s]
     stepping_seconds: float  # time for the steps [s]
 
@@ -220,6 +222,7 @@ class _Base:
     pressure: Array  # contact pressure [Pa]
     gap: Array  # gap [m]
     closed: Array  # 1 where closed [-]
+    velocity: Array  # velocity of the centre of mass [m/s]
 
 
 def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
@@ -241,6 +244,7 @@ def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
     C = alpha * dt**2 / surface + own[0]
     backwards = own[::-1].copy()
     rigid, N, gap, closed = np.zeros(count), np.zeros(count), np.full(count, bar.gap), np.zeros(count)
+    speed = np.full(count, V)
     closed[0] = bar.gap == 0
     for n in range(1, count):
         ahead = D + gg * dt * V + dt**2 * ((0.5 - alpha) * A + alpha * load)
@@ -256,8 +260,8 @@ def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
         gap[n] = -compliance * N[n] if closed[n] else w
         new = load + N[n] / surface
         D, V, A = ahead + alpha * dt**2 * (new - load), gg * V + dt * ((1 - delta) * A + delta * new), new
-        rigid[n] = D
-    return _Base(rigid, N, gap, closed)
+        rigid[n], speed[n] = D, V
+    return _Base(rigid, N, gap, closed, speed)
 
 
 def _convolved(weights: Array, values: Array) -> Array:

@@ -39,17 +39,25 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         ({}, {kinds.LARGE_STEP}),
         ({"time.step": 2e-3}, {kinds.HIDDEN}),
         ({"time.gg": 0.98}, {kinds.LARGE_STEP, kinds.DRAG}),
+        ({"time.gg": 0.98, "time.step": 2e-3}, {kinds.HIDDEN}),
         (STIFF | AVERAGE, {kinds.LARGE_STEP, kinds.MAY_GAIN, kinds.GAINED, kinds.PENALTY}),
         (STIFF | {"time.step": 2e-5, "time.steps": 400}, {kinds.PENALTY}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-4]}, {kinds.PULLING}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-6]}, set()),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [1e-3, 0.0]}, {kinds.GAINED}),  # p (1 mm)^2 a landing
         ({"contact.law": "locked"}, set()),
+        (STIFF | AVERAGE | {"contact.rule": "implicit"}, {kinds.LARGE_STEP}),
+        (STIFF | AVERAGE | {"contact.rule": "energy-conserving"}, set()),
     ],
 )
 def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expected: set[str], tmp_path: Path) -> None:
     solvers = ("dda", "bar-events") if kinds.PENALTY in expected else ("dda",)
     assert set(raised(PAPER.with_values(values), tmp_path, *solvers)) == expected
+
+
+def test_a_peak_not_far_above_that_of_the_bar_is_no_alarm(tmp_path: Path) -> None:
+    scene = PAPER.with_values({"contact.stiffness": 2.2e9, "time.step": 2e-5, "time.steps": 400})
+    assert not raised(scene, tmp_path, "dda", "bar-events")  # 1.4 times and less, of springs stiffer than the bar
 
 
 def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
@@ -88,9 +96,11 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
         assert contact.hidden_from(PAPER.with_values(none)) is None
 
 
-@pytest.mark.parametrize("scheme", [{}, AVERAGE, {"time.alpha": 0.3025, "time.delta": 0.6}])
+@pytest.mark.parametrize(
+    "scheme", [{}, AVERAGE, AVERAGE | {"contact.rule": "implicit"}, {"time.alpha": 0.3025, "time.delta": 0.6}]
+)
 @pytest.mark.parametrize("error", [0.01, 0.05])
-def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, float], error: float) -> None:
+def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, Any], error: float) -> None:
     scene = PAPER.with_values(scheme)
     found = contact.needed(scene, 3.757, error, 1e-4)
     assert found.restitution is not None
@@ -108,6 +118,24 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     row, _ = execute(Case(fallen.with_values({"contact.stiffness": found.stiffness}), "block-events"), "", "")
     assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.05)
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
+
+
+def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() -> None:
+    tried: list[float] = []
+
+    def probe(p: float) -> float:
+        tried.append(p)
+        return 3e-4 * (tried[0] / p) ** 0.5  # three times too deep at first
+
+    found = contact.needed(PAPER, 1.0, 0.05, 1e-4, probe)
+    assert found.first_guess == tried[0] == pytest.approx(10800 / 8e-8)
+    assert found.stiffness == pytest.approx(9 * tried[0]) and found.depth == pytest.approx(1e-4)
+    assert contact.omega(PAPER.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})) == (
+        pytest.approx(found.omega)
+    )
+    never = contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: 2e-4)
+    assert never.depth == 2e-4 and never.stiffness > 1e4 * never.first_guess
+    assert contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: None).depth is None
 
 
 def test_the_stated_examples() -> None:
@@ -129,4 +157,8 @@ def test_the_restitution_of_a_phase_lies_in_the_range_of_the_map() -> None:
     found = contact.restitution(PAPER, math.inf)
     assert found is not None and (found.low, found.high) == pytest.approx((0.0, 1.0), abs=1e-12)
     assert impact_restitution(0.5, 1.0, 1.0, math.inf, 0.25) == pytest.approx(0.5)
+    constant = contact.restitution(PAPER, 10.0)
+    rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}
+    assert contact.restitution(rules["implicit"], 10.0) == constant
+    assert contact.restitution(rules["energy-conserving"], 10.0) == contact.Restitution(1.0, 1.0, 1.0, 1.0)
     assert contact.restitution(PAPER.with_values({"time.alpha": 0.1, "time.delta": 0.9}), 1.0) is None

@@ -26,6 +26,7 @@ def test_the_page_states_what_json_holds() -> None:
         "at once",
         f"{block['switches.first_closing']:.7g} s",
         f"{1e-6 * block['contact.peak_force']:.4g} MN",
+        f" {100 * block['contact.open_share']:.4g} %",
         f"{100 * found['runs']['dda']['energy.switching_gain']:.4g} %",
         f"w_c dt = {found['omega']:.3g}",
         "restitution within 2 % and a penetration below 0.0002 m",
@@ -33,6 +34,8 @@ def test_the_page_states_what_json_holds() -> None:
     ):
         assert words in done.stdout, words
     assert block["switches.first_closing"] == pytest.approx(0.0032525750597312, rel=1e-12)
+    assert found["needed"]["depth"] <= 1e-4 and found["needed"]["stiffness"] >= found["needed"]["first_guess"]
+    assert "the exact block then goes" in done.stdout
     assert found["needed"]["step"] * found["contact_frequency"] < found["omega"]
     assert [alarm["kind"] for alarm in found["alarms"]] == ["step too large for contact"]
 
@@ -71,3 +74,22 @@ def test_the_help_has_an_example_that_runs() -> None:
     assert "--set time.steps=50" in typed("contact", "--help").stdout
     done = typed("contact", "unlocked-constant", "--set", "time.step=0.001", "--set", "time.steps=50")
     assert done.returncode == 0 and "bar-events" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("gap", "velocity", "opening", "closing", "words"),
+    [
+        (0.0, 0.0, 0.016, 0.003, ("at once", "0.003 s")),
+        (0.0, 0.0, "undefined", 0.003, ("at once", "0.003 s")),
+        (0.0, 0.0, 0.016, 0.02, ("0.016 s", "0.02 s")),
+        (0.0, -1.0, 0.009, "undefined", ("0.009 s", "at once")),
+        (0.1, -1.0, 0.2, 0.1, ("0.2 s", "0.1 s")),
+        (0.1, 0.0, "undefined", "undefined", ("never", "never")),
+    ],
+)
+def test_when_a_block_first_opens_and_lands(
+    gap: float, velocity: float, opening: object, closing: object, words: tuple[str, str]
+) -> None:
+    scene = load_scene("unlocked-constant").with_values({"contact.gap": gap, "block.velocity": velocity})
+    run = {"switches.first_opening": opening, "switches.first_closing": closing}
+    assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words  # type: ignore[arg-type]

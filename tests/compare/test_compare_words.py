@@ -22,11 +22,15 @@ from validation.compare import departure
 from validation.compare import sentences as wording
 from validation.compare.causes import BENIGN_COMPLIANCE, benign_springs, compliance
 from validation.compare.departure import Departure
-from validation.compare.diagnosis import Answer, compare
-from validation.compare.fit import Interval, Target
+from validation.compare.diagnosis import MODEL_WORDS, Answer, compare
+from validation.compare.evidence import Stage
+from validation.compare.fits.fit import Interval
+from validation.compare.fits.rectangle import rectangle_of
+from validation.compare.fits.target import Target
 from validation.compare.other_solvers import Rival
+from validation.compare.other_verdict import RivalVerdict
 from validation.compare.reading import Foreign
-from validation.compare.rectangle import rectangle_of
+from validation.compare.sentences import Said
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
 from validation.report.figures import histories as figures
@@ -155,11 +159,16 @@ def test_what_no_cause_explains_departs_by_no_known_cause() -> None:
 # ---- words --------------------------------------------------------------------------------------------------------
 
 
+NUMBERS = {"springs-factor": 0.25, "load-factor": 1.25, "density-factor": 0.5, "young-factor": 0.8, "dead-band": 1e-3,
+           "reported-point": 1.0, "pressure-factor": 0.5, "side-factor": 1.1, "poisson": 0.3}  # fmt: skip
+
+
 def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
     variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
     scene = Variant(0.25, 0.5, 0.99, "consistent")
     gone = Departure(7, "phase")
-    return wording.sentence(variant, 0.97, scene, causes, gone, [3, 4, 5, 9], 0.0123, soft)
+    values = {name: NUMBERS[name] for name in causes if name in NUMBERS}
+    return wording.sentence(Said(variant, scene, causes, values, gone, [3, 4, 5, 9], 0.0123, soft))
 
 
 @pytest.mark.parametrize(
@@ -176,6 +185,20 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("springs-factor", {"softness": math.log(4)}, "the contact springs are 0.25 times the scene's"),
         ("load-factor", {"load": 1.25}, "the load, or the displacement, is 1.25 times the scene's"),
         ("contact-opened", {"opens": True}, "the contact opened in steps 3-5, 9"),
+        ("time-shift", {"shift": 2}, "the rows are 2 steps late"),
+        ("density-factor", {}, "the density is 0.5 times the scene's"),
+        ("young-factor", {}, "Young's modulus is 0.8 times the scene's"),
+        ("side-factor", {}, "the side of the block is 1.1 times the scene's"),
+        ("poisson", {}, "Poisson's ratio is 0.3"),
+        ("dead-band", {}, "an open contact closes only beyond a penetration of about 0.001 m"),
+        ("reported-point", {"point": 1.0}, "a point +1 m above the centroid, the top edge"),
+        ("pressure-shift", {"late": 1.0}, "the pressure is 1 step late, the displacement is right"),
+        ("pressure-shift", {"late": -1.0}, "the pressure is 1 step early"),
+        ("pressure-shift", {"late": 0.5}, "the pressure is the mean of this step and the one before"),
+        ("pressure-factor", {}, "the reported pressure is 0.5 times the scene's"),
+        ("load-row", {"strain_load": -1.0}, "the load has the wrong sign in the row of ey"),
+        ("coupling", {"coupling": 0.0}, "the springs' coupling of v and ey is missing"),
+        ("stress-not-kept", {"kept": "stress"}, "only the stress is carried on"),
     ],
 )  # fmt: skip
 def test_each_fault_is_told_with_its_number(cause: str, fields: dict[str, Any], words: str) -> None:
@@ -191,20 +214,43 @@ def test_what_is_no_fault_is_told_with_its_number() -> None:
     )
 
 
+def rival(model: str, *scheme: float | None, causes: list[str], explained: bool = True) -> RivalVerdict:
+    best = Rival(model, *(scheme or (None, None, None)), 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    return RivalVerdict(best, [best], causes, {}, np.zeros(1), explained, 0.25)
+
+
 def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
-    best = Rival("bar", 0.5, 1.0, 0.97, 0.0123, 0.0, np.zeros(1), np.zeros(1))
     scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
-    models = {"bar": "the exact bar"}
-    assert wording.rival_sentence(best, True, ["base-compliance"], None, models) == (
-        f"Same model as bar (the exact bar), same scheme: {scheme}; a slightly compliant base; the remaining "
-        "difference is 1.2 %."
+    bar = "bar (the exact bar, which fine finite elements converge to)"
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["base-compliance"])
+    assert wording.rival_sentence(found, found.causes, None, MODEL_WORDS) == (
+        f"Same model as {bar}, same scheme: {scheme}; a slightly compliant base; the remaining difference is 1.2 %."
     )
-    assert wording.rival_sentence(best, False, ["scheme"], Departure(7, "phase"), models) == (
-        f"Closest match: bar (the exact bar), a different scheme: {scheme}; departs from step 7 on, mainly in phase; "
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["scheme"])
+    assert wording.rival_sentence(found, found.causes, Departure(7, "phase"), MODEL_WORDS) == (
+        f"Closest match: {bar}, a different scheme: {scheme}; departs from step 7 on, mainly in phase; "
         "a different scheme; the remaining difference is 1.2 %."
     )
-    exact = Rival("continuum", None, None, None, 0.0123, 0.0, np.zeros(1), np.zeros(1))
-    assert "same scheme: exact in time; the" in wording.rival_sentence(exact, True, [], None, models)
+    found = rival("continuum", causes=[])
+    assert "same scheme: exact in time; the" in wording.rival_sentence(found, [], None, MODEL_WORDS)
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["young-factor"], explained=False)
+    text = wording.rival_sentence(found, ["unexplained"], Departure(7, "phase"), MODEL_WORDS)
+    assert text.startswith("Departs, not explained: nearest is bar") and "25 % of the difference left" in text
+
+
+def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
+    variant = Variant(0.5, 1.0, 1.0)
+    about = Said(variant, variant, ["unexplained"], {}, Departure(7, "phase"), [], 0.0123, 0.0)
+    stages = [Stage("statics", True, "", {}), Stage("frequency", False, "", {}), Stage("damping", None, "", {})]
+    near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
+    assert wording.not_explained(about, near, [], 0.034, stages) == (
+        "Departs from step 7 on, mainly in phase, not explained: nearest is gg 0.98 and density-factor 1.01, "
+        "3.4 % left; right so far: statics; wrong: frequency."
+    )
+    alike = [near | {"further_scene": "another time step"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
+    text = wording.not_explained(about, None, alike, 0.034, stages)
+    assert "gg 0.98 and density-factor 1.01 or scheme give the same rows" in text
+    assert text.endswith("another time step tells.")
 
 
 # ---- where and how a history departs ------------------------------------------------------------------------------
@@ -241,7 +287,7 @@ def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noi
 
 
 def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:
-    seams.CAUSES_OPENED.put(monkeypatch, lambda target, found: [3, 4, 9])
+    seams.DIAGNOSIS_OPENED.put(monkeypatch, lambda target, found: [3, 4, 9])
     assert softened("dda", 1 / 1.04).opened == (3, 9)
 
 
@@ -299,7 +345,7 @@ def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.Capt
     assert lines[-4].split() == ["dda", "constant", "acceleration", "below", "1e-10", "0"]
     assert lines[-3:-1] == ["fitted alpha = 0.5 +- less than 1e-12 (95 %)", "fitted softness = 0 +- 2e-07 (95 %)"]
     variant = Variant(0.5, 1.0, 1.0)
-    text = wording.sentence(variant, 1.0, variant, [], None, [], 5e-14, 0.0)
+    text = wording.sentence(Said(variant, variant, [], {}, None, [], 5e-14, 0.0))
     assert text.endswith("gg = 1); the remaining difference is below 1e-10 %.")
 
 

@@ -20,7 +20,7 @@ NAMES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "
 def singly(model, scheme, steps, monkeypatch, **options):
     """Make the same steps one by one."""
     with monkeypatch.context() as patch:
-        patch.setattr(Stepping, Stepping._phase.__name__, lambda stepping, closed, steps: "asked for")
+        patch.setattr(Stepping, "phase_of", lambda stepping, closed, steps: "asked for")
         result = solve_unilateral(model, scheme, steps, options=UnilateralOptions(**options))
     assert not result.history.glides
     return result

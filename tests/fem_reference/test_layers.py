@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles.layers_by_stiffness import assembled
 
 import fem_reference
 from fem_reference.column.problem import Excitation, Ground, Stratum
@@ -98,6 +99,66 @@ def test_a_discount_is_a_rate_of_mass_damping() -> None:
     static = -1e5 * (SOIL.thickness / SOIL.modulus("pressure") + 1e-7)
     assert found.columns["displacement"][-1] == pytest.approx(static, rel=1e-4)
     assert found.columns["contact_pressure"][-1] == pytest.approx(1e5, rel=1e-4)
+
+
+def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
+    """Return a random column with joints anywhere, some where layers meet, and heights, some of them at joints."""
+    strata = tuple(
+        Stratum(round(rng.uniform(0.5, 6), 2), rng.uniform(1500, 2500), 10 ** rng.uniform(7, 9.5), rng.uniform(0, 0.45))
+        for _ in range(int(rng.integers(1, 5)))
+    )
+    tops = np.cumsum([stratum.thickness for stratum in strata])
+    places = [0.0] * (rng.random() < 0.3) + [float(top) for top in tops[:-1] if rng.random() < 0.5]
+    places += [round(rng.uniform(0.05, 0.95) * tops[-1], 3) for _ in range(int(rng.integers(0, 4)))]
+    joints = tuple((round(place, 9), 10 ** rng.uniform(6, 9)) for place in dict.fromkeys(places))
+    heights = [0.0, float(tops[-1]), float(tops[0]), rng.uniform(0, tops[-1]), *(place for place, _ in joints[:2])]
+    impedance = None if rng.random() < 0.5 else 10 ** rng.uniform(5, 7)
+    motion = "shear" if rng.random() < 0.5 else "pressure"
+    some = rng.permutation(heights)[: int(rng.integers(1, len(heights) + 1))]
+    return Ground(strata, motion, joints, impedance), [float(height) for height in some]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground, heights = drawn(rng)
+    omega = rng.uniform(1, 300)
+    names = [f"displacement_{number + 1}" for number in range(len(heights))]
+    stiffness = omega * max((x.density * x.modulus(ground.motion)) ** 0.5 for x in ground.strata)
+    both = layers.amplitudes(ground, [omega], (*names, "contact_pressure"), heights)
+    for found, base in zip(both, (True, False), strict=True):
+        displaced, pressure = assembled(ground, omega, heights, base)
+        size = max(map(abs, displaced))
+        assert max(abs(found[name][0] - x) for name, x in zip(names, displaced, strict=True)) < 1e-8 * size
+        assert abs(found["contact_pressure"][0] - pressure) < 1e-8 * (stiffness * size + abs(pressure))
+
+
+def test_a_window_that_ends_before_the_wave_arrives() -> None:
+    """Ten steps of 1e-5 s: the surface, 39 ms away, is at rest, and the base feels a half-space of the column's own."""
+    ground = Ground((SOIL,), "shear", (), SOIL.density * SPEED)
+    scheme = fem_reference.Scheme(0.25, 0.5, 1.0, 1e-5, "zero")
+
+    def sine(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, np.sin(2e4 * time) ** 4, 0 * time, 0 * time)
+
+    found = layers.solve_layers(ground, scheme, 10, sine, ("displacement", "contact_pressure"))
+    exact = SOIL.density * SPEED * np.sin(2e4 * found.time) ** 4
+    assert np.abs(found.columns["contact_pressure"] - exact).max() < 1e-5 * exact.max()
+    assert np.abs(found.columns["displacement"]).max() < 1e-12
+
+
+def test_the_surface_feels_a_pressure_at_once() -> None:
+    """A pressure p pushes the surface at p / (rho c), until the echo from the base is back."""
+    ground = Ground((SOIL,), "pressure", (), 1e7)
+    impedance = (SOIL.density * SOIL.modulus("pressure")) ** 0.5
+
+    def pressed(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.01, 1.0))
+
+    found = layers.solve_layers(ground, STEPS, 20, pressed, ("displacement",))
+    early = found.time < 2 * SOIL.thickness * SOIL.density / impedance
+    ramp = np.where(found.time < 0.01, found.time**2 / 0.02, found.time - 0.005)
+    assert np.allclose(found.columns["displacement"][early], -1e5 / impedance * ramp[early], rtol=2e-4)
 
 
 def test_no_rate_without_velocity() -> None:

@@ -92,3 +92,21 @@ def test_the_worst_of_two_needs_no_further_column() -> None:
     found = History(time, {"displacement": np.array([1.0, 2.5]), "contact_pressure": np.array([4.0, 4.0])})
     assert pair("worst.max", found, exact) == 0.5
     assert pair("worst.max", History(time, {"displacement": time}), exact) == NOT_REPORTED
+
+
+@pytest.mark.parametrize("steps", [300, 1500, 4000, 10_000])
+def test_a_long_history_is_measured_without_aliases(steps: int) -> None:
+    """A mode that turns by 0.66 rad a step: every tenth sample alone would show it as a slow one, badly damped."""
+    frequency, damping, dt = 331.8, 7.5e-4, 0.002
+    decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
+    found = pencil.poles(np.real(decay ** np.arange(steps)), dt)[0]
+    assert found.frequency == pytest.approx(frequency, rel=1e-9)
+    assert found.damping == pytest.approx(damping, rel=1e-6)
+
+
+def test_a_slow_history_is_measured_over_more_than_its_first_samples() -> None:
+    """400 of 9000 samples hold a fifteenth of a period."""
+    frequency, damping, dt = 100.0, 0.01, 1e-5
+    decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
+    found = pencil.poles(np.real(decay ** np.arange(9000)) * (1 + 1e-9 * np.cos(np.arange(9000) ** 2)), dt, order=2)[0]
+    assert found.frequency == pytest.approx(frequency, rel=1e-6)

@@ -9,7 +9,7 @@ import time
 import numpy as np
 
 
-def history(scene, *, density=1.0, springs=1.0, delta=None, start=None, slower=0):
+def history(scene, *, density=1.0, springs=1.0, delta=None, start=None):
     """Return (displacement, contact pressure) of a scene, with slips as factors or as other values."""
     if scene.block.poisson != 0 or scene.block.vertices is not None:
         raise NotImplementedError("an upright rectangle of Poisson's ratio 0 only")
@@ -26,27 +26,17 @@ def history(scene, *, density=1.0, springs=1.0, delta=None, start=None, slower=0
     A = F / M if (start or t.start) == "consistent" else np.zeros(2)
     found = np.empty((t.steps, 2))
     for n in range(t.steps):
-        began = time.perf_counter()
         ahead = D + t.discount * t.step * V + (0.5 - t.alpha) * t.step**2 * A
         new = S @ (F - K @ ahead)
         D = ahead + t.alpha * t.step**2 * new
         V = t.discount * V + t.step * ((1 - delta) * A + delta * new)
         A = new
         found[n] = D[0], -2 * scene.contact.stiffness * springs * (D[0] - height / 2 * D[1]) / width
-        while slower and time.perf_counter() - began < slower:
-            pass
     return found[:, 0], found[:, 1]
 
 
 def sound(scene):
     return history(scene)
-
-
-class Loaded:
-    """The sound code on a busy machine, with modes, so that the scene of a million steps is asked of it as well."""
-
-    def solve(self, scene):
-        return history(scene, slower=150e-6)
 
 
 def delta_missing(scene):

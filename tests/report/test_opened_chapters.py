@@ -7,11 +7,13 @@ import pytest
 
 from validation.engine.run import run_study
 from validation.report.blocks import FigureBlock, Heading, Paragraph, Table
+from validation.report.chapters.damping import remark
 from validation.report.chapters.opened import impacts as impacts_chapter
 from validation.report.chapters.opened import rebound as rebound_chapter
+from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.studies import impacts, rebound
+from validation.studies.contact import impacts, rebound
 
 SWEEPS = {
     "rebound-constant": {"contact.stiffness": [2.16e10], "contact.gap": [0.0025]},
@@ -43,12 +45,12 @@ def test_the_chapter_of_rebound_tells_restitution_and_energy(results: Results, t
     assert files == ["rebound-restitution.svg", "rebound-maps.svg"]
     assert all((tmp_path / file).stat().st_size > 1000 for file in files)
     (table,) = [block for block in blocks if isinstance(block, Table)]
-    assert [row[:3] for row in table.rows] == [("(0.5, 1)", "100E", "1"), ("(0.25, 0.5)", "100E", "1")]
+    assert [row[:3] for row in table.rows] == [("constant", "100E", "1"), ("average", "100E", "1")]
     case = {row[0]: row for row in table.rows}
     found = results.manifest("rebound")["cases"]
     rows = {c["scene"]: results.rows()[c["key"]] for c in found if c["solver"] == "dda"}
     peak = next(row.metrics["contact.peak_force"] for name, row in rows.items() if name.startswith("contact-map-const"))
-    assert case["(0.5, 1)"][5] == f"{peak / 1e6:#.3g}"
+    assert case["constant"][5] == f"{peak / 1e6:#.3g}"
 
 
 def test_circles_stand_where_the_impacts_were(results: Results) -> None:
@@ -67,3 +69,9 @@ def test_the_chapter_of_impacts_marks_what_is_exact(results: Results, tmp_path: 
     rows = {row[1]: row for row in table.rows}
     assert rows["block-events (exact)"][2:4] == ("540.31", "885.46") and rows["dda"][2] == "541.00"
     assert rows["block-events (exact)"][7] == "748.07"  # mm
+
+
+def test_alarms_of_one_kind_make_one_remark() -> None:
+    alarms: list[AlarmRecord] = [{"kind": "k", "scene": f"s{n}", "sentence": f"it is {n}"} for n in range(3)]
+    assert remark(alarms[:1]) == "It is 0."
+    assert remark(alarms) == "It is 0 (the first of 3 cases with this alarm)."

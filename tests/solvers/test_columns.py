@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation import InputError, load_scene, solve
+from validation import InputError, load_scene, response, solve
 from validation.advice.spectra import damping
 from validation.compare.diagnosis import compare
 from validation.compare.reading import Foreign
 from validation.engine.case import Case
+from validation.metrics.transform import spectrum
 from validation.scenes import drive, features
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.registry import solver_names
@@ -115,12 +116,16 @@ def test_blocks_converge_to_the_exact_layers(site: Scene, base: str) -> None:
 def test_a_record_drives_a_column_as_the_pulse_that_it_holds(site: Scene, tmp_path: Path) -> None:
     time = 1e-3 * np.arange(1200)
     pulse = drive.motion_at(site, time)
+    again = drive.motion_at(site, time[:-1] + 5e-4)
     runs = [solve(site, "dda")]
     for name in ("velocity", "acceleration"):
         rows = np.column_stack([time, getattr(pulse, name)])
         np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=f"time,{name}", comments="")
         given = {"record": str(tmp_path / f"{name}.csv")}
-        runs.append(solve(parse_scene(site.definition() | {"input": given}, name), "dda"))
+        scene = parse_scene(site.definition() | {"input": given}, name)
+        runs.append(solve(scene, "dda"))
+        for part, values in vars(drive.motion_at(scene, time[:-1] + 5e-4)).items():
+            assert np.abs(values - getattr(again, part)).max() <= 2e-3 * np.abs(getattr(again, part)).max(), part
     for run in runs[1:]:
         assert np.abs(run.displacement - runs[0].displacement).max() < 2e-4 * np.abs(runs[0].displacement).max()
 
@@ -135,6 +140,53 @@ def test_pulses_are_derivatives_of_each_other(shape: str) -> None:
     assert np.abs(parts[1]).max() == pytest.approx(2.0)
 
 
+# ---- vibrations -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("base", BASES)
+def test_a_vibration_is_what_the_steps_make_of_it(site: Scene, base: str, solver: str) -> None:
+    """The spectrum of a stepped pulse that damping has taken, over that of its drive."""
+    scheme = {"time.alpha": 0.6, "time.delta": 1.1, "time.gg": 0.97, "time.step": 8e-3, "time.steps": 1500}
+    scene = standing(site, base).with_values(scheme | {"run.columns": ["displacement", "contact_pressure"]})
+    scene = scene.with_values({"column.glue": 3e9}) if solver == "dda" else scene
+    frequency, time = np.array([1.1, 3.0, 7.0]), 8e-3 * np.arange(1501)
+    moved = spectrum(time, drive.motion_at(scene, time).displacement, 2 * np.pi * frequency)
+    history = solve(scene, solver).history
+    for name, values in response(scene, frequency, solver).columns.items():
+        seen = spectrum(history.time, history.columns[name], 2 * np.pi * frequency) / moved
+        assert np.abs(seen - values).max() < 1e-10 * np.abs(values).max(), name
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_a_pressure_that_vibrates_on_the_top(site: Scene, solver: str) -> None:
+    given = {"at": "top", "shape": "ricker", "pressure": 1e5, "frequency": 4.0}
+    scene = parse_scene(site.definition() | {"input": given}, "top").with_values({"time.steps": 1500})
+    time = scene.time.step * np.arange(1501)
+    pressed = spectrum(time, drive.motion_at(scene, time).pressure, 2 * np.pi * 5.0)
+    history = solve(scene, solver).history
+    found = response(scene, 5.0, solver)
+    assert not found.base
+    for name, values in found.columns.items():
+        seen = 1e5 * spectrum(history.time, history.columns[name], 2 * np.pi * 5.0) / pressed
+        assert abs(seen - values[0]) < 1e-8 * abs(values[0]), name
+
+
+@pytest.mark.parametrize("top", [False, True])
+@pytest.mark.parametrize("base", BASES)
+def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: bool) -> None:
+    layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
+    scene = standing(site, base).with_values({"column.layer": layers, "time.gg": 0.99})
+    if top:
+        given = {"at": "top", "shape": "ricker", "pressure": 1.0, "frequency": 4.0}
+        scene = parse_scene(scene.definition() | {"input": given}, "top")
+    frequency = [0.5, 2.0, 3.1]
+    exact = response(scene, frequency, "layers").columns
+    for solver in ("dda", "fem"):
+        for name, values in response(scene, frequency, solver, exact=True).columns.items():
+            assert np.abs(values - exact[name]).max() < 2e-4 * np.abs(exact[name]).max(), (solver, name)
+
+
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
@@ -146,6 +198,14 @@ def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
             solve(site, name)
     with pytest.raises(InputError, match="takes columns only"):
         solve(load_scene("figures-3-4").expand()[0], "layers")
+
+
+def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
+    """A feature is one that columns can have, or it looks at a table that they have not."""
+    for feature in features.FEATURES:
+        if not feature.of_columns:
+            with pytest.raises(InputError, match="got a scene of a column"):
+                feature.present(site)
 
 
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:

@@ -70,6 +70,17 @@ def test_the_two_codes_agree_on_contact_that_opens(scene: Scene, values: dict[st
         assert (history.columns["cuts"].max() > 0) == (case.fem.per_side == 8)
 
 
+@pytest.mark.fenicsx
+@pytest.mark.parametrize("name", ["quadrilateral", "pentagon"])
+def test_the_two_codes_agree_on_files_of_gmsh(name: str) -> None:
+    contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "gap": 1e-4}
+    values = {"contact": contact, "block.velocity": -0.5, "time.step": 5e-4, "time.steps": 60}
+    case = load_scene(name).expand()[0].with_values(values | {"run.columns": adapters_fenicsx.OPENING_COLUMNS})
+    assert 0 < distance(case) <= SAME
+    history = solve(case, "fem").history
+    assert history is not None and 0 < history.columns["open_share"].mean() < 1
+
+
 @pytest.mark.long
 @pytest.mark.fenicsx
 @pytest.mark.parametrize("name", ["glued", "corner", "cut"])

@@ -6,6 +6,7 @@ import pytest
 from validation import solve
 from validation.errors import InputError
 from validation.metrics.catalogue import pair
+from validation.runs.contact import LOST, STORED
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 
@@ -29,8 +30,37 @@ def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -
         assert isinstance(found, float) and 0 < found < 1e-6
     opens = [switch for switch in prepared.switches() if switch.opens]
     assert opens and np.all(history.columns["gap_m"][round(opens[0].time / 2e-4)] > 0)
+    records = [prepared.contact_record(), get_solver("fem").prepare(scene).contact_record()]
+    for name in ("force", "impulse", "penetration", "gap", "open_share", "velocity"):
+        own, mesh = (getattr(record, name) for record in records)
+        assert np.abs(own - mesh).max() <= 1e-4 * np.abs(own).max() > 0, name
+    assert records[0].rebounds is not None and records[0].energies == {}
+    assert set(records[1].energies) == {*STORED, *LOST}
+    # what the records say of the momentum: m (V - V0) is the impulse less the loads'
+    pushed = (5e6 * 2.0 + 10800 * 9.81) * history.time
+    gained = 10800 * (records[0].velocity + 0.2)
+    assert gained == pytest.approx(records[0].impulse - pushed, rel=1e-9, abs=1e-9 * pushed[-1])
     both = history.columns["normal_force_m"] + history.columns["normal_force_n"]
     assert both == pytest.approx(2.0 * history.contact_pressure, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"fem": {"elements": 6, "foundation": "corner"}},
+        {"fem": {"elements": 6, "foundation": "nodes", "degree": 1, "cells": "triangles"}},
+        {"fem": {"elements": 6, "foundation": "patch", "patch_width": 0.4}},
+    ],
+    ids=["corner", "nodes", "patch"],
+)
+def test_every_foundation_opens_and_never_pulls(scene: Scene, values: dict[str, object]) -> None:
+    columns = ["displacement", "contact_pressure", "open_share", "largest_penetration"]
+    common = {"contact.shear_stiffness": 4e8, "load.eccentricity": 0.3, "block.poisson": 0.2, "run.columns": columns}
+    history = solve(scene.with_values(common | values), "fem").history
+    assert history is not None and history.contact_pressure.min() == 0 < history.contact_pressure.max()
+    assert 0 < history.columns["open_share"].mean() < 1
+    # k w / a summed over the points is at most 2 p / a of the deepest one
+    assert np.all(history.contact_pressure <= (1 + 1e-12) * 1e9 * history.columns["largest_penetration"])
 
 
 def test_the_bar_refuses_what_is_no_bar(scene: Scene) -> None:

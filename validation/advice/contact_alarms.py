@@ -18,6 +18,7 @@ tension of a dead band
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 from validation.advice import contact
@@ -69,7 +70,7 @@ class Seen:
 
     def alarm(self, kind: str, sentence: str, **values: float) -> Alarm:
         """Return an alarm on this run."""
-        return Alarm(kind, self.scene.name, sentence, values)
+        return Alarm(kind, self.scene.name, sentence, {k: v for k, v in values.items() if math.isfinite(v)})
 
 
 def _number(row: Row | None, metric: str) -> float | None:
@@ -78,7 +79,7 @@ def _number(row: Row | None, metric: str) -> float | None:
 
 
 def _large_step(seen: Seen) -> Iterator[Alarm]:
-    if not seen.opens or seen.omega <= contact.WRONG:
+    if not seen.opens or seen.omega <= contact.WRONG or seen.scene.contact.rule == "energy-conserving":
         return
     said = f"w_c dt = {seen.omega:.3g}, w_c = sqrt(8 p / m): "
     found = contact.restitution(seen.scene, seen.omega)
@@ -102,10 +103,10 @@ def _gained(seen: Seen) -> Iterator[Alarm]:
 
 def _may_gain(seen: Seen) -> Iterator[Alarm]:
     t = seen.scene.time
-    if seen.opens and t.delta < 1 and seen.omega > 1:
+    if seen.opens and t.delta < 1 and seen.omega > 1 and seen.scene.contact.rule == "newmark":
         said = (
-            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1 keeps opening and closing from "
-            "putting energy in"
+            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1, or a rule "
+            "of contact that cannot gain, keeps opening and closing from putting energy in"
         )
         yield seen.alarm(MAY_GAIN, said, omega=seen.omega, delta=t.delta)
 

@@ -141,7 +141,6 @@ def single(scene: Scene) -> Scene:
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
         raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
-    features.refuse_column(scene, "damping")
     if not features.linear(scene):
         has = ", ".join(features.of(scene))
         raise InputError(f"{scene.name}: modes and damping ratios exist for linear scenes only, got one with {has}")
@@ -150,6 +149,7 @@ def single(scene: Scene) -> Scene:
 
 def dda_modes(scene: Scene) -> tuple[Mode, ...]:
     """Return the modes of the DDA block that the load reaches, the first axial one first."""
+    features.refuse_column(scene, "damping")
     return checked("dda", single(scene)).modes(scene)
 
 

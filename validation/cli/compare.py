@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -32,13 +32,19 @@ def compare(
             help="Factors that convert the file's values to SI, upwards positive.", metavar="displacement=-1e-3"
         ),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="Write a one-page report.", metavar="FILE.pdf")] = None,
+    tolerance: Annotated[
+        float, typer.Option(help="Relative difference (L2) of a column that counts as none.", min=0.0, max=1.0)
+    ] = 0.0,
+    report: Annotated[
+        Path | None, typer.Option("--out", "--report", help="Write a one-page report.", metavar="FILE.pdf")
+    ] = None,
     assignments: SetOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
 ) -> None:
     """Judge another program's history: same model and scheme, or where and how it departs, and why.
 
-    The scene states what the program was asked to compute; the history's own time step is used.
+    The scene states what the program was asked to compute; the history's own time step is used. Exit status: 0 the
+    same, 1 it departs, 2 bad input.
 
     Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
     --scale displacement=-1e-3[/bold]
@@ -47,7 +53,7 @@ def compare(
     from validation.compare.reading import parse_columns, parse_scale, read
 
     case = one_case(scene, assignments)
-    answer = judge(case, read(history, parse_columns(columns), parse_scale(scale)))
+    answer = judge(case, read(history, parse_columns(columns), parse_scale(scale)), tolerance)
     if report is not None:
         from validation.report.chapters.compare import write_page
 
@@ -56,6 +62,14 @@ def compare(
         typer.echo(json.dumps(answer.as_dict(), indent=1, allow_nan=False))
     else:
         _print(answer)
+    if answer.departs:
+        raise typer.Exit(1)
+
+
+def _listed(one: dict[str, Any]) -> str:
+    """Return causes with their numbers."""
+    values = one["values"]
+    return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in one["causes"])
 
 
 def _print(answer: Answer) -> None:
@@ -67,7 +81,15 @@ def _print(answer: Answer) -> None:
     if answer.causes:
         typer.echo("\ncauses")
         for name in answer.causes:
-            typer.echo(f"  {name:<18} {CAUSES[name].words}")
+            number = f"{answer.values[name]:.5g}" if name in answer.values else ""
+            typer.echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
+    for one in answer.alike:
+        typer.echo(f"\nthe same rows by {_listed(one)}; to tell them apart: {one['further_scene']}")
+    if answer.evidence:
+        typer.echo("\nevidence")
+        for stage in answer.evidence:
+            mark = {True: "right", False: "wrong", None: "-"}[stage.agrees]
+            typer.echo(f"  {stage.name:<18} {mark:<6} {stage.words}")
     if answer.opened:
         typer.echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
     typer.echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")

@@ -9,9 +9,11 @@ from typing import Literal
 
 import numpy as np
 
-from dda.one_block.variants import Variant, histories
+from dda.one_block.variants import Variant
 from validation.compare.causes import CAUSES, benign_springs
-from validation.compare.fit import Fit, Target
+from validation.compare.fits.fit import Fit
+from validation.compare.fits.responses import computed
+from validation.compare.fits.target import Target
 from validation.runs.history import Array
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
@@ -35,7 +37,7 @@ def expected(target: Target, found: Fit, scene: Variant) -> Array:
     v = found.variant
     soft = v.softness if benign_springs(target, v) else 0.0
     plain = replace(scene, softness=soft, base=v.base, weight=v.weight, updated=v.updated)
-    return histories(target.column, [plain], target.steps).displacement[:, 0]
+    return computed(target.column, [plain], target.steps).displacement[:, 0]
 
 
 def departure(
@@ -45,7 +47,7 @@ def departure(
 
     A contact that opens is a departure from its first open step on, even before the displacement shows it.
     """
-    if all(CAUSES[name].benign for name in causes if name in CAUSES) and "unknown" not in causes:
+    if all(CAUSES[name].benign for name in causes):
         return None
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")
@@ -54,6 +56,12 @@ def departure(
     if open_steps and set(causes) & {"contact-opened"} and gone.step > open_steps[0]:
         return Departure(open_steps[0], gone.kind)
     return gone
+
+
+def unbounded(wanted: Array, given: Array, rows: np.ndarray) -> Departure:
+    """Return the first step at which a history without bounds has left the expected one."""
+    away = np.abs(given - wanted) > SEEN * float(np.max(np.abs(wanted)))
+    return Departure(int(rows[int(np.argmax(away))]) + 1, "amplitude")
 
 
 def measured(wanted: Array, given: Array, rows: np.ndarray, noise: float) -> Departure:

@@ -1,8 +1,7 @@
-"""Judgement of another program by its history: same model, same scheme, or where and how it departs."""
+"""Judgement of another program by its history: the same, or where and how it departs, why, and what is not known."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -10,26 +9,31 @@ from typing import Any
 import numpy as np
 
 from dda.one_block.variants import Column, Variant, histories
-from validation.compare import causes, departure, sentences
-from validation.compare.causes import CAUSES
+from validation.compare import causes, departure, evidence, families, sentences
+from validation.compare.causes import CAUSES, DIVERGED, UNEXPLAINED
+from validation.compare.decision import Verdict
 from validation.compare.departure import Departure
-from validation.compare.fit import NAMED, Fit, Interval, Target, fit, intervals, named, untold
+from validation.compare.evidence import Stage
+from validation.compare.fits.fit import Interval, fit, intervals, untold
+from validation.compare.fits.rectangle import own_variant, rectangle_of
+from validation.compare.fits.responses import computed
+from validation.compare.fits.target import Target
 from validation.compare.other_solvers import Goal, Rival, rivals
-from validation.compare.reading import Foreign, Stepping, steppings
-from validation.compare.rectangle import rectangle_of
+from validation.compare.other_verdict import RivalVerdict, judged
+from validation.compare.ranking import ranking, row_of
+from validation.compare.reading import Foreign, steppings
+from validation.compare.readings import Reading, readings_of, slips
+from validation.compare.search import paired, simple
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
-UNEXPLAINED = 0.02  # relative L2: what is left beyond is a departure, cause known or not
-CLEAR = 3e-3  # relative L2 below which DDA is the model, whatever the rivals' schemes
-MUCH = 0.7  # of a misfit: what a less likely reading has to come below
-PLAIN = 0.05  # relative L2 below which a reading is right
-RIVAL = 0.5  # share of DDA's misfit below which another solver is the model
+DDA = "dda"
 RIVALS = ("bar", "continuum")
-MODEL_WORDS = {"dda": "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
+RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,260 +51,251 @@ class Answer:
     untold: list[dict[str, float]] = field(default_factory=list)
     misfit: float = 0.0  # of the best explanation, relative L2 [-]
     curves: dict[str, tuple[Array, Array]] = field(default_factory=dict)  # name to time [s] and displacement [m]
+    values: dict[str, float] = field(default_factory=dict)  # id to number
+    unexplained: float = 0.0  # share of the difference that is left [-]
+    nearest: dict[str, Any] | None = None  # where nothing explains it
+    alike: list[dict[str, Any]] = field(default_factory=list)  # causes that give the same rows
+    evidence: tuple[Stage, ...] = ()
+
+    @property
+    def departs(self) -> bool:
+        """Whether the history is another one than the scene's."""
+        return self.departure is not None
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
         gone = None if self.departure is None else {"step": self.departure.step, "kind": self.departure.kind}
         return {
+            "sentence": self.sentence,
+            "causes": self.causes,
+            "values": self.values,
+            "unexplained": self.unexplained,
+            "nearest": self.nearest,
+            "alike": self.alike,
+            "departure": gone,
+            "opened": None if self.opened is None else list(self.opened),
             "scheme": self.scheme,
             "ranking": self.ranking,
-            "departure": gone,
-            "causes": self.causes,
-            "opened": None if self.opened is None else list(self.opened),
-            "sentence": self.sentence,
+            "evidence": [stage.as_dict() for stage in self.evidence],
         }
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
-    """A history as it is read: its steps, with errors of sign and unit corrected."""
+class Case:
+    """A scene, a history, and the reading of it that explains most."""
 
-    stepping: Stepping
-    displacement: Array  # [m]
-    pressure: Array | None  # [Pa]
-    slips: tuple[str, ...]
+    scene: Scene
+    foreign: Foreign
+    reading: Reading
+    target: Target
+    own: Variant
 
 
-def compare(scene: Scene, foreign: Foreign) -> Answer:
+def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     """Judge a history against the scene.
+
+    Parameters
+    ----------
+    tolerance
+        Relative L2 difference up to which a column counts as the scene's own [-].
 
     Raises
     ------
     InputError
-        The scene has a sweep or is not linear, or the history is zero throughout or does not fit the scene.
+        The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
     features.refuse_column(scene, "compare")
     features.refuse_damping(scene, "compare")
-    if not features.linear(scene):
+    column = rectangle_of(scene)
+    if not features.linear(scene) and column is None:
         raise InputError(
-            f"{scene.name}: compare takes linear scenes only, got one with {', '.join(features.of(scene))}"
+            f"{scene.name}: compare takes linear scenes and centred ones on contact that opens, got one with "
+            + ", ".join(features.of(scene))
         )
     if scene.sweep:
         raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
     if not np.any(foreign.displacement):
         raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
-    column = rectangle_of(scene)
     if column is None:
         return _without_rectangle(scene, foreign)
-    own = Variant(scene.time.alpha, scene.time.delta, scene.time.discount, scene.time.start)
-    reading, target, found = _best_reading(_readings(scene, column, own, foreign), column, own)
-    clear = [(found.variant.alpha, found.variant.delta)] if found.misfit < CLEAR else NAMED.values()
-    others = _others(scene, reading, RIVALS if scene.block.poisson == 0 else ("fem",), clear)
-    if others and others[0].misfit < RIVAL * found.misfit:
-        return _answer_of_rival(scene, foreign, reading, others)
-    return _answer(scene, foreign, reading, target, found, own, others)
+    own = own_variant(scene)
+    read = readings_of(scene, column, own, foreign)
+    factor = _growth(column, own, read[0])
+    if factor is not None:
+        return _diverged(_case(scene, foreign, read[0], column, own), factor)
+    case, verdict = _best(scene, foreign, read, column, own)
+    misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
+    if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
+        verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
+    others: list[Rival] = []
+    if not (verdict.explained or verdict.reached) and scene.contact.law == "locked":
+        names = RIVALS if scene.block.poisson == 0 else ("fem",)
+        theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
+        if theirs is not None and theirs.explained:
+            return _answer_of_rival(foreign, case.reading, theirs, _stages(case))
+        verdict = paired(case.target, own, verdict)
+    if scene.contact.law == "locked":
+        others = _others(scene, case, verdict)
+    return _answer(case, verdict, others)
 
 
 # ---- reading --------------------------------------------------------------------------------------------------------
 
 
-def _readings(scene: Scene, column: Column, own: Variant, foreign: Foreign) -> list[Reading]:
-    """Return the ways to read a history's steps, sign and units."""
-    found = []
-    for stepping in steppings(foreign, scene.time.step):
-        expected = histories(column, [own], stepping.steps)
-        reference = expected.displacement[stepping.rows, 0]
-        found += _slips(foreign, stepping, reference, expected.pressure[stepping.rows, 0])
-    return found
+def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Column, own: Variant) -> Case:
+    s = reading.stepping
+    columns = reading.displacement, reading.pressure, reading.rounding, reading.pressure_rounding
+    return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), own)
 
 
-def _slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
-    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest."""
-    time = ("unit",) if stepping.factor != 1 else ()
-    readings = []
-    for sign, factor in _factors(foreign.displacement, reference):
-        pressure, slipped = foreign.pressure, tuple(time)
-        if pressure is not None:
-            turned, scale = _factors(pressure, contact)[0]
-            pressure = pressure * turned / scale
-            slipped += ("sign",) * (turned < 0) + ("unit",) * (scale != 1)
-        slipped += ("sign",) * (sign < 0) + ("unit",) * (factor != 1)
-        readings.append(Reading(stepping, foreign.displacement * sign / factor, pressure, tuple(sorted(set(slipped)))))
-    return readings
+def _growth(column: Column, own: Variant, reading: Reading) -> float | None:
+    """Return the growth in a step of the displacement or the pressure, None if both are bounded."""
+    rows, found = reading.stepping.rows, computed(column, [own], reading.stepping.steps)
+    pairs = [(reading.displacement, found.displacement), (reading.pressure, found.pressure)]
+    factors = [evidence.growth(values, wanted[rows, 0]) for values, wanted in pairs if values is not None]
+    return next((f for f in factors if f is not None), None)
 
 
-def _best_reading(readings: Sequence[Reading], column: Column, own: Variant) -> tuple[Reading, Target, Fit]:
-    """Return the likeliest reading with what explains it; a less likely one must explain much more."""
-    best: tuple[Reading, Target, Fit] | None = None
-    for reading in readings:
-        target = _target(column, reading)
-        found = causes.explain(target, own)
-        if best is None or found.misfit < MUCH * best[2].misfit:
-            best = reading, target, found
-        if best[2].misfit < PLAIN:
+def _best(
+    scene: Scene, foreign: Foreign, read: Sequence[Reading], column: Column, own: Variant
+) -> tuple[Case, Verdict]:
+    """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
+    tried = []
+    for reading in read:
+        case = _case(scene, foreign, reading, column, own)
+        verdict = simple(case.target, own)
+        if verdict.reached or verdict.explained:
+            return case, verdict
+        tried.append((case, verdict))
+        if verdict.best.fit.misfit < PLAIN:
             break
-    if best is None:
-        raise InputError("time: must be the ends of time steps, got times that fit no steps")
-    return best
+    return min(tried, key=lambda pair: pair[1].best.fit.misfit)
 
 
-def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
-    """Return the sign and the powers of ten by which values may be off, the likeliest first."""
-    with np.errstate(all="ignore"):
-        bounded = np.clip(np.nan_to_num(reference), -1e3 * abs(reference[0] or 1.0), 1e3 * abs(reference[0] or 1.0))
-    sign = -1.0 if float(values @ bounded) < 0 else 1.0
-    ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
-    near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
-    return [(way * sign, factor) for way in (1.0, -1.0) for factor in (*near, 1.0)]
-
-
-def _target(column: Column, reading: Reading) -> Target:
-    return Target(column, reading.stepping.steps, reading.stepping.rows, reading.displacement, reading.pressure)
-
-
-def _others(
-    scene: Scene,
-    reading: Reading,
-    names: Sequence[str],
-    schemes: Iterable[tuple[float, float]] = NAMED.values(),
-) -> list[Rival]:
-    """Return the other solvers' best answers; none where the steps are not equal, which they need."""
-    steps = reading.stepping.steps
+def _others(scene: Scene, case: Case, verdict: Verdict) -> list[Rival]:
+    """Return the other solvers' best answers, for the ranking."""
+    v, steps = verdict.best.fit.variant, case.reading.stepping.steps
+    names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
     if np.ptp(steps) > 0:
         return []
-    if scene.time.discount != 1:  # the damped continuum takes minutes over long histories
-        names = [name for name in names if name != "continuum"]
-    same = scene.with_values(
-        {
-            "time.step": float(steps[0]),
-            "time.steps": len(steps),
-            "run.columns": ["displacement", "contact_pressure"],
-            "run.solvers": ["dda"],
-        }
-    )
-    goal = Goal(reading.stepping.rows, reading.displacement, reading.pressure)
-    return rivals(same, names, goal, schemes)
+    schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
+    r = case.reading
+    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------
 
 
-def _answer(
-    scene: Scene,
-    foreign: Foreign,
-    reading: Reading,
-    target: Target,
-    found: Fit,
-    own: Variant,
-    others: Sequence[Rival],
-) -> Answer:
-    ids = [*reading.slips, *causes.causes_of(target, found, own)]
-    v = found.variant
-    gg = v.gg if "gg" in ids else own.gg
-    steps = causes.opened(target, found)
-    expected = departure.expected(target, found, own)
-    gone = departure.departure(target, expected, found, ids, steps)
-    if not gone and found.misfit > UNEXPLAINED:
-        gone = departure.departure(target, expected, found, ["unknown"], [])
-    told = _free_scheme(target, found)
+def _stages(case: Case, factor: float | None = None) -> list[Stage]:
+    rows, found = case.reading.stepping.rows, computed(case.target.column, [case.own], case.target.steps)
+    wanted = found.displacement[rows, 0], found.pressure[rows, 0]
+    return evidence.stages(case.target, wanted, case.reading.slips, case.reading.stepping.note, factor)
+
+
+def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
+    target, own, found = case.target, case.own, verdict.best.fit
+    stages = _stages(case)
+    named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own)
+    ids = named_ if verdict.explained else [UNEXPLAINED]
+    v = found.variant if verdict.explained else own
+    steps = _opened(target, found.variant) if verdict.explained else []
+    shown = verdict.best.fit if verdict.explained else verdict.own
+    expected = departure.expected(target, shown, own)
+    gone = departure.departure(target, expected, shown, ids, steps)
+    told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
+    values = causes.values_of(target, ids, v)
+    soft = causes.compliance(target, v)
+    alike = families.as_good(target, verdict) or families.relatives(target, ids, values)
+    nearest = None if verdict.explained or verdict.alike else _nearest(target, verdict, named_)
+    said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft)
+    if not verdict.explained:
+        sentence = sentences.not_explained(said, nearest, alike, verdict.left, stages)
+    else:
+        sentence = sentences.sentence(said, alike)
     time = np.cumsum(target.steps)[target.rows]
-    sentence = sentences.sentence(v, gg, own, ids, gone, steps, found.misfit, causes.compliance(target, v))
+    best = computed(target.column, [found.variant], target.steps).displacement[target.rows, 0]
+    curves = {"the file": target.displacement, DDA: expected[target.rows], "best": best}
     return Answer(
-        {"alpha": v.alpha, "delta": v.delta, "gg": gg},
-        _ranking(target, found, gg, others),
+        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        ranking(DDA, target, v, shown.free, others),
         gone,
         ids,
         (steps[0], steps[-1]) if steps else None,
         sentence,
-        _notes(foreign, reading),
-        intervals(told),
-        untold(told),
+        _notes(case.foreign, case.reading),
+        intervals(told) if verdict.explained else {},
+        untold(told) if verdict.explained else [],
         found.misfit,
-        {
-            "the file": (time, reading.displacement),
-            "dda": (time, expected[target.rows]),
-            "best": (time, histories(target.column, [v], target.steps).displacement[target.rows, 0]),
-        },
+        {name: (time, curve) for name, curve in curves.items()},
+        values,
+        float(f"{verdict.left:.4g}") if not verdict.explained else 0.0,
+        nearest,
+        alike,
+        tuple(stages),
     )
 
 
-def _free_scheme(target: Target, found: Fit) -> Fit:
-    """Return the fit with alpha, delta and gg free as well."""
-    free = tuple(dict.fromkeys(("alpha", "delta", "gg", *found.free)))
-    return fit(target, [(found.variant, free)])[0]
+def _nearest(target: Target, verdict: Verdict, ids: list[str]) -> dict[str, Any]:
+    """Return what comes nearest, and how much of the difference it leaves."""
+    values = causes.values_of(target, ids, verdict.best.fit.variant)
+    return {"causes": ids, "values": values, "left": float(f"{verdict.left:.4g}")}
 
 
-def _ranking(target: Target, found: Fit, gg: float, others: Sequence[Rival]) -> list[dict[str, Any]]:
-    """Return every named scheme with what was found besides, and the other solvers, by misfit."""
-    pairs = dict.fromkeys([(found.variant.alpha, found.variant.delta), *NAMED.values()])
-    free = tuple(name for name in found.free if name not in ("alpha", "delta", "gg"))
-    starts = [(replace(found.variant, alpha=a, delta=d, gg=gg), free) for a, d in pairs]
-    rows = [
-        _row("dda", f.variant.alpha, f.variant.delta, gg, f.misfit, causes.compliance(target, f.variant))
-        for f in fit(target, starts)
-    ]
-    rows += [
-        _row(
-            r.model,
-            r.alpha,
-            r.delta,
-            r.gg,
-            r.misfit,
-            causes.compliance(target, replace(found.variant, softness=r.softness)),
-        )
-        for r in others
-    ]
-    return sorted(rows, key=lambda row: row["misfit"])
+def _opened(target: Target, v: Variant) -> list[int]:
+    """Return the steps, counted from 1, at whose end the contact of a variant is open."""
+    if not v.opens:
+        return []
+    return [int(i) + 1 for i in np.flatnonzero(computed(target.column, [v], target.steps).open[:, 0])]
 
 
-def _row(
-    model: str, alpha: float | None, delta: float | None, gg: float | None, misfit: float, soft: float | None
-) -> dict[str, Any]:
-    """Return a line of the ranking; a scheme that grows has no finite misfit worth a number."""
-    name = None if alpha is None or delta is None else named(alpha, delta)
-    bounded = float(f"{min(misfit, 1e6):.6g}")
-    slack = None if soft is None else float(f"{soft:.4g}")
-    return {
-        "model": model,
-        "name": name,
-        "alpha": alpha,
-        "delta": delta,
-        "gg": gg,
-        "misfit": bounded,
-        "compliance": slack,
-    }
+def _diverged(case: Case, factor: float) -> Answer:
+    """Return the answer to a history without bounds: no cause beyond that is looked for."""
+    target, stages = case.target, _stages(case, factor)
+    expected = histories(target.column, [case.own], target.steps).displacement[:, 0]
+    gone = departure.unbounded(expected[target.rows], target.displacement, target.rows)
+    time = np.cumsum(target.steps)[target.rows]
+    v = case.own
+    return Answer(
+        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        [],
+        gone,
+        [DIVERGED],
+        None,
+        sentences.diverged(gone, factor),
+        _notes(case.foreign, case.reading),
+        curves={"the file": (time, target.displacement), DDA: (time, expected[target.rows])},
+        values={DIVERGED: float(f"{factor:.6g}")},
+        evidence=tuple(stages),
+    )
 
 
 def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
     said = (reading.stepping.note,) if reading.stepping.note else ()
-    slips = tuple(CAUSES[name].words for name in reading.slips)
-    return (*foreign.notes, *said, *slips)
+    slipped = tuple(CAUSES[name].words for name in reading.slips)
+    return (*foreign.notes, *said, *slipped)
 
 
-def _answer_of_rival(scene: Scene, foreign: Foreign, reading: Reading, others: Sequence[Rival]) -> Answer:
+def _answer_of_rival(foreign: Foreign, reading: Reading, verdict: RivalVerdict, stages: Sequence[Stage] = ()) -> Answer:
     """Return the answer where another solver than DDA, or the linear DDA of any polygon, explains the history best."""
-    best, t = others[0], scene.time
-    ids = list(reading.slips)
-    same_scheme = best.alpha is None or (best.alpha, best.delta) == (t.alpha, t.delta)
-    if not same_scheme:
-        ids.append("scheme")
-    if abs(best.softness) > 1e-3:
-        ids.append("base-compliance" if 0 < best.softness < 2 * causes.BENIGN_COMPLIANCE else "springs-factor")
-    gone, off = None, "springs-factor" in ids
-    if best.misfit > UNEXPLAINED or not same_scheme or reading.slips or off:
-        rows, wanted = reading.stepping.rows, best.unsoftened if off else best.displacement
-        gone = departure.measured(wanted[rows], reading.displacement, rows, 0.0)
-    time = np.cumsum(reading.stepping.steps)[reading.stepping.rows]
+    best, rows = verdict.best, reading.stepping.rows
+    ids = [*reading.slips, *verdict.causes] if verdict.explained else [UNEXPLAINED]
+    gone = None
+    if any(not CAUSES[name].benign for name in ids):
+        gone = departure.measured(verdict.own[rows], reading.displacement, rows, 0.0)
+    time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
         {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
-        [_row(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in others],
+        [row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
         gone,
         ids,
         None,
-        sentences.rival_sentence(best, same_scheme, ids, gone, MODEL_WORDS),
+        sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS),
         _notes(foreign, reading),
         misfit=best.misfit,
-        curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[reading.stepping.rows])},
+        curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
+        values=verdict.values if verdict.explained else {},
+        unexplained=0.0 if verdict.explained else verdict.left,
+        evidence=tuple(stages),
     )
 
 
@@ -308,22 +303,18 @@ def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block that is no upright rectangle, or that turns: linear models alone are tried."""
     from validation.solvers.registry import get_solver
 
-    every = []
+    tried = []
     for stepping in steppings(foreign, scene.time.step):
-        same = scene.with_values(
-            {"time.step": float(stepping.steps[0]), "time.steps": len(stepping.steps), "run.solvers": ["dda"],
-             "run.columns": ["displacement", "contact_pressure"]}
-        )  # fmt: skip
-        run = get_solver("dda").solve(same)
+        if np.ptp(stepping.steps) > 0:
+            continue
+        plain = Reading(stepping, foreign.displacement, foreign.pressure, ())
+        run = get_solver(DDA).solve(plain.scene_of(scene))
         rows = stepping.rows
-        for reading in _slips(foreign, stepping, run.displacement[rows], run.contact_pressure[rows]):
-            found = _others(scene, reading, ("dda", "fem"))
-            every += [(reading, found)] if found else []
-    if not every:
+        for reading in slips(foreign, stepping, run.displacement[rows], run.contact_pressure[rows]):
+            verdict = judged(scene, reading, 1.0, (DDA, "fem"), DDA)
+            tried += [(reading, verdict)] if verdict is not None else []
+    if not tried:
         raise InputError(f"{scene.name}: the times of the history are not uniform, which this scene needs")
-    reading, others = min(every, key=lambda pair: pair[1][0].misfit)
-    noted = replace(
-        foreign,
-        notes=(*foreign.notes, "the block is not an upright rectangle: opening and updated geometry are not tried"),
-    )
-    return _answer_of_rival(scene, noted, reading, others)
+    reading, verdict = min(tried, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
+    note = "the block is not an upright rectangle: opening and updated geometry are not tried"
+    return _answer_of_rival(replace(foreign, notes=(*foreign.notes, note)), reading, verdict)

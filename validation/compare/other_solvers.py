@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.compare.fit import NAMED
+from validation.compare.fits.fit import NAMED
 from validation.errors import InputError
 from validation.runs.history import PRESSURE, Array
 from validation.scenes.scene import Scene
@@ -32,6 +32,9 @@ class Rival:
     softness: float  # ln of the scene's spring stiffness over that in effect [-]
     displacement: Array  # of every step [m]
     unsoftened: Array  # the same on the scene's own springs [m]
+    plain: float = np.inf  # misfit on the scene's own springs [-]
+    slip: str = ""  # id of another cause than scheme and springs
+    amount: float = 1.0  # its number
 
 
 def rivals(
@@ -53,6 +56,8 @@ def rivals(
     t, found = scene.time, []
     every = dict.fromkeys([(t.alpha, t.delta), *schemes])
     for name in solvers:
+        if name == "continuum" and t.discount != 1:  # the damped one takes minutes over long histories
+            continue
         pairs = list(every)[: SCHEMES_OF.get(name, len(every))]
         for alpha, delta in pairs:
             rival = _fitted(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
@@ -85,7 +90,7 @@ def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
     wanted, softness = goal.scaled(goal.displacement, goal.pressure), 0.0
     try:
         best, shown = _response(scene, name, goal, softness)
-        plain = shown
+        plain, first = shown, float(np.linalg.norm(wanted - best))
         for _ in range(ROUNDS):
             slope = (_response(scene, name, goal, softness + NUDGE)[0] - best) / NUDGE
             change = float(slope @ (wanted - best)) / (float(slope @ slope) or 1.0)
@@ -100,8 +105,53 @@ def _fitted(scene: Scene, name: str, goal: Goal) -> Rival | None:
         return None
     t, misfit = scene.time, float(np.linalg.norm(wanted - best))
     if name == "continuum":
-        return Rival(name, None, None, None, misfit, softness, shown, plain)
-    return Rival(name, t.alpha, t.delta, t.discount, misfit, softness, shown, plain)
+        return Rival(name, None, None, None, misfit, softness, shown, plain, first)
+    return Rival(name, t.alpha, t.delta, t.discount, misfit, softness, shown, plain, first)
+
+
+SLIPS = {  # id to the field of the scene that a factor changes
+    "density-factor": "block.density",
+    "young-factor": "block.young",
+    "load-factor": "load.pressure",
+}
+STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
+
+
+def slipped(scene: Scene, name: str, goal: Goal) -> list[Rival]:
+    """Return a solver's answers with one number of the scene wrong by a factor, each at its best factor."""
+    if name == "fem" or get_solver(name).refusal(scene) is not None:
+        return []
+    own = {"density-factor": scene.block.density, "young-factor": scene.block.young, "load-factor": scene.load.pressure}
+    wanted = goal.scaled(goal.displacement, goal.pressure)
+    found = []
+    for slip, key in SLIPS.items():
+
+        def answer(factor: float, key: str = key, value: float = own[slip]) -> tuple[Array, Array]:
+            return _response(scene.with_values({key: value * factor}), name, goal, 0.0)
+
+        try:
+            factor, (best, shown) = _best_factor(answer, wanted)
+        except InputError:  # the step lies beyond the limit of the scheme
+            continue
+        t, misfit = scene.time, float(np.linalg.norm(wanted - best))
+        alpha, delta, gg = (None, None, None) if name == "continuum" else (t.alpha, t.delta, t.discount)
+        found.append(Rival(name, alpha, delta, gg, misfit, 0.0, shown, shown, misfit, slip, factor))
+    return found
+
+
+def _best_factor(answer: Callable[[float], tuple[Array, Array]], wanted: Array) -> tuple[float, tuple[Array, Array]]:
+    """Return the factor whose answer is nearest, by trial and Gauss and Newton's method."""
+    factor = min(STARTS, key=lambda f: float(np.linalg.norm(wanted - answer(f)[0])))
+    best = answer(factor)
+    for _ in range(2 * ROUNDS):
+        slope = (answer(factor * (1 + NUDGE))[0] - best[0]) / NUDGE
+        change = float(slope @ (wanted - best[0])) / (float(slope @ slope) or 1.0)
+        trial = factor * (1 + min(max(change, -0.3), 0.3))
+        new = answer(trial)
+        if not np.linalg.norm(wanted - new[0]) < np.linalg.norm(wanted - best[0]):
+            break
+        factor, best = trial, new
+    return factor, best
 
 
 def _response(scene: Scene, name: str, goal: Goal, softness: float) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.compare.fits.bar import last_digits
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.regular import regular
@@ -28,7 +29,8 @@ class Foreign:
     """A history of another program in SI units, from the first row after t = 0 on.
 
     `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
-    (None if not given); `steps` [s] are the program's own time steps where it states them.
+    (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
+    units of the last printed digit of each value, None where they are to be seen from the values.
     """
 
     time: Array
@@ -36,6 +38,8 @@ class Foreign:
     pressure: Array | None = None
     steps: Array | None = None
     notes: tuple[str, ...] = ()
+    rounding: Array | None = None  # [m]
+    pressure_rounding: Array | None = None  # [Pa]
 
 
 def parse_columns(text: str | None) -> dict[str, str]:
@@ -104,7 +108,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
     found = reader(text, path, columns)
     scaled = {name: values * scale.get(name, 1.0) for name, values in found.items() if name in OURS}
-    return _checked(scaled, found.get("dt"), path, _notes_of(found, columns))
+    rounded = {name: last_digits(found[name]) * abs(scale.get(name, 1.0)) for name in OURS[1:] if name in found}
+    return _checked(scaled, rounded, found.get("dt"), path, _notes_of(found, columns))
 
 
 # ---- tables -------------------------------------------------------------------------------------------------------
@@ -205,7 +210,9 @@ def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[s
 # ---- checks -------------------------------------------------------------------------------------------------------
 
 
-def _checked(found: Mapping[str, Array], dt: Array | None, path: Path, notes: tuple[str, ...]) -> Foreign:
+def _checked(
+    found: Mapping[str, Array], rounded: Mapping[str, Array], dt: Array | None, path: Path, notes: tuple[str, ...]
+) -> Foreign:
     """Return the history without its row at t = 0."""
     time = found["time"]
     for name, values in found.items():
@@ -231,6 +238,8 @@ def _checked(found: Mapping[str, Array], dt: Array | None, path: Path, notes: tu
         None if pressure is None else pressure[keep],
         None if dt is None else dt[keep],
         notes,
+        rounded[DISPLACEMENT][keep],
+        None if pressure is None else rounded[PRESSURE][keep],
     )
 
 

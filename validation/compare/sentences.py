@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from dda.one_block.variants import Variant
 from validation.compare.causes import CAUSES
-from validation.compare.fit import named
+from validation.compare.fits.fit import named
 from validation.gates.gate import ROUNDING
 
 if TYPE_CHECKING:
     from validation.compare.departure import Departure
-    from validation.compare.fit import Interval
-    from validation.compare.other_solvers import Rival
+    from validation.compare.evidence import Stage
+    from validation.compare.fits.fit import Interval
+    from validation.compare.other_verdict import RivalVerdict
 
 INTEGRATOR = ("scheme", "gg", "gg-in-one-formula", "start")
+OUTPUT = ("sign", "unit", "time-shift", "pressure-shift", "pressure-factor", "reported-point")
+HALF = 0.5
 
 
 def scheme_words(alpha: float | None, delta: float | None, gg: float | None) -> str:
@@ -38,45 +42,93 @@ def span(steps: Sequence[int]) -> str:
     return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in runs)
 
 
-def sentence(
-    variant: Variant,
-    gg: float,
-    scene: Variant,
-    causes: Sequence[str],
-    gone: Departure | None,
-    open_steps: Sequence[int],
-    misfit: float,
-    compliance: float,
-) -> str:
-    """Return the first line of the answer."""
-    own = scheme_words(variant.alpha, variant.delta, gg)
-    faults = [name for name in causes if not CAUSES[name].benign]
-    benign = [_benign_words(name, variant, compliance) for name in causes if CAUSES[name].benign]
+@dataclass(frozen=True)
+class Said:
+    """What a sentence is about."""
+
+    variant: Variant
+    scene: Variant
+    causes: Sequence[str]
+    values: Mapping[str, float]
+    gone: Departure | None
+    open_steps: Sequence[int]
+    misfit: float  # relative L2 [-]
+    compliance: float  # share of the static displacement that softer springs add [-]
+
+    @property
+    def own(self) -> str:
+        """The fitted scheme in words."""
+        return scheme_words(self.variant.alpha, self.variant.delta, self.variant.gg)
+
+    @property
+    def where(self) -> str:
+        """Where the history leaves what is expected."""
+        return f" from step {self.gone.step} on, mainly in {self.gone.kind}" if self.gone else ""
+
+
+def sentence(said: Said, alike: Sequence[Mapping[str, Any]] = ()) -> str:
+    """Return the first line of the answer where causes explain the history, or none is needed."""
+    faults = [name for name in said.causes if not CAUSES[name].benign]
+    benign = [_benign_words(name, said) for name in said.causes if CAUSES[name].benign]
     allowed = f", allowing for {_listed(benign)}" if benign else ""
-    left = f"the remaining difference is {per_cent(misfit, 2)} %"
-    if not faults and gone is None:
-        return f"Same model, same scheme: {own}{allowed}; {left}."
-    where = f" from step {gone.step} on, mainly in {gone.kind}" if gone else ""
+    left = f"the remaining difference is {per_cent(said.misfit, 2)} %"
     if not faults:
-        return f"Departs{where}, for no known reason; the closest match is {own}{allowed}; {left}."
-    said = _listed([_fault_words(name, variant, gg, scene, open_steps, compliance) for name in faults])
+        return f"Same model, same scheme: {said.own}{allowed}; {left}."
+    words = _listed([_fault_words(name, said) for name in faults])
+    family = f" (the same rows: {_family(alike[0])})" if alike else ""
     if set(faults) & set(INTEGRATOR):
-        return f"Departs{where}: {said}; the history matches {own}{allowed}; {left}."
-    model = "" if set(faults) & {"contact-opened", "springs-factor", "load-factor"} else ", same model"
-    return f"Same scheme{model}: {own}, but departs{where}: {said}{allowed}; {left}."
+        return f"Departs{said.where}: {words}{family}; the history matches {said.own}{allowed}; {left}."
+    model = ", same model" if set(faults) <= set(OUTPUT) else ""
+    return f"Same scheme{model}: {said.own}, but departs{said.where}: {words}{family}{allowed}; {left}."
+
+
+def not_explained(
+    said: Said,
+    nearest: Mapping[str, Any] | None,
+    alike: Sequence[Mapping[str, Any]],
+    left: float,
+    stages: Sequence[Stage],
+) -> str:
+    """Return the first line of the answer where nothing explains the history, or several causes do."""
+    start = f"Departs{said.where}, not explained: "
+    if alike:
+        words = " or ".join(_family(one) for one in alike[:3])
+        return f"{start}{words} give the same rows within digits and noise; {alike[0]['further_scene']} tells."
+    near = "nothing is near"
+    if nearest and nearest["causes"]:
+        near = f"nearest is {_family(nearest)}, {per_cent(left, 2)} % left"
+    right = _names(stages, True)
+    wrong = _names(stages, False)
+    told = [f"right so far: {right}" if right else "", f"wrong: {wrong}" if wrong else ""]
+    return "; ".join([start + near, *(part for part in told if part)]) + "."
+
+
+def diverged(gone: Departure, growth: float) -> str:
+    """Return the first line of the answer to a history without bounds."""
+    return (
+        f"Departs from step {gone.step} on: the run diverged, by a factor of {growth:.4g} a step; "
+        "nothing else can be told from it."
+    )
 
 
 def rival_sentence(
-    best: Rival, same_scheme: bool, causes: Sequence[str], gone: Departure | None, models: Mapping[str, str]
+    verdict: RivalVerdict, causes: Sequence[str], gone: Departure | None, models: Mapping[str, str]
 ) -> str:
     """Return the first line where another solver explains the history best."""
+    best = verdict.best
     own, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
     left = f"the remaining difference is {per_cent(best.misfit, 2)} %"
-    said = "".join(f"; {CAUSES[name].words}" for name in causes)
+    if not verdict.explained:
+        return (
+            f"Departs, not explained: nearest is {best.model} ({model}) with {own}, "
+            f"{per_cent(verdict.left, 2)} % of the difference left; {left}."
+        )
+    parts = [f"{CAUSES[name].words}{_number(name, verdict.values)}" for name in causes]
+    said = f"; {_listed(parts)}" if parts else ""
     if gone is None:
         return f"Same model as {best.model} ({model}), same scheme: {own}{said}; {left}."
     where = f"departs from step {gone.step} on, mainly in {gone.kind}"
-    scheme = "same scheme" if same_scheme else "a different scheme"
+    scheme = "a different scheme" if "scheme" in causes else "same scheme"
     return f"Closest match: {best.model} ({model}), {scheme}: {own}; {where}{said}; {left}."
 
 
@@ -108,33 +160,70 @@ def _listed(parts: Sequence[str]) -> str:
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
-def _benign_words(name: str, variant: Variant, compliance: float) -> str:
+def _names(stages: Sequence[Stage], agrees: bool) -> str:
+    return ", ".join(stage.name.replace("_", " ") for stage in stages if stage.agrees is agrees)
+
+
+def _number(name: str, values: Mapping[str, float]) -> str:
+    return f" ({values[name]:.4g})" if name in values else ""
+
+
+def _family(one: Mapping[str, Any]) -> str:
+    """Return causes with their numbers, ``density-factor 0.5 and gg 0.98``."""
+    return _listed([name + (f" {one['values'][name]:.4g}" if name in one["values"] else "") for name in one["causes"]])
+
+
+def _benign_words(name: str, said: Said) -> str:
     if name == "base-compliance":
-        return f"a base that adds {100 * compliance:.2g} % to the static displacement"
+        return f"a base that adds {100 * said.compliance:.2g} % to the static displacement"
     if name == "own-weight":
-        return f"the block's own weight ({variant.weight:.3g} x 9.81 m/s2)"
+        return f"the block's own weight ({said.variant.weight:.3g} x 9.81 m/s2)"
     return CAUSES[name].words
 
 
-def _fault_words(
-    name: str, variant: Variant, gg: float, scene: Variant, open_steps: Sequence[int], compliance: float
-) -> str:
+def _fault_words(name: str, said: Said) -> str:
     """Return a cause with its number."""
-    if name == "scheme":
-        return f"a different scheme from the scene's {scheme_words(scene.alpha, scene.delta, scene.gg)}"
-    if name == "gg":
-        return f"gg = {gg:.5g} where the scene has {scene.gg:.5g}"
-    if name == "gg-in-one-formula":
-        formula = {"velocity": "velocity (7)", "displacement": "displacement (6)"}[variant.discounted]
-        return f"gg is applied only in the formula for the {formula}"
-    if name == "start":
-        return f'the initial acceleration is "{variant.start}", not "{scene.start}"'
-    if name == "time-shift":
-        return f"the rows are {abs(variant.shift)} step {'late' if variant.shift > 0 else 'early'}"
-    if name == "springs-factor":
-        return f"the contact springs are {2.718281828459045**-variant.softness:.4g} times the scene's"
-    if name == "load-factor":
-        return f"the load, or the displacement, is {variant.load:.5g} times the scene's"
-    if name == "contact-opened":
-        return f"the contact opened in steps {span(open_steps)}" if open_steps else "the contact opened"
-    return CAUSES[name].words
+    v, scene, value = said.variant, said.scene, said.values.get(name, 0.0)
+    steps = span(said.open_steps)
+    formula = {"velocity": "velocity (7)", "displacement": "displacement (6)"}.get(v.discounted, "")
+    words = {
+        "scheme": f"a different scheme from the scene's {scheme_words(scene.alpha, scene.delta, scene.gg)}",
+        "gg": f"gg = {v.gg:.5g} where the scene has {scene.gg:.5g}" + _square(v.gg, scene.gg),
+        "gg-in-one-formula": f"gg is applied only in the formula for the {formula}",
+        "start": f'the initial acceleration is "{v.start}", not "{scene.start}"',
+        "time-shift": f"the rows are {_steps(v.shift)}",
+        "pressure-shift": _lateness(v.late),
+        "pressure-factor": f"the reported pressure is {value:.5g} times the scene's, the displacement is right",
+        "reported-point": f"the displacement is that of a point {value:+.4g} m above the centroid{_place(v.point)}",
+        "density-factor": f"the density is {value:.5g} times the scene's",
+        "young-factor": f"Young's modulus is {value:.5g} times the scene's",
+        "poisson": f"Poisson's ratio is {value:.4g}",
+        "side-factor": f"the side of the block is {value:.5g} times the scene's",
+        "springs-factor": f"the contact springs are {value:.4g} times the scene's",
+        "load-factor": f"the load, or the displacement, is {value:.5g} times the scene's",
+        "load-row": "the load " + ("is missing" if v.strain_load == 0 else "has the wrong sign") + " in the row of ey",
+        "coupling": "the springs' coupling of v and ey " + ("is missing" if v.coupling == 0 else "has the wrong sign"),
+        "stress-not-kept": f"only the {'force of the springs' if v.kept == 'springs' else 'stress'} is carried on",
+        "contact-opened": f"the contact opened in steps {steps}" if steps else "the contact opened",
+        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
+    }
+    return words.get(name, CAUSES[name].words)
+
+
+def _square(gg: float, scene: float) -> str:
+    """Say that gg was applied twice, where it looks so."""
+    return ", its square" if scene < 1 and abs(gg - scene**2) < 1e-6 else ""
+
+
+def _lateness(late: float) -> str:
+    if late == HALF:
+        return "the pressure is the mean of this step and the one before"
+    return f"the pressure is {_steps(late)}, the displacement is right"
+
+
+def _steps(late: float) -> str:
+    return f"{abs(late):g} step{'s' * (abs(late) > 1)} {'late' if late > 0 else 'early'}"
+
+
+def _place(point: float) -> str:
+    return {1.0: ", the top edge", -1.0: ", the base"}.get(round(point, 6), "")

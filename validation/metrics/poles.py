@@ -14,7 +14,11 @@ from numpy.typing import NDArray
 from validation.runs.history import Array
 
 LONGEST = 400  # samples: enough for a pencil, small enough for its singular values
+LEAST = 6  # samples
+TURN = 1.0  # rad between two samples, at most: far from pi
 HELD = 1e-6  # of the maximum
+STILL = 1e-4  # of a power from 1: a constant
+ROUGH = 0.1  # of the maximum: what the powers may leave of a signal of which they say something
 
 
 @dataclass(frozen=True)
@@ -44,9 +48,8 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
     xi = -Re(ln z) / |ln z| and w' dt = |ln z| for a complex pair; real poles carry no xi and are left out. A signal
     that the poles do not give back to `HELD` of its maximum holds more modes than can be told apart: no poles.
     """
-    thin = max(1, len(signal) // LONGEST)
-    y = signal[: LONGEST * thin : thin]
-    if len(y) < 6 or not np.any(y) or not np.all(np.isfinite(y)):  # over a tiny static value numbers overflow
+    y, thin = _window(signal, order, tolerance)
+    if len(y) < LEAST or not np.any(y) or not np.all(np.isfinite(y)):  # over a tiny static value numbers overflow
         return []
     size = float(np.max(np.abs(y)))
     z, c, misfit = _fit(y / size, order, tolerance)
@@ -54,6 +57,57 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
         return []
     found = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-9]
     return sorted(found, key=lambda pole: -pole.amplitude)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """The value about which a signal swings, and its strongest oscillating pole, if any."""
+
+    static: float | None
+    pole: Pole | None
+
+
+def swing(signal: Array, step: float, order: int = 7) -> Swing:
+    """Return the centre of a signal and its strongest oscillation, of which noise may be a part.
+
+    Parameters
+    ----------
+    signal
+        Samples at equal steps, shape (steps,); its static value is a power 1^n among the others.
+    step
+        Time step [s].
+    order
+        Number of powers: a constant and three modes.
+    """
+    size = float(np.max(np.abs(signal), initial=0.0))
+    y, thin = _window(signal, order, 1e-11)
+    if len(y) < 2 * order + 2 or size == 0:
+        return Swing(None, None)
+    z, c, misfit = _fit(y / size, order, 1e-11)
+    still = [k for k in range(len(z)) if abs(z[k] - 1) < STILL and abs(z[k].imag) < 1e-9]
+    tail = float(np.mean(signal[-max(2, len(signal) // 10) :]))
+    static = float(np.sum(c[still].real)) * size if still and misfit < ROUGH else (tail if misfit >= ROUGH else None)
+    least = max(misfit, 1e-6)
+    found = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-6]
+    strong = [pole for pole in found if pole.amplitude > least * size]
+    return Swing(static, max(strong, key=lambda pole: pole.amplitude, default=None))
+
+
+def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, int]:
+    """Return the samples that are used, and how many steps they are apart.
+
+    The first samples, every one of them; only where these turn slowly, every k-th one over a longer time, k so small
+    that the fastest power turns by at most `TURN`: a power that turns by more than pi between samples is read as a
+    slower one.
+    """
+    y = signal[:LONGEST]
+    most = len(signal) // LONGEST
+    if most < 2 or not np.any(y) or not np.all(np.isfinite(signal[: LONGEST * most])):
+        return y, 1
+    z, c, _ = _fit(y / float(np.max(np.abs(y))), order, tolerance)
+    fastest = float(np.max(np.abs(np.angle(z[np.abs(c) > HELD])), initial=0.0))
+    thin = max(1, min(most, int(TURN / fastest))) if fastest > 0 else 1
+    return signal[: LONGEST * thin : thin], thin
 
 
 def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:

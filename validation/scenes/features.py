@@ -5,6 +5,7 @@ A solver says which of them it handles; a scene that has another one is refused 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -23,7 +24,7 @@ class Feature:
 
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
-UNILATERAL, DEAD_BAND = "unilateral contact", "dead bands"
+UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 COLUMN = "column"
 DAMPING = "damping tables"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
@@ -34,6 +35,7 @@ FEATURES = (
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
+    Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),

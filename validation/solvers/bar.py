@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs.contact import ContactRecord
 from validation.runs.history import Array, Complex, History
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
@@ -88,7 +90,7 @@ class OpeningBar(Prepared):
         check_columns(self.scene, OPENING_COLUMNS)
         with naming(self.scene), np.errstate(over="ignore", invalid="ignore"):
             found = self.bar.solve(self.scheme, self.scene.time.steps)
-        self.closed, self.time = found.closed, found.time
+        self.found = found
         force = found.contact_pressure * self.bar.width / 2
         values = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
         columns = dict(zip(OPENING_COLUMNS, values, strict=True))
@@ -99,7 +101,25 @@ class OpeningBar(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base between the steps."""
-        return flips({"base": self.closed}, self.time)
+        return flips({"base": self.found.closed}, self.found.time)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; the bar reports no energies."""
+        found, step = self.found, self.scheme.step
+        force = found.contact_pressure * self.bar.width
+        return ContactRecord(
+            time=found.time,
+            force=force,
+            impulse=opened.summed(force, step, self.scheme.delta),
+            penetration=np.maximum(0.0, -found.gap),
+            gap=np.maximum(0.0, found.gap),
+            open_share=1 - found.closed,
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=found.velocity,
+            rebounds=opened.rebounds(np.array([found.gap]), step),
+        )
 
 
 class ExactBar(Solver):

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validation.errors import InputError
-from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
-from validation.runs.modes import Mode, Switch
+from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.dda_opening import COUNTS, FORCES, GAPS, OpeningBlock, OpeningSubBlocks
 from validation.solvers.limits import check_step
-from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
+from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -169,84 +166,13 @@ class SubBlocks(OneBlock):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
-FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
-GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
-COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
-
-
-class OpeningBlock(Prepared):
-    """A whole block on corners that carry no tension."""
-
-    def __init__(self, scene: Scene, full: bool) -> None:
-        import dda
-
-        self.scene, self.full = scene, full
-        self.result: dda.UnilateralResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
-        with naming(scene):
-            block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
-            loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
-            self.scheme = scheme_of(scene)
-            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, full=full)
-
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
-        import dda
-
-        no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
-        asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
-        with naming(self.scene):
-            r = dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, asked, self.options)
-        self.result = r
-        return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
-
-    def _contact(self, r: dda.UnilateralResult) -> dict[str, NDArray[np.float64]]:
-        """Return the asked columns of the contacts, which are made when they are asked for."""
-        counts = {"solves": "step_solves", "cuts": "step_cuts"}
-        names = [name for name in self.scene.run.columns if name in (*GAPS, *FORCES, *COUNTS)]
-        return {name: np.asarray(getattr(r, counts.get(name, name)), dtype=float) for name in names}
-
-    def switches(self) -> tuple[Switch, ...]:
-        """Return the switches between the steps of the history that was run."""
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        r = self.result
-        return flips({"M": r.closed_m.astype(float), "N": r.closed_n.astype(float)}, r.time)
-
-    def contact_record(self) -> ContactRecord:
-        """Return what the contact did, from the same steps with their energies."""
-        import dda
-
-        scheme, steps = scheme_of(self.scene), self.scene.time.steps
-        r = dda.solve_unilateral(self.model, scheme, steps, (), replace(self.options, energies=True))
-        gaps, force = np.array([r.gap_m, r.gap_n]), r.normal_force_m + r.normal_force_n
-        return ContactRecord(
-            time=r.time,
-            force=force,
-            impulse=opened.summed(force, scheme.step, 1.0 if self.options.rule != "newmark" else scheme.delta),
-            penetration=np.maximum(0.0, -gaps).max(axis=0),
-            gap=np.maximum(0.0, gaps).max(axis=0),
-            open_share=1 - np.mean([r.closed_m, r.closed_n], axis=0),
-            start_velocity=self.model.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
-            velocity=r.velocity,
-            rebounds=opened.rebounds(gaps, scheme.step),
-            energies=r.energies or {},
-            solves=r.step_solves.astype(float),
-            cuts=r.step_cuts.astype(float),
-        )
-
-
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
     handles = (
-        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.COLUMN, features.DAMPING})
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
+        | {features.DAMPING}
         | features.LOADS
         | features.RULES
     )
@@ -264,9 +190,10 @@ class DDA(Solver):
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
-        apart = own & {features.SUB_BLOCKS, features.BASE_MOTION}
-        if features.UNILATERAL in own and apart:
-            return f"it does not handle {', '.join(sorted(apart))} together with {features.UNILATERAL}"
+        if {features.UNILATERAL, features.BASE_MOTION} <= own:
+            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+        if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
+            return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
@@ -278,7 +205,8 @@ class DDA(Solver):
 
             return BlockColumn(scene, scheme_of(scene))
         if features.UNILATERAL in features.of(scene):
-            return OpeningBlock(scene, full)
+            kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
+            return kind(scene, scheme_of(scene), full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
-from validation.runs.contact import STORED, ContactRecord
+from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
@@ -24,6 +24,7 @@ from validation.solvers.translation import check_columns, flips, naming, no_fiel
 
 if TYPE_CHECKING:
     import fem_reference
+    from fem_reference.history.unilateral import UnilateralResult
     from fem_reference.mesh.model import Model
 
 MESH_SECTIONS = ("block", "contact", "load", "time", "run", "fem")
@@ -156,7 +157,9 @@ class Mesh(Prepared):
             return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
 
-ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")  # J, in the order of `STORED`
+# J, in the order of `STORED` and `LOST`
+ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
+LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
 
 
 class OpeningMesh(Prepared):
@@ -174,26 +177,34 @@ class OpeningMesh(Prepared):
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
-        from fem_reference.history.unilateral import UNILATERAL_COLUMNS, solve_unilateral
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
         no_fields("fem with unilateral contact", self.scene, fields)
         check_columns(self.scene, UNILATERAL_COLUMNS)
-        with naming(self.scene):
-            found = solve_unilateral(self.problem, self.scheme, self.scene.time.steps, self.contact, self.full)
-        self.pressed = found.columns["contact_pressure"] > 0
-        self.time, self.seen = found.time, found.columns
+        found = self._solved((*self.scene.run.columns, "contact_pressure"))
+        self.pressed, self.time = found.columns["contact_pressure"] > 0, found.time
         return opened_run(self.scene, found, found.columns)
+
+    def _solved(self, columns: tuple[str, ...]) -> UnilateralResult:
+        from fem_reference.history.unilateral import solve_unilateral
+
+        steps = self.scene.time.steps
+        with naming(self.scene):
+            return solve_unilateral(self.problem, self.scheme, steps, self.contact, self.full, columns=columns)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
         return flips({"base": self.pressed.astype(float)}, self.time)
 
     def contact_record(self) -> ContactRecord:
-        """Return what the contact did; the elements report no velocity and no losses apart."""
-        seen, scheme = self.seen, self.scheme
+        """Return what the contact did, from the same steps with their energies."""
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
+
+        found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
+        seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = seen["contact_pressure"] * self.scene.block.base_length
         return ContactRecord(
-            time=self.time,
+            time=found.time,
             force=force,
             impulse=opened.summed(force, scheme.step, scheme.delta),
             penetration=seen["largest_penetration"],
@@ -202,7 +213,8 @@ class OpeningMesh(Prepared):
             start_velocity=self.scene.block.velocity,
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
-            energies={name: seen[column] for name, column in zip(STORED, ENERGY_COLUMNS, strict=True)},
+            velocity=seen["velocity"],
+            energies={name: seen[column] for name, column in energies},
             solves=seen["solves"],
             cuts=seen["cuts"],
         )
@@ -223,7 +235,7 @@ class FiniteElements(Solver):
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         import fem_reference
-        from fem_reference.history.unilateral import UNILATERAL_COLUMNS
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
         return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 

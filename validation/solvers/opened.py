@@ -44,6 +44,13 @@ def summed(force: Array, step: float, late: float) -> Array:
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
 
 
+def balanced(scene: Scene, velocity: Array) -> Array:
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
+    before = np.concatenate(([scene.block.velocity], velocity[:-1]))
+    gained = mass(scene) * np.cumsum(velocity - scene.time.discount * before)
+    return np.asarray(gained + pushing(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64)
+
+
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
     """Return the contacts of all corners between steps, in the order of their beginning."""
     found = [one for gap in gaps for one in rebounds_of_steps(gap, step)]

@@ -63,7 +63,8 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
     blocks += [_history_block(group, column, directory) for column in _columns(group)]
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    if any(_finished(case) for case in group.cases) and features.linear(group.cases[0].scene):
+    first = group.cases[0].scene
+    if any(_finished(case) for case in group.cases) and features.linear(first) and first.column is None:
         blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
     blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
     if group.verdicts:

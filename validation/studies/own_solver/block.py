@@ -87,13 +87,13 @@ def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
 
 
 def outside(told: Told) -> str:
-    """Return value and band with so many digits that one sees the value outside the band."""
+    """Return value and band with so many digits that one sees the band's width and the value outside."""
     metric, low, high = told.metric, told.low, told.high
     if not isinstance(told.value, float | int):
         return f"{metric} is {told.value}; the band is [{low:.6g}, {high:.6g}]"
     for digits in range(4, 17):
         value, *edges = (f"{number:.{digits}g}" for number in (told.value, low, high))
-        if value not in edges:
+        if value not in edges and (edges[0] != edges[1] or low == high):
             break
     return f"{metric} = {value} is outside [{', '.join(edges)}]"
 

@@ -10,13 +10,13 @@ from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Gate, Status, Verdict, judge
-from validation.metrics.values import NOT_REPORTED
+from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver
 from validation.solvers.user import PARTS, UserSolver
-from validation.studies.own_solver import gates
+from validation.studies.own_solver import gates, history
 
 PATIENCE = 2  # scenes in which a solver may reach its time limit before the rest are not tried
 ASKED_FOR = {"modes": "modes(scene)", "static": "static(scene)"}
@@ -65,7 +65,7 @@ class Session:
             study,
             case.scene.name,
             case.scene.time.steps,
-            gates.group(gate, case.scene),
+            "digits" if verdict.value == UNDEFINED else gates.group(gate, case.scene),  # no motion of the model
             verdict.gate.metric,
             str(verdict.status),
             verdict.value,
@@ -86,7 +86,7 @@ class Session:
             why = f"not tried, since {PATIENCE} scenes reached their time limit"
             return Verdict(judged, None, Status.NOT_RUN, why)
         if row.outcome is not Outcome.COMPLETED:
-            why = "; ".join(row.notes) or row.outcome.sentence
+            why = row.notes[-1] if row.notes else row.outcome.sentence  # what came before is said of a history
             absent = row.outcome in (Outcome.NOT_APPLICABLE, Outcome.NOT_RUN)
             return Verdict(judged, None, Status.NOT_RUN if absent else Status.FAIL, why)
         return self._judged(study, gate, judged, case, row)
@@ -106,8 +106,9 @@ class Session:
 
     def _judged(self, study: str, gate: Gate, judged: Gate, case: Case, row: Row) -> Verdict:
         """Judge a sound run, by its history where the solver reports nothing; references are run here."""
-        if gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
-            return judge(*gates.of_history(judged, case.scene, row))
+        seen = self.finished.history(case.scene.name, self.user)
+        if seen is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
+            return judge(*history.shown(judged, case.scene, seen))
         needed = [pair for pair in gates.study_of(study).needs(gate) if pair != gate.cases[0]]
         self._finish(study, [gates.cases(study)[pair] for pair in needed if pair not in self.finished.rows])
         verdict = evaluate(judged, replace(self.finished, derived=gates.recipes(study)))
@@ -116,7 +117,8 @@ class Session:
         return verdict
 
     def _by_history(self, study: str, gate: Gate, row: Row) -> bool:
-        return study == gates.START.name or row.metrics.get(gate.metric) == NOT_REPORTED
+        measured = study == gates.START.name or "measured" in gate.metric
+        return measured or row.metrics.get(gate.metric) == NOT_REPORTED
 
 
 def plain(told: Told) -> dict[str, object]:

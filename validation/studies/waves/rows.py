@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -77,18 +78,17 @@ class Wave:
         return found
 
 
-def travelling() -> Iterator[Wave]:
-    """Yield the waves whose speed and loss are measured."""
+@functools.cache
+def travelling() -> tuple[Wave, ...]:
+    """Return the waves whose speed and loss are measured."""
+    found = []
     for case in cases("waves-blocks"):
-        for blocks in BLOCKS[case.time.step]:
-            yield Wave(case, blocks)
+        found += [Wave(case, blocks) for blocks in BLOCKS[case.time.step]]
+        found += [Wave(case, 10, "fem")] * (case.time.step == 5.0e-4)
     for scene, counts in OTHERS.items():
         for case in cases(scene):
-            for blocks in counts:
-                yield Wave(case, blocks)
-    for case in cases("waves-blocks"):
-        if case.time.step == 5.0e-4:
-            yield Wave(case, 10, "fem")
+            found += [Wave(case, blocks) for blocks in counts]
+    return tuple(found)
 
 
 def travelled(wave: Wave, history: History) -> Mapping[str, Value]:
@@ -111,9 +111,10 @@ def travelling_gates() -> Iterator[Gate]:
 # ---- joints ---------------------------------------------------------------------------------------------------------
 
 
-def jointed() -> Iterator[Wave]:
-    """Yield the waves that meet a joint of kj = rho c w, with the scene of each."""
-    scene = load_scene("waves-joint")
+@functools.cache
+def jointed() -> tuple[Wave, ...]:
+    """Return the waves that meet a joint of kj = rho c w, with the scene of each."""
+    scene, found = load_scene("waves-joint"), []
     for blocks, courant, (alpha, delta) in JOINTS:
         guide = Guide.of(scene, blocks)
         step = courant * guide.column.height / guide.speed
@@ -122,15 +123,20 @@ def jointed() -> Iterator[Wave]:
             "column.joint": [{"height": 12.0, "stiffness": guide.impedance * guide.omega}],
             "input.frequency": pulse,
             "time.step": step,
-            "time.steps": int((4 / pulse + (1.6 if blocks <= 20 else 0.6)) / step),  # until the echoes are gone
+            "time.steps": int((4 / pulse + echoes(blocks, delta)) / step),
             "time.alpha": alpha,
             "time.delta": delta,
         }
         kind = "average" if (alpha, delta) == AVERAGE else "constant"
-        name = f"waves-joint-{blocks}-{kind}"
-        yield Wave(scene.with_values(values).model_copy(update={"name": name}), blocks)
-        if (blocks, kind) == (20, "average"):
-            yield Wave(scene.with_values(values).model_copy(update={"name": name}), blocks, "fem")
+        case = scene.with_values(values).model_copy(update={"name": f"waves-joint-{blocks}-{kind}"})
+        found.append(Wave(case, blocks))
+        found += [Wave(case, blocks, "fem")] * ((blocks, kind) == (20, "average"))
+    return tuple(found)
+
+
+def echoes(blocks: int, delta: float) -> float:
+    """Return how long the echoes between joint and top are waited for [s]: few blocks a wavelength leak slowly."""
+    return 1.6 if blocks <= 20 and delta == 0.5 else 0.6
 
 
 def parted(wave: Wave, history: History) -> Mapping[str, Value]:
@@ -179,11 +185,10 @@ def order_gate() -> Gate:
 # ---- transmitting base ----------------------------------------------------------------------------------------------
 
 
-def returned() -> Iterator[Wave]:
-    """Yield the waves that come down on a transmitting base."""
-    for case in cases("waves-base"):
-        for blocks in BASE:
-            yield Wave(case, blocks)
+@functools.cache
+def returned() -> tuple[Wave, ...]:
+    """Return the waves that come down on a transmitting base."""
+    return tuple(Wave(case, blocks) for case in cases("waves-base") for blocks in BASE)
 
 
 def sent_back(wave: Wave, history: History) -> Mapping[str, Value]:
@@ -199,3 +204,23 @@ def base_gates() -> Iterator[Gate]:
         guide = wave.guide
         R = base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
         yield Gate(wave.scene.name, (wave.name,), "base.reflected", *about(float(abs(R)), JOINT), why)
+
+
+# ---- what the page draws --------------------------------------------------------------------------------------------
+
+
+def curves() -> dict[str, list[dict[str, object]]]:
+    """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
+    found: list[dict[str, object]] = []
+    blocks = np.geomspace(7.5, 110, 60)
+    for case in cases("waves-blocks"):
+        guide = Guide.of(case, 10)
+        omega = 2 * np.pi * guide.speed / (blocks * guide.column.height)
+        k = guide.column.wavenumber(guide.stepping.squared_frequency(omega))
+        left = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
+        scheme = "(1/2, 1)" if (case.time.alpha, case.time.delta) == CONSTANT else "(1/4, 1/2)"
+        rounded = {"speed": omega / k.real / guide.speed - 1, "left": left, "blocks": blocks}
+        values = {name: [float(f"{x:.5g}") for x in part] for name, part in rounded.items()}
+        courant = round(guide.speed * case.time.step / guide.column.height, 6)
+        found.append({"scheme": scheme, "courant": courant, **values})
+    return {"curves": found}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 
 from validation.engine.finished import Derived
@@ -26,6 +27,7 @@ def scenes() -> tuple[str | Scene, ...]:
     return "waves-blocks", *rows.OTHERS, *joints.values(), "waves-base", SITE, usual_site()
 
 
+@functools.cache
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
@@ -72,4 +74,5 @@ def study() -> Study:
         extra=_fem_too(),
         gates=gates,
         derived=derived,
+        data=rows.curves,
     )

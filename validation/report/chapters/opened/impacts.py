@@ -30,13 +30,14 @@ NOTE = (
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: a table for each benchmark."""
     title, purpose = manifest.get("title") or manifest["study"], manifest.get("purpose") or ""
-    blocks: list[Block] = [Heading(title), Paragraph(purpose)]
     found = groups(results, manifest)
+    verdicts = [verdict for group in found for verdict in group.verdicts]
+    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
+    blocks: list[Block] = [Heading(title), Paragraph(f"{purpose} {NOTE}{count}")]
     for group in found:
         data = Paragraph(parameters(group.cases[0].scene, varied_fields(group) | UNSAID), "small")
-        blocks += [Heading(group.title, 2), data, table(group)]
-    verdicts = [verdict for group in found for verdict in group.verdicts]
-    return [*blocks, Paragraph(f"{NOTE} {gate_count(verdicts).capitalize()}." if verdicts else NOTE)]
+        blocks += [Heading(group.title, 3), data, table(group)]
+    return blocks
 
 
 UNSAID = {"fem.degree", "fem.elements", "fem.foundation", "block.poisson", "block.hypothesis", "time.gg"}

@@ -20,8 +20,13 @@ from validation.runs.results import Results
 EXACT = "block-events"
 IMPACT, MAP = "rebound-", "contact-map-"
 MARKS = {0.3: "0.3", 2.0: "2"}
-WORDS = {(0.5, 1.0): "constant acceleration (1/2, 1)", (0.25, 0.5): "average acceleration (1/4, 1/2)"}
-Scheme = tuple[float, float]
+WORDS = {  # the ends of the scenes' names
+    "constant": "constant acceleration (1/2, 1)",
+    "average": "average acceleration (1/4, 1/2)",
+    "implicit": "implicit contact, (1/4, 1/2) in the block",
+    "conserving": "energy-conserving contact",
+}
+SHOWN = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
@@ -48,9 +53,8 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
     omega = np.array(data["omega"])
     curves = []
     for name, rows in data["schemes"].items():
-        own = [group for group in impacts if group.cases and scheme_name(group.cases[0]) == name]
-        dots = tuple(dot for group in own for dot in impact_dots(group))
-        words = {f"({a:.4g}, {d:.4g})": text for (a, d), text in WORDS.items()}.get(name, name)
+        dots = tuple(dot for group in impacts if kind(group) == name for dot in impact_dots(group))
+        words = WORDS.get(name, name).partition(",")[0].removesuffix(" (1/2").removesuffix(" (1/4")
         mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
         curves.append(contact.Curve(words, omega, mean, low, high, dots))
     caption = (
@@ -72,9 +76,9 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
     ]
 
 
-def scheme_name(case: Case) -> str:
-    """Return the scheme of a case as the study names it."""
-    return f"({case.scene.time.alpha:.4g}, {case.scene.time.delta:.4g})"
+def kind(group: Group) -> str:
+    """Return the kind of contact and scheme, the end of the scene's name."""
+    return group.name.rpartition("-")[2]
 
 
 def impact_dots(group: Group) -> list[tuple[float, float]]:
@@ -114,7 +118,7 @@ def conclusion(maps: Sequence[Group]) -> str:
         rises = [value for case in group.cases if (value := case.number("dda", "energy.rise")) is not None]
         solves = [value for case in group.cases if (value := case.number("dda", "contact.most_solves")) is not None]
         if rises and solves:
-            words = WORDS.get(scheme(group), group.title)
+            words = WORDS.get(kind(group), group.title)
             most = max(rises)
             gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
@@ -122,12 +126,6 @@ def conclusion(maps: Sequence[Group]) -> str:
     return (
         f"{said[:1].upper()}{said[1:]}: what a step too large for the contact spoils is the motion, not the iteration."
     )
-
-
-def scheme(group: Group) -> Scheme:
-    """Return alpha and delta of a group."""
-    t = group.cases[0].scene.time
-    return t.alpha, t.delta
 
 
 def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
@@ -141,8 +139,8 @@ def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directo
     names = ([f"p = {short(r)}E" for r in ratios], [short(1e3 * step) for step in steps])
     caption = (
         "The paper's block, unlocked, over 0.2 s, dda: solves of the open-close iteration a step (mean), greatest "
-        "energy above that given, over it, and openings and closings over those of the exact motion; upper row "
-        + ", lower row ".join(WORDS.get(scheme(group), group.title) for group in maps)
+        "energy above that given, over it, and openings and closings over those of the exact motion; from above: "
+        + ", ".join(WORDS.get(kind(group), group.title) for group in maps)
         + "."
     )
     count = f"{gate_count(verdicts).capitalize()}."
@@ -204,11 +202,12 @@ def budget_table(maps: Sequence[Group]) -> Table:
     titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Histories agree up to [s]")
     rows = []
     for group in maps:
-        name = "({:.4g}, {:.4g})".format(*scheme(group))
-        for case in sorted(group.cases, key=lambda c: (ratio(c), -c.scene.time.step)):
+        name = kind(group)
+        shown = [case for case in group.cases if case.scene.time.step in SHOWN]
+        for case in sorted(shown, key=lambda c: (ratio(c), -c.scene.time.step)):
             rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
             name = ""
-    return Table(titles, tuple(rows), "Budget of every case, dda.", ruled=False)
+    return Table(titles, tuple(rows), "Budget of the cases of two time steps, dda.", ruled=False)
 
 
 def budget_cells(case: Case) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from validation.studies.declaration import Study
 from validation.studies.opening import half_unit
 
 BLOCK, BAR = "block-events", "bar-events"
-SCENES = ("impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
+SCENES = ("unlocked-other", "impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
 WALLS = ("ansys-vm265", "siconos-bar")  # next to rigid
 # p/E -> first release over a / c and restitution of the block, then of the bar, by an independent program.
 IMPACTS = {
@@ -34,6 +34,21 @@ FALLS = {
     1.0: (0.0089485487848081, 0.0094942023919859, None, None),
     100.0: (0.00036738771005667, 0.0066019935521345, 0.0022040919388594, 0.0025951314402221),
 }
+# Openings and closings of another block under a pressure: first and second, of the block and of the bar [s].
+OTHERS = {
+    BLOCK: {
+        "first_closing": 0.0013278582077407,
+        "first_opening": 0.0054491055360487,
+        "second_closing": 0.0072447406133871,
+        "second_opening": 0.012414067088762,
+    },
+    BAR: {
+        "first_opening": 0.0069218140380999,
+        "first_closing": 0.0077222679298686,
+        "second_opening": 0.012238800061209,
+        "second_closing": 0.012590286189158,
+    },
+}
 # 2 p h / E -> release, second impact and second release of the bouncing bar [s].
 BOUNCES = {
     10.0: (1.7719679119689, 3.7434589506622, 4.4891745212166),
@@ -41,6 +56,11 @@ BOUNCES = {
     1000.0: (1.667744780213, 3.6674307545665, 4.3348876303179),
     10000.0: (1.6667745034073, 3.6667430730035, 4.3334887605193),
 }
+STOP = {
+    "first_closing": 0.65785098512048,
+    "second_closing": 1.2324367791597,
+}  # of the block on a rigid stop, over a / c
+KEPT = 0.89132203751993  # of its momentum, after three impacts in a row, by an independent program
 RIGID = {"release": 5 / 3, "impact": 11 / 3, "second release": 13 / 3}  # of the bouncing bar on a rigid wall [s]
 SWITCHES = ("first_opening", "second_closing", "second_opening")
 PRINTED = "an independent program; band: half a unit of its last digit, and 1e-11 of the value"
@@ -87,22 +107,46 @@ def bounce(scene: Scene) -> tuple[float, float, float]:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*impact_gates(), *fall_gates(), *bouncing_bar_gates(), *wall_gates(), *mass_gates())
+    return (*other_gates(), *impact_gates(), *fall_gates(), *bouncing_bar_gates(), *wall_gates(), *mass_gates())
 
 
 def _near(scene: Scene, solver: str, metric: str, value: float, half: float) -> Gate:
     return Gate(scene.name, (solver,), metric, *about(value, half + 1e-11 * abs(value)), PRINTED, OTHER, half)
 
 
+def other_gates() -> Iterator[Gate]:
+    """Yield the gates on the switches of a block of other data under a pressure."""
+    (case,) = cases("unlocked-other")
+    for solver, switches in OTHERS.items():
+        for name, time in switches.items():
+            yield _near(case, solver, f"switches.{name}", time, half_unit(time))
+
+
 def impact_gates() -> Iterator[Gate]:
     """Yield the gates on an unloaded block and bar that land at 1 m/s."""
-    for case in cases("impact"):
+    *soft, stiff = cases("impact")
+    yield from stop_gates(stiff)
+    for case in soft:
         for solver, (time, e) in zip((BLOCK, BAR), IMPACTS[case.contact.stiffness / case.block.young], strict=True):
             yield _near(case, solver, "switches.first_opening", time * transit(case), half_unit(time) * transit(case))
             yield _near(case, solver, "contact.restitution", e, half_unit(e))
     wave = "a wall so stiff that the pressure reaches rho c V: e^(-400) is left, and the samples lie in the plateau"
     force = math.sqrt(case.block.density * case.block.young) * case.block.base_length * -case.block.velocity
     yield Gate(case.name, (BAR,), "contact.peak_force", *about(force, 1e-11 * force), wave)
+
+
+def stop_gates(case: Scene) -> Iterator[Gate]:
+    """Yield the gates on a block on springs next to rigid: impacts of its base, a quarter of its mass, in a row."""
+    left = math.sqrt(case.block.young / case.contact.stiffness)
+    why = "an independent program, on a rigid stop; band: sqrt(E / p), the length of an impact over a transit"
+    for name, time in STOP.items():
+        edges = about(time * transit(case), left * transit(case))
+        yield Gate(case.name, (BLOCK,), f"switches.{name}", *edges, why, OTHER)
+    yield Gate(case.name, (BLOCK,), "contact.restitution", *about(KEPT, left), why, OTHER)
+    whole = "contact of 2 h / c on a rigid wall; band: E / p, the springs of a wall that stiff"
+    soft = 2 * left**2
+    yield Gate(case.name, (BAR,), "switches.first_opening", *about(2 * transit(case), soft * transit(case)), whole)
+    yield Gate(case.name, (BAR,), "contact.restitution", 1 - soft, 1 + 1e-12, whole)
 
 
 def fall_gates() -> Iterator[Gate]:

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from dda.one_block.variants import Column, Variant, histories
+from dda.one_block.variants import Variant
+from validation.compare.fits.target import ROUNDING, Target, norm
 from validation.runs.history import Array
 
 NAMED: dict[str, tuple[float, float]] = {
@@ -26,55 +27,32 @@ NAMED: dict[str, tuple[float, float]] = {
     "central differences": (0.0, 1 / 2),
     "unconditionally complex": (9 / 16, 1.0),
     "backward differences": (4 / 5, 3 / 2),
+    "backward Euler": (1.0, 1.0),
 }
-SPAN = {
-    "alpha": 0.5,
-    "delta": 1.0,
-    "gg": 0.1,
-    "softness": 0.1,
-    "base": 10.0,
-    "weight": 1.0,
-    "load": 0.1,
-}  # what counts as a change
-LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -12.0, "base": 0.0, "weight": 0.0, "load": -1e4}
-HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.02, "softness": 12.0, "base": 1e4, "weight": 1e4, "load": 1e4}
+# what counts as a change of a number, and the range within sense
+SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "weight": 1.0, "load": 0.1,
+        "density": 0.1, "young": 0.1, "poisson": 0.1, "side": 0.1, "point": 0.1, "pressure_factor": 0.1,
+        "displacement_factor": 0.1, "tall": 0.1, "viscous": 1.0}  # fmt: skip
+LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -7.0, "base": 0.0, "weight": 0.0, "viscous": 0.0}
+HIGH = {
+    "alpha": 5.0,
+    "delta": 5.0,
+    "gg": 1.0,
+    "softness": 7.0,
+    "base": 1e4,
+    "weight": 1.1,
+    "poisson": 0.49,
+    "point": 1.0,
+    "viscous": 1e5,
+}
+LEAST_FACTOR, LARGEST_FACTOR = 0.02, 50.0  # of density, modulus, side, load and what is reported
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
 UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
 SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
-ROUNDING = 1e-9  # relative L2 that no recorded history comes below
 LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
 NEXT_TO_NOTHING = 20.0  # times smaller
 UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
-
-
-@dataclass(frozen=True, eq=False)
-class Target:
-    """What is to be explained: recorded rows of one or two columns."""
-
-    column: Column
-    steps: Array  # every step of the program [s], shape (n,)
-    rows: np.ndarray  # indices of the recorded steps
-    displacement: Array  # [m], one value a recorded step
-    pressure: Array | None = None  # [Pa]
-
-    @property
-    def values(self) -> Array:
-        """The columns over their norms, one below the other: its squares sum to one."""
-        return self.join(self.displacement, self.pressure)
-
-    def join(self, displacement: Array, pressure: Array | None) -> Array:
-        """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
-        first = displacement / _norm(self.displacement)
-        if self.pressure is None or pressure is None:
-            return first
-        return np.concatenate([first, pressure / _norm(self.pressure)]) / math.sqrt(2)
-
-    def responses(self, variants: Sequence[Variant]) -> Array:
-        """Return the variants' histories scaled as `values` is, one column each."""
-        found = histories(self.column, variants, self.steps)
-        joined = self.join(found.displacement[self.rows], found.pressure[self.rows])
-        return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,14 +129,14 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
         ]
         jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
         residual = goal - base
-        found.append(Fit(variant, free, _norm(residual), residual, jacobian))
+        found.append(Fit(variant, free, norm(residual), residual, jacobian))
         at += 1 + len(free)
     return found
 
 
 def _side(variant: Variant, name: str) -> float:
     """Return the side to which a number is nudged: away from its upper bound."""
-    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > HIGH[name] else 1.0
+    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > HIGH.get(name, LARGEST_FACTOR) else 1.0
 
 
 def _nudged(variant: Variant, name: str) -> Variant:
@@ -174,10 +152,17 @@ def _moved(found: Fit, damping: float) -> Variant:
     scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
     step = np.linalg.solve(H + damping * np.diag(scale), J.T @ found.residual) * span
     changes = {
-        name: float(np.clip(getattr(found.variant, name) + change, LOW[name], HIGH[name]))
+        name: float(np.clip(getattr(found.variant, name) + change, *bounds(name)))
         for name, change in zip(found.free, step, strict=True)
     }
     return changed(found.variant, changes)
+
+
+def bounds(name: str) -> tuple[float, float]:
+    """Return the range within sense of a free number."""
+    if name in ("point", "poisson"):
+        return -HIGH[name], HIGH[name]
+    return LOW.get(name, LEAST_FACTOR), HIGH.get(name, LARGEST_FACTOR)
 
 
 def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
@@ -216,20 +201,6 @@ def untold(found: Fit) -> list[dict[str, float]]:
     ]
 
 
-def better(full: Fit, simple: Fit, numbers: int, floor: float, least: float = 0.0) -> bool:
-    """Whether a fit explains so much more than a simpler one that its further numbers are earned.
-
-    By the Bayesian information criterion over the independent rows of the simpler one's residual, with a margin of 6
-    (odds of twenty to one). What lies below the floor needs no explanation, and a gain below `least` counts for none
-    unless next to nothing is left.
-    """
-    gain = math.sqrt(max(simple.misfit**2 - full.misfit**2, 0.0))
-    if simple.misfit <= floor or (gain <= least and simple.misfit < NEXT_TO_NOTHING * full.misfit):
-        return False
-    n = simple.independent
-    return 2 * n * math.log(simple.misfit / max(full.misfit, floor / 10)) > 6 + numbers * math.log(n)
-
-
 def named(alpha: float, delta: float) -> str | None:
     """Return the name of a scheme."""
     for name, pair in NAMED.items():
@@ -241,7 +212,3 @@ def named(alpha: float, delta: float) -> str | None:
 def schemes(alpha: float, delta: float) -> Mapping[str, tuple[float, float]]:
     """Return the named schemes, and the scene's own first if it has no name."""
     return NAMED if named(alpha, delta) else {"the scene's": (alpha, delta), **NAMED}
-
-
-def _norm(values: Array) -> float:
-    return float(np.linalg.norm(values)) or 1.0
