@@ -49,8 +49,8 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
     import dda
 
-    t = scene.time
-    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+    t, d = scene.time, scene.damping
+    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
 class OneBlock(Prepared):
@@ -166,10 +166,11 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
+        | {features.DAMPING}
         | features.LOADS
         | features.RULES
     )
-    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
+    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -187,7 +188,7 @@ class DDA(Solver):
             return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
         if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
-        return None
+        return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""

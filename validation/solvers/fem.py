@@ -73,8 +73,8 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
     import fem_reference
 
-    t = scene.time
-    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+    t, d = scene.time, scene.damping
+    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
 def check_stable(scene: Scene, model: Model | None = None) -> None:
@@ -173,7 +173,7 @@ class OpeningMesh(Prepared):
         c = scene.contact
         glue = "glued" if c.shear else "frictionless"
         with naming(scene):
-            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut)
+            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut, c.rule)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -206,7 +206,7 @@ class OpeningMesh(Prepared):
         return ContactRecord(
             time=found.time,
             force=force,
-            impulse=opened.summed(force, scheme.step, scheme.delta),
+            impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
             penetration=seen["largest_penetration"],
             gap=seen["largest_gap"],
             open_share=seen["open_share"],
@@ -224,8 +224,14 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.COLUMN}) | features.LOADS
-    sections: tuple[str, ...] = (*MESH_SECTIONS, "column", "input")
+    handles = features.LOADS | {
+        features.SUB_BLOCKS,
+        features.UNILATERAL,
+        features.IMPLICIT,
+        features.COLUMN,
+        features.DAMPING,
+    }
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
@@ -241,7 +247,7 @@ class FiniteElements(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        return moving_base(scene)
+        return moving_base(scene) or features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
