@@ -16,14 +16,9 @@ from validation.errors import InputError
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
-STUDY = Study(
-    "sweep",
-    "Sweep",
-    "A sweep.",
-    [load_scene("figures-5-6")],
-    ("dda", "bar"),
-    {"time.step": [1e-3, 2e-3], "time.gg": [1.0, 0.98]},
-)
+SCENE = load_scene("figures-5-6")
+SWEEP = {**SCENE.sweep, "time.step": [1e-3, 2e-3], "time.gg": [1.0, 0.98]}
+STUDY = Study("sweep", "Sweep", "A sweep.", [SCENE.model_copy(update={"sweep": SWEEP})], ("dda", "bar"))
 
 
 def rows(directory: Path) -> dict:
