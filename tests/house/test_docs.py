@@ -13,7 +13,7 @@ from conftest import beside
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("theory.md", "extending.md", "columns.md")
-LONG = ("contact.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")  # seconds of starts; gates build all studies
+LONG = ("contact.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")  # seconds each
 BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 
