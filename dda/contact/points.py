@@ -146,7 +146,7 @@ class _Closed:
         return np.full(len(beta), np.nan), np.full(len(beta), np.nan)
 
     def _solve(self, beta: Array) -> tuple[Array, Array, Array]:
-        """Return N, T and dN/dbeta; the matrix is scaled, so that a stiff direction keeps its digits."""
+        """Return N, T and, where a point closes, dN/dbeta; the matrix is scaled: a stiff direction keeps its digits."""
         m, n, law = len(self.shut), len(self.before.closed), self.law
         active = np.flatnonzero(beta > 0) if len(self.free.slide) else np.zeros(0, dtype=int)
         rows = np.concatenate([self.shut, n + self.shut[active]])
@@ -164,6 +164,7 @@ class _Closed:
         shear, slope = np.zeros(m), np.zeros((m, m))
         if len(active):
             shear[active] = found[m:]
+        if len(active) and len(self.closing):
             push = np.zeros((len(rows), len(active)))
             push[range(m, len(rows)), range(len(active))] = found[m:] / (law.shear * beta[active] ** 2)
             slope[:, active] = (np.linalg.solve(scaled, push * scale[:, None]) * scale[:, None])[:m]

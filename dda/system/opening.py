@@ -119,8 +119,10 @@ class Length:
         if found.points is None:
             return None, found
         forces = np.concatenate([found.points.normal, found.points.shear])[: len(way)]
-        D, mu = D + dD + self.moved @ forces, mu + dmu + self.glued @ forces
-        f1 = self.F - (stepper.k @ D + stepper.Bt @ mu) + self.push @ forces
+        D, mu, pressed = D + dD, mu + dmu, np.zeros_like(D)
+        if np.any(forces):
+            D, mu, pressed = D + self.moved @ forces, mu + self.glued @ forces, self.push @ forces
+        f1 = self.F - (stepper.k @ D + stepper.Bt @ mu) + pressed
         P = velocity_corrector(s, P, f, f1)
         return SystemState(D, P / r, f1 / (r * r), mu / (r * r), found.points), found
 

@@ -120,6 +120,24 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
+def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() -> None:
+    tried: list[float] = []
+
+    def probe(p: float) -> float:
+        tried.append(p)
+        return 3e-4 * (tried[0] / p) ** 0.5  # three times too deep at first
+
+    found = contact.needed(PAPER, 1.0, 0.05, 1e-4, probe)
+    assert found.first_guess == tried[0] == pytest.approx(10800 / 8e-8)
+    assert found.stiffness == pytest.approx(9 * tried[0]) and found.depth == pytest.approx(1e-4)
+    assert contact.omega(PAPER.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})) == (
+        pytest.approx(found.omega)
+    )
+    never = contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: 2e-4)
+    assert never.depth == 2e-4 and never.stiffness > 1e4 * never.first_guess
+    assert contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: None).depth is None
+
+
 def test_the_stated_examples() -> None:
     """At p = 100E and 5 %: 7.4 us at (1/2, 1) and 73 us at (1/4, 1/2)."""
     stiff = PAPER.with_values(STIFF)
@@ -139,4 +157,8 @@ def test_the_restitution_of_a_phase_lies_in_the_range_of_the_map() -> None:
     found = contact.restitution(PAPER, math.inf)
     assert found is not None and (found.low, found.high) == pytest.approx((0.0, 1.0), abs=1e-12)
     assert impact_restitution(0.5, 1.0, 1.0, math.inf, 0.25) == pytest.approx(0.5)
+    constant = contact.restitution(PAPER, 10.0)
+    rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}
+    assert contact.restitution(rules["implicit"], 10.0) == constant
+    assert contact.restitution(rules["energy-conserving"], 10.0) == contact.Restitution(1.0, 1.0, 1.0, 1.0)
     assert contact.restitution(PAPER.with_values({"time.alpha": 0.1, "time.delta": 0.9}), 1.0) is None

@@ -77,7 +77,7 @@ def without(*unwanted: str) -> Callable[..., Callable[..., object]]:
 FAULTS = {
     "no shift is tried": (seams.SEARCH_MOVES, without("time-shift"), "time-shift"),
     "gg is in both formulas": (seams.SEARCH_MOVES, without("gg-in-one-formula"), "gg-in-one-formula"),
-    "anything is left too much": (seams.SEARCH_ACCEPTED, lambda sound: lambda *a, **k: False, "start"),
+    "anything is left too much": (seams.DECISION_ACCEPTED, lambda sound: lambda *a, **k: False, "start"),
     "no sign is turned": (seams.READINGS_FACTORS, lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
 }
 

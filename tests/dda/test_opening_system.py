@@ -169,6 +169,26 @@ def test_frictionless_points_always_find_the_one_solution(limit):
     assert more > 100 or limit == 6
 
 
+CYCLES = [
+    ([[14.0, -14.0, 13.0], [-14.0, 17.0, -12.0], [13.0, -12.0, 13.0]], [-4.0, 5.0, -2.0]),
+    ([[12.0, -10.0, -8.0], [-10.0, 13.0, 13.0], [-8.0, 13.0, 14.0]], [-5.0, 4.0, 1.0]),
+]
+
+
+@pytest.mark.parametrize(("C", "w"), CYCLES)
+def test_points_that_cycle_when_set_at_once_are_set_one_at_a_time(C, w):
+    law, free = Unilateral(20.0), points.FreePoints(np.array(w), np.zeros(0), np.array(C))
+    seen, closed = [], points.Points.at_rest(law, 3).closed
+    for _ in range(20):
+        seen.append(tuple(closed))
+        closed = points.agreeing(law, points.trial(law, points.Points.at_rest(law, 3), free, closed))
+    assert len(set(seen[-8:])) > 1  # for ever
+    found = points.open_close_points(law, points.Points.at_rest(law, 3), free, 6)
+    N, gap = found.points.normal, found.points.gap
+    assert found.solves > 6 and np.all(N >= 0) and np.all(gap >= -N / 20.0 * (1 + 1e-14))
+    assert free.gap + free.C @ N == pytest.approx(gap, rel=1e-12)
+
+
 def test_long_glued_steps_are_cut_as_those_of_one_block():
     """No single state, or several: long steps of stiff glued corners."""
     cuts, scheme = 0, Scheme(0.5, 1.0, 1.0, 8e-3)

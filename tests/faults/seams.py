@@ -35,7 +35,7 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.compare import diagnosis, reading, readings, search
+from validation.compare import decision, diagnosis, reading, readings, search
 from validation.compare.fits import bar
 from validation.engine import origin
 from validation.runs import provenance
@@ -151,7 +151,7 @@ LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
 SEARCH_MOVES = Seam(search, search.moves)
-SEARCH_ACCEPTED = Seam(search, search._accepted)
+DECISION_ACCEPTED = Seam(decision, decision.accepted)
 DIAGNOSIS_OPENED = Seam(diagnosis, diagnosis._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)

@@ -51,7 +51,7 @@ def test_the_rival_of_elements_on_a_base_that_opens_gives_our_answers(rivals):
 
 def test_the_committed_table_holds_what_was_asked_for():
     lines = re.findall(r"\*\*(\d+)\*\* \| (\d+) \|", (ROOT / "docs" / "speed.md").read_text())
-    assert len(lines) == 5
+    assert len(lines) >= 5
     assert all(int(ratio) >= int(asked) for ratio, asked in lines)
 
 

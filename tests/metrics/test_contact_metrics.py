@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,10 @@ import pytest
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.finished import Finished
-from validation.engine.judge import compared_until
+from validation.engine.judge import compared_until, evaluate
 from validation.engine.measure import execute
+from validation.engine.run import finish
+from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
@@ -172,9 +175,8 @@ def test_the_exact_motions_have_the_impulse_of_their_force() -> None:
     scene = load_scene("unlocked").expand()[1].with_values({"time.step": 1e-4, "time.steps": 500})
     for solver in ("block-events", "bar-events"):
         record = record_of(scene, solver)
-        edges = np.concatenate(([0.0], record.force))
-        step = record.time[0]
-        assert record.impulse[-1] == pytest.approx(step * np.sum(edges[1:] + edges[:-1]) / 2, rel=2e-3), solver
+        force, time = (np.concatenate(([0.0], values)) for values in (record.force, record.time))
+        assert record.impulse[-1] == pytest.approx(np.sum(np.diff(time) * (force[1:] + force[:-1])) / 2, rel=2e-3)
         assert record.rebounds and all(
             one.closing > 0 and (one.opening is None or one.opening > 0) for one in record.rebounds
         )
@@ -201,3 +203,25 @@ def test_histories_are_gated_up_to_the_horizon(tmp_path: Any) -> None:
     assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
     assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
     assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
+def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule: str) -> None:
+    scene = impact(**{"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": rule, "contact.gap": 0.0117})
+    metrics = execute(Case(scene, "dda"), "", "")[0].metrics
+    e = {"newmark": 1.0, "implicit": 1 / 3, "energy-conserving": 1.0}[rule]
+    assert metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)
+    assert metrics["contact.impulse"] == pytest.approx(10800 * (1 + e), rel=1e-6)
+
+
+def test_a_verdict_says_up_to_when_histories_were_compared(tmp_path: Path) -> None:
+    stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400, "time.alpha": 0.25, "time.delta": 0.5}
+    scene = load_scene("unlocked-constant").expand()[0].with_values(stiff)
+    pair = ("dda", "block-events")
+    gates = [Gate(scene.name, pair, "displacement.l2", 0.0, 9.0, "why", until=t) for t in (None, 0.002)]
+    study = Study("test", "", "", [scene], pair, gates=lambda: tuple(gates))
+    finished = finish(study.cases(), study, Results(tmp_path))
+    horizon = finished.rows[scene.name, "dda"].metrics["horizon.time"]
+    whole, early = (evaluate(gate, finished) for gate in gates)
+    assert whole.why.startswith(f"compared up to {horizon:.4g} s") and early.why == ""
+    assert isinstance(whole.value, float) and isinstance(early.value, float)

@@ -17,6 +17,7 @@ from faults.kill_matrix import check_kill_matrix
 
 from validation.studies.bands import cases
 from validation.studies.contact import rebound
+from validation.studies.own_solver.gates import applying
 
 Change = Callable[[Any], dict[str, Any]]
 
@@ -101,3 +102,9 @@ def test_the_closed_forms_of_a_rigid_contact() -> None:
         assert rebound.impact_restitution(0.5, 1.0, 1.0, math.inf, theta) == pytest.approx(abs(2 * theta - 1))
         average = 3 - 8 * theta if theta < 1 / 3 else 4 * theta - 1
         assert rebound.impact_restitution(0.25, 0.5, 1.0, math.inf, theta) == pytest.approx(average)
+
+
+def test_a_users_solver_is_not_asked_for_contact_that_opens() -> None:
+    asked = {gate.scene for _, gate in applying().values()}
+    opening = {gate.scene for gate in rebound.gates() if gate.pair == DDA}
+    assert opening and not asked & opening

@@ -12,6 +12,7 @@ the block has landed.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -22,6 +23,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.events import impact_statistics
 
+RAISES, LEAST_RAISE = 8, 1.2  # of p, until the exact block stays above the penetration asked for
 WRONG, ARBITRARY = 0.3, 2.0  # Omega beyond which the restitution is off by a fifth, and depends on the phase alone
 
 
@@ -41,6 +43,8 @@ class Needed:
 
     stiffness: float  # p [N/m]
     step: float  # dt at that p [s]
+    depth: float | None  # how deep the exact block goes at that p [m]; None where that was not asked or has no answer
+    first_guess: float  # p from the load at rest and one landing at the speed V, as in the formula [N/m]
     step_now: float  # dt at the present p [s]
     omega: float  # w_c dt of both [-]
     restitution: Restitution | None  # what the scheme then really returns
@@ -112,10 +116,14 @@ def largest_omega(scene: Scene, error: float) -> float:
     return min(phase, 4 * error / (math.pi * over)) if over > 0 else phase
 
 
-def needed(scene: Scene, speed: float, error: float, penetration: float) -> Needed:
+def needed(
+    scene: Scene, speed: float, error: float, penetration: float, probe: Callable[[float], float | None] | None = None
+) -> Needed:
     """Return springs and time step for a restitution error and a penetration.
 
-    p >= max(W / (2 x), V^2 m / (8 x^2)), and dt = Omega / w_c with the Omega of `largest_omega`.
+    p = max(W / (2 x), V^2 m / (8 x^2)) holds the load at rest and one landing; the strain of the block and the second
+    of two impacts in a row go deeper. So p is raised, as the square of the depth, until the exact block stays above x;
+    and dt = Omega / w_c with the Omega of `largest_omega`.
 
     Parameters
     ----------
@@ -127,13 +135,21 @@ def needed(scene: Scene, speed: float, error: float, penetration: float) -> Need
         Error y of the restitution [-].
     penetration
         Penetration x [m].
+    probe
+        Function of p that returns how deep the exact block goes [m], None where there is no answer.
     """
     static = abs(opened.pushing(scene)) / (2 * penetration)
     landing = speed**2 * opened.mass(scene) / (8 * penetration**2)
     p = max(static, landing) or scene.contact.stiffness  # without load and speed any springs do
     limit = largest_omega(scene, error)
-    steps = limit / contact_frequency(scene, p), limit / contact_frequency(scene)
-    return Needed(p, *steps, limit, restitution(scene, limit))
+    enough, depth = p, probe(p) if probe else None
+    for _ in range(RAISES):
+        if probe is None or depth is None or depth <= penetration:
+            break
+        enough *= max(LEAST_RAISE, (depth / penetration) ** 2)
+        depth = probe(enough)
+    steps = limit / contact_frequency(scene, enough), limit / contact_frequency(scene)
+    return Needed(enough, steps[0], depth, p, steps[1], limit, restitution(scene, limit))
 
 
 def as_dict(found: Needed) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -45,6 +45,11 @@ def own() -> str:
     return of_role(Role.JUDGED)
 
 
+def exact() -> str:
+    """Return the solver that is exact in time for the judged solver's block."""
+    return of_role(Role.LIMIT)
+
+
 def scenes(scene: Scene) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
 
@@ -60,10 +65,16 @@ def scenes(scene: Scene) -> dict[str, Scene]:
         )
     plain = scene.with_values({"run.columns": ["displacement", "contact_pressure"]})
     free = plain.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else plain
-    return {own(): plain, of_role(Role.LIMIT): free, of_role(Role.TRUTH): free}
+    return {own(): plain, exact(): free, of_role(Role.TRUTH): free}
 
 
-def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: float) -> dict[str, Any]:
+def answer(
+    scene: Scene,
+    rows: Mapping[str, Row],
+    error: float,
+    penetration: float,
+    probe: Callable[[float], float | None] | None = None,
+) -> dict[str, Any]:
     """Return everything as plain data.
 
     Parameters
@@ -74,6 +85,8 @@ def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: flo
         Its rows by solver, without the solvers that do not apply.
     error, penetration
         The restitution error [-] and the penetration [m] that are asked for.
+    probe
+        How deep the exact block goes on springs p [m], None where there is no answer.
     """
     omega = contact.omega(scene)
     speed = landing_speed(scene, rows)
@@ -85,7 +98,7 @@ def answer(scene: Scene, rows: Mapping[str, Row], error: float, penetration: flo
         "restitution_now": None if now is None else asdict(now),
         "landing_speed": speed,
         "asked": {"restitution_error": error, "penetration": penetration},
-        "needed": contact.as_dict(contact.needed(scene, speed, error, penetration)),
+        "needed": contact.as_dict(contact.needed(scene, speed, error, penetration, probe)),
         "hidden_from": contact.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
         "alarms": [alarm.record() for alarm in contact_alarms(scene, rows)],
@@ -109,7 +122,7 @@ def measured(row: Row) -> dict[str, Value]:
 
 def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
     """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
-    for name in (of_role(Role.LIMIT), own()):
+    for name in (exact(), own()):
         value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
         if isinstance(value, float):
             return value
@@ -184,7 +197,7 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
         f"Asked for: a restitution within {100 * error:g} % and a penetration below {depth:g} m, landing at "
         f"{found['landing_speed']:.4g} m/s under {abs(opened.pushing(scene)):.4g} N."
     )
-    yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g})"
+    yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     yield f"  time step   dt <= {need['step']:.3g} s at that p, {need['step_now']:.3g} s at the present one"
     now = found["restitution_now"]
     if now is None:
@@ -194,6 +207,13 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
         f"  at present  a contact returns {now['mean']:.3g} of its speed on average, {now['low']:.3g} to "
         f"{now['high']:.3g}, and {now['energy']:.3g} of its energy"
     )
+
+
+def _depth(need: Mapping[str, Any], asked: float) -> str:
+    if need["depth"] is None:
+        return ", for the load at rest and one landing"
+    reached = "" if need["depth"] <= asked else ", and no stiffer ones were tried"
+    return f": the exact block then goes {need['depth']:.3g} m deep{reached}"
 
 
 def _aligned(lines: list[Line]) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -36,13 +37,28 @@ def contact(
     from validation.advice import contact_page
 
     case = one_case(scene, assignments)
-    rows, absent = _rows(contact_page.scenes(case))
-    found = contact_page.answer(case, rows, error, penetration)
+    scenes = contact_page.scenes(case)
+    rows, absent = _rows(scenes)
+    found = contact_page.answer(case, rows, error, penetration, _probe(scenes[contact_page.exact()]))
     if as_json:
         typer.echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
     else:
         typer.echo("\n".join(contact_page.page(case, found, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
+
+
+def _probe(scene: Scene) -> Callable[[float], float | None]:
+    """Return the function of p that says how deep the exact block goes [m]."""
+    from validation.advice.contact_page import exact
+    from validation.engine.case import Case
+    from validation.engine.measure import execute
+
+    def depth(stiffness: float) -> float | None:
+        row, _ = execute(Case(scene.with_values({"contact.stiffness": stiffness}), exact()), "", "contact")
+        value = row.metrics.get("contact.penetration")
+        return value if isinstance(value, float) else None
+
+    return depth
 
 
 def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:

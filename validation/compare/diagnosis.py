@@ -11,6 +11,7 @@ import numpy as np
 from dda.one_block.variants import Column, Variant, histories
 from validation.compare import causes, departure, evidence, families, sentences
 from validation.compare.causes import CAUSES, DIVERGED, UNEXPLAINED
+from validation.compare.decision import Verdict
 from validation.compare.departure import Departure
 from validation.compare.evidence import Stage
 from validation.compare.fits.fit import Interval, fit, intervals, untold
@@ -22,7 +23,7 @@ from validation.compare.other_verdict import RivalVerdict, judged
 from validation.compare.ranking import ranking, row_of
 from validation.compare.reading import Foreign, steppings
 from validation.compare.readings import Reading, readings_of, slips
-from validation.compare.search import Verdict, paired, simple
+from validation.compare.search import paired, simple
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes import features
@@ -126,7 +127,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
     others: list[Rival] = []
-    if not verdict.explained and scene.contact.law == "locked":
+    if not (verdict.explained or verdict.reached) and scene.contact.law == "locked":
         names = RIVALS if scene.block.poisson == 0 else ("fem",)
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
         if theirs is not None and theirs.explained:
@@ -162,7 +163,7 @@ def _best(
     for reading in read:
         case = _case(scene, foreign, reading, column, own)
         verdict = simple(case.target, own)
-        if verdict.explained or verdict.alike:
+        if verdict.reached or verdict.explained:
             return case, verdict
         tried.append((case, verdict))
         if verdict.best.fit.misfit < PLAIN:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from validation.compare.causes import causes_of, values_of
+from validation.compare.decision import Verdict
 from validation.compare.fits.target import Target
-from validation.compare.search import Found, Verdict
+from validation.compare.fitting import Found
 
 SAME_FACTOR = 1e-5  # relative
 SIDE = "load.gravity = 9.81: the weight goes with the area of the block"

@@ -64,7 +64,7 @@ def gap(record: ContactRecord) -> Value:
 
 def open_share(record: ContactRecord) -> Value:
     """Share of the time that the corners are open."""
-    return float(record.open_share.mean())
+    return float(np.average(record.open_share, weights=np.diff(record.time, prepend=0.0)))
 
 
 def mean_solves(record: ContactRecord) -> Value:

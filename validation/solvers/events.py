@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -31,7 +31,7 @@ FORCES = ("normal_force_m", "normal_force_n")  # N, on the block, at the two end
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
 BLOCK_COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", *GAPS, *FORCES)
 BAR_COLUMNS = ("displacement", "contact_pressure", *GAPS, *FORCES)
-SAMPLES = 400  # instants in which peaks are sought, at least
+SAMPLES, IN_CONTACT = 400, 9  # instants in which peaks are sought: of the motion, at least, and of each contact
 TOLD = 6  # switches that a note names
 
 
@@ -107,11 +107,14 @@ class Motion(Prepared):
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)
 
-    def finely(self) -> Array:
-        """Return instants between the steps as well, at least `SAMPLES`, in which peaks are sought [s]."""
+    def finely(self, *corners: str) -> Array:
+        """Return instants between the steps as well, at least `SAMPLES`, and in each contact, to find peaks in [s]."""
         t = self.scene.time
         parts = -(-SAMPLES // t.steps)
-        return np.asarray(t.step / parts * np.arange(1.0, t.steps * parts + 1), dtype=np.float64).clip(max=self.end)
+        even = t.step / parts * np.arange(1.0, t.steps * parts + 1)
+        spans = [span for corner in corners for span in self.spans(corner)]
+        within = [np.linspace(first, last or self.end, IN_CONTACT + 2)[1:-1] for first, last in spans]
+        return np.unique(np.concatenate([even, *within]).clip(max=self.end))
 
     @property
     def end(self) -> float:
@@ -121,8 +124,16 @@ class Motion(Prepared):
     def spans(self, corner: str) -> list[tuple[float, float | None]]:
         """Return when each contact of a corner begins and ends [s]; None where it goes on."""
         own = [one for one in self.found or () if one.corner == corner]
-        ends = [*(one.time for one in own[1:]), None]
-        return [(one.time, end) for one, end in zip(own, ends, strict=False) if one.kind == "closes"]
+        begins = [one.time for one in own if one.kind == "closes"]
+        ends = [one.time for one in own if one.kind == "opens"]
+        if self.starts_closed(corner):
+            begins.insert(0, 0.0)
+        after = [time for time in ends if begins and time > begins[0]]
+        return [(begin, after[i] if i < len(after) else None) for i, begin in enumerate(begins)]
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether a corner is closed just after t = 0."""
+        raise NotImplementedError
 
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
@@ -132,6 +143,11 @@ class Motion(Prepared):
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
         history = History(self.instants(), asked)
         return Run(Outcome.COMPLETED, history, work, seconds, ("exact in time", switches_in_words(switches)))
+
+
+def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
+    """Return the contacts that begin with a landing: one that rests on its springs at t = 0 does not."""
+    return tuple(rebound for rebound in rebounds if rebound.closing > 0)
 
 
 def switches_in_words(switches: Sequence[events.Switch]) -> str:
@@ -147,6 +163,10 @@ class BlockMotion(Motion):
     """The block of one strain."""
 
     motion: block_events.BlockMotion
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether a corner is closed just after t = 0."""
+        return self.motion.closed_at_start["MN".index(corner)]
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -166,7 +186,7 @@ class BlockMotion(Motion):
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
         if self.found is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        t, push = self.finely(), opened.pushing(self.scene)
+        t, push = self.finely(*"MN"), opened.pushing(self.scene)
         found = self.motion.at(t)
         velocity, start = found.velocity[1], self.scene.block.velocity
         spans = [(first, last, i) for i, corner in enumerate("MN") for first, last in self.spans(corner)]
@@ -181,7 +201,7 @@ class BlockMotion(Motion):
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
             velocity=velocity,
-            rebounds=tuple(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
+            rebounds=landings(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
             energies={name: getattr(found, name) for name in STORED}
             | dict.fromkeys(LOST[:2], np.zeros_like(t))
             | {LOST[2]: found.released},
@@ -198,6 +218,10 @@ class BarMotion(Motion):
     """The bar."""
 
     motion: bar_events.BarMotion
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether the base is closed just after t = 0."""
+        return self.motion.closed_at_start
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -217,7 +241,7 @@ class BarMotion(Motion):
         """Return what the contact did; the bar reports no energies."""
         if self.found is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        t, width = self.finely(), self.motion.problem.width
+        t, width = self.finely("base"), self.motion.problem.width
         found = self.motion.at(t)
         return ContactRecord(
             time=t,
@@ -230,7 +254,7 @@ class BarMotion(Motion):
             start_energy=opened.start_energy(self.scene),
             given=opened.given_energy(self.scene),
             velocity=found.mean_velocity,
-            rebounds=tuple(itertools.starmap(self._rebound, self.spans("base"))),
+            rebounds=landings(itertools.starmap(self._rebound, self.spans("base"))),
         )
 
     def _rebound(self, first: float, last: float | None) -> Rebound:

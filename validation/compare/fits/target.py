@@ -127,6 +127,10 @@ class Target:
         shares = [float(np.sum((b.rounding / b.norm) ** 2)) / 12 for b in self.bars]
         return max(math.sqrt(sum(shares) / len(shares)), ROUNDING)
 
+    def same_steps(self, other: Target) -> bool:
+        """Whether another target has as many steps and rows."""
+        return len(self.steps) == len(other.steps) and len(self.rows) == len(other.rows)
+
     def quick(self) -> Target:
         """Return the same for a search, in one pass for all variants."""
         return replace(self, searching=True)

@@ -56,6 +56,11 @@ BOUNCES = {
     1000.0: (1.667744780213, 3.6674307545665, 4.3348876303179),
     10000.0: (1.6667745034073, 3.6667430730035, 4.3334887605193),
 }
+STOP = {
+    "first_closing": 0.65785098512048,
+    "second_closing": 1.2324367791597,
+}  # of the block on a rigid stop, over a / c
+KEPT = 0.89132203751993  # of its momentum, after three impacts in a row, by an independent program
 RIGID = {"release": 5 / 3, "impact": 11 / 3, "second release": 13 / 3}  # of the bouncing bar on a rigid wall [s]
 SWITCHES = ("first_opening", "second_closing", "second_opening")
 PRINTED = "an independent program; band: half a unit of its last digit, and 1e-11 of the value"
@@ -119,13 +124,29 @@ def other_gates() -> Iterator[Gate]:
 
 def impact_gates() -> Iterator[Gate]:
     """Yield the gates on an unloaded block and bar that land at 1 m/s."""
-    for case in cases("impact"):
+    *soft, stiff = cases("impact")
+    yield from stop_gates(stiff)
+    for case in soft:
         for solver, (time, e) in zip((BLOCK, BAR), IMPACTS[case.contact.stiffness / case.block.young], strict=True):
             yield _near(case, solver, "switches.first_opening", time * transit(case), half_unit(time) * transit(case))
             yield _near(case, solver, "contact.restitution", e, half_unit(e))
     wave = "a wall so stiff that the pressure reaches rho c V: e^(-400) is left, and the samples lie in the plateau"
     force = math.sqrt(case.block.density * case.block.young) * case.block.base_length * -case.block.velocity
     yield Gate(case.name, (BAR,), "contact.peak_force", *about(force, 1e-11 * force), wave)
+
+
+def stop_gates(case: Scene) -> Iterator[Gate]:
+    """Yield the gates on a block on springs next to rigid: impacts of its base, a quarter of its mass, in a row."""
+    left = math.sqrt(case.block.young / case.contact.stiffness)
+    why = "an independent program, on a rigid stop; band: sqrt(E / p), the length of an impact over a transit"
+    for name, time in STOP.items():
+        edges = about(time * transit(case), left * transit(case))
+        yield Gate(case.name, (BLOCK,), f"switches.{name}", *edges, why, OTHER)
+    yield Gate(case.name, (BLOCK,), "contact.restitution", *about(KEPT, left), why, OTHER)
+    whole = "contact of 2 h / c on a rigid wall; band: E / p, the springs of a wall that stiff"
+    soft = 2 * left**2
+    yield Gate(case.name, (BAR,), "switches.first_opening", *about(2 * transit(case), soft * transit(case)), whole)
+    yield Gate(case.name, (BAR,), "contact.restitution", 1 - soft, 1 + 1e-12, whole)
 
 
 def fall_gates() -> Iterator[Gate]:

@@ -16,7 +16,6 @@ from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
-from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import about, near
 from validation.studies.catalogue import get_study, judged_studies
@@ -113,7 +112,7 @@ def _applies(study: str, gate: Gate) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
         return False
     case = cases(study)[gate.cases[0]]
-    if case.scene.column is not None or not features.linear(case.scene):
+    if case.scene.column is not None:
         return False
     return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
 

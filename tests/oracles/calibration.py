@@ -1,0 +1,313 @@
+"""A thousand histories of known origin by three generators, what `compare` makes of them, and the table of the docs.
+
+The generators share nothing with what judges: a plain DDA code (`plain_dda`), the finite elements of `fem_reference`
+with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
+scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in no catalogue;
+digits, noise, steps, schemes and scenes are drawn at random.
+
+``PYTHONPATH=.:tests python tests/oracles/calibration.py [COUNT [PROCESSES]]`` judges so many, a thousand by default,
+and writes the table to docs/compare.md.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from oracles.plain_dda import Plain, run
+
+from validation import load_scene, solve
+from validation.compare.diagnosis import compare
+from validation.compare.reading import Foreign
+from validation.scenes.scene import Scene
+
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+BEGIN, END = "<!-- calibration: made by tests/oracles/calibration.py -->\n", "<!-- end of calibration -->\n"
+UNKNOWN, SAME = "unexplained", "same"
+SCHEMES = ((0.5, 1.0), (0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))
+
+
+@dataclass(frozen=True)
+class Made:
+    """A history, the scene that it is judged against, and the causes that were put in."""
+
+    scene: Scene
+    foreign: Foreign
+    causes: tuple[str, ...]  # ids; ("unexplained",) where the cause is in no catalogue
+    maker: str
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What was said of a history."""
+
+    maker: str
+    causes: tuple[str, ...]
+    named: tuple[str, ...]
+
+
+def made(seed: int) -> Made:
+    """Return one history."""
+    rng = np.random.default_rng(seed)
+    maker = ("plain", "plain", "elements", "modes")[seed % 4]
+    base = _scene(rng)
+    slips, causes = _cause(rng, base, maker)
+    if maker == "elements":
+        displacement, pressure = elements(replace(base, **slips))
+    elif maker == "modes":
+        displacement, pressure = modes(replace(base, **slips))
+    else:
+        displacement, pressure = run(replace(base, **slips))
+    time = base.dt * np.arange(1, base.steps + 1)
+    noise = float(rng.choice([0.0, 0.0, 0.0, 1e-4, 1e-3, 1e-2]))
+    digits = int(rng.choice([5, 7, 16])) if noise == 0 else 7
+    columns = [_printed(rng, values, noise, digits) for values in (displacement, pressure)]
+    given = Foreign(time, columns[0], columns[1] if rng.random() < 0.6 else None)
+    if "time-shift" in causes:
+        given = replace(given, time=time[:-1], displacement=columns[0][1:], pressure=None)
+    return Made(scene_of(base), given, causes, maker)
+
+
+def _printed(rng: np.random.Generator, values: np.ndarray, noise: float, digits: int) -> np.ndarray:
+    noisy = values + noise * np.max(np.abs(values)) * rng.standard_normal(len(values))
+    return np.array([float(f"{v:.{digits - 1}e}") for v in noisy])
+
+
+def _scene(rng: np.random.Generator) -> Plain:
+    alpha, delta = SCHEMES[rng.integers(len(SCHEMES))]
+    return Plain(
+        dt=float(rng.choice([2e-3, 1e-3, 5e-4])),
+        steps=int(rng.choice([60, 100, 150])),
+        rho=float(rng.choice([2700.0, 2300.0])),
+        E=float(rng.choice([1e9, 2e9])),
+        mu=float(rng.choice([0.0, 0.0, 0.25])),
+        p=float(rng.choice([1e9, 5e9, 1e10])),
+        alpha=alpha,
+        delta=delta,
+        gg=float(rng.choice([1.0, 1.0, 0.98])),
+        consistent=bool(rng.random() < 0.5 and (alpha, delta) != (0.5, 1.0)),
+    )
+
+
+def _factor(rng: np.random.Generator) -> float:
+    value = float(rng.choice([0.5, 0.8, 0.9, 1.1, 1.25, 2.0, rng.uniform(0.6, 1.6)]))
+    return value
+
+
+def _singles(rng: np.random.Generator, base: Plain) -> dict[str, dict[str, object]]:
+    """Return every cause of the catalogue that a scene allows, as slips."""
+    found: dict[str, dict[str, object]] = {
+        "density-factor": {"rho": base.rho * _factor(rng)},
+        "young-factor": {"E": base.E * _factor(rng)},
+        "springs-factor": {"p": base.p * float(rng.choice([0.5, 2.0, 0.25, 4.0]))},
+        "load-factor": {"q": base.q * _factor(rng)},
+        "gg": {"gg": base.gg * float(rng.choice([0.99, 0.97, 0.95]))},
+        "scheme": {"alpha": 0.25, "delta": 0.5} if base.alpha != 0.25 else {"alpha": 0.5, "delta": 1.0},
+        "reported-point": {"point": float(rng.choice([1.0, -1.0]))},
+        "own-weight": {"g": 9.81},
+    }
+    if base.alpha != 0.5:
+        found["start"] = {"consistent": not base.consistent}
+    if base.gg < 1:
+        found["gg-in-one-formula"] = {"formulas": str(rng.choice(["velocity", "displacement"]))}
+    return found
+
+
+def _of_the_output(rng: np.random.Generator) -> dict[str, dict[str, object]]:
+    """Return what only a code of one's own has."""
+    return {
+        "pressure-shift": {"late": 1} if rng.random() < 0.7 else {"averaged": True},
+        "pressure-factor": {"pressure_times": 0.5},
+        "time-shift": {},
+        "contact-opened": {"opens": True},
+        "side-factor": {"side": 2.0 * _factor(rng)},
+        "load-row": {"row_sign": -1.0},
+        "coupling": {"coupling": 0.0},
+    }
+
+
+def _outside(rng: np.random.Generator) -> dict[str, object]:
+    """Return a cause that is in no catalogue."""
+    every: list[dict[str, object]] = [
+        {"viscous": float(rng.choice([3.0, 10.0, 30.0]))},
+        {"height": 2.0 * float(rng.choice([0.9, 1.1, 1.3]))},
+        {"structural": float(rng.choice([5e-5, 2e-4]))},
+        {"hardening": float(rng.choice([5.0, 20.0, 60.0]))},
+        {"creep": float(rng.choice([0.3, 1.0, 5.0]))},
+        {"ramp": float(rng.choice([0.004, 0.01, 0.03]))},
+        {"shaken": float(rng.choice([0.003, 0.01, 0.05])), "seed": int(rng.integers(1000))},
+        {"filtered": float(rng.choice([0.2, 0.5]))},
+        {"hht": float(rng.choice([-0.05, -0.1]))},
+        {"friction": float(rng.choice([5e4, 2e5]))},
+        {"hardening": 20.0, "viscous": 10.0},
+        {"ramp": 0.01, "height": 2.2},
+    ]
+    return every[rng.integers(len(every))]
+
+
+def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str, object], tuple[str, ...]]:
+    """Return the slips of a history and the ids of its causes."""
+    kind = rng.random()
+    single = _singles(rng, base)
+    if maker != "plain":
+        for name in ("reported-point", "own-weight", "gg-in-one-formula", *(() if maker == "modes" else ("start",))):
+            single.pop(name, None)
+    if kind < 0.08:
+        return {}, (SAME,)
+    if kind < 0.38 and maker == "plain":
+        return _outside(rng), (UNKNOWN,)
+    if kind < 0.38 and maker == "modes":
+        return {"hht": 1.0}, (UNKNOWN,)  # summed in closed form: no scheme at all
+    if kind < 0.55:
+        names = rng.choice(sorted(set(single) - {"own-weight", "start", "scheme"}), 2, replace=False)
+        return single[names[0]] | single[names[1]], tuple(names)
+    if maker == "plain":
+        single |= _of_the_output(rng)
+    name = str(rng.choice(sorted(single)))
+    return single[name], (name,)
+
+
+def scene_of(p: Plain) -> Scene:
+    """Return the scene of a plain run."""
+    return load_scene("figures-3-4").with_values(
+        {
+            "time.step": p.dt,
+            "time.steps": p.steps,
+            "time.alpha": p.alpha,
+            "time.delta": p.delta,
+            "time.gg": p.gg,
+            "time.start": "consistent" if p.consistent else "zero",
+            "contact.stiffness": p.p,
+            "block.density": p.rho,
+            "block.young": p.E,
+            "block.poisson": p.mu,
+            "load.pressure": p.q,
+            "load.gravity": p.g,
+            "fem.elements": 12,
+            "fem.degree": 1,
+        }
+    )
+
+
+def elements(p: Plain) -> tuple[np.ndarray, np.ndarray]:
+    """Return a history of the finite elements."""
+    found = solve(scene_of(p), "fem")
+    return found.displacement, found.contact_pressure
+
+
+def modes(p: Plain) -> tuple[np.ndarray, np.ndarray]:
+    """Return a history from the modes of the block, (v, ey, ex), each stepped alone or summed in closed form."""
+    m, h, a = p.rho * p.side**2, p.side, p.side
+    c11 = p.E / (1 - p.mu**2)
+    M = np.diag([m, m * h**2 / 12, m * a**2 / 12])
+    k = 2 * p.p
+    K = np.array(
+        [
+            [k, -k * h / 2, 0.0],
+            [-k * h / 2, k * h**2 / 4 + a * h * c11, a * h * p.mu * c11],
+            [0.0, a * h * p.mu * c11, a * h * c11 + k * a**2 / 4],
+        ]
+    )
+    F = -p.q * a * np.array([1.0, h / 2, 0.0])
+    half = np.sqrt(np.diag(M))
+    squares, vectors = np.linalg.eigh(K / np.outer(half, half))
+    shapes = vectors / half[:, None]
+    forces = shapes.T @ F
+    rows = np.array([_mode(p, w2, f) for w2, f in zip(squares, forces, strict=True)])  # modes x steps
+    v, ey, _ = shapes @ rows
+    return v, -k * (v - h / 2 * ey) / a
+
+
+def _mode(p: Plain, w2: float, force: float) -> np.ndarray:
+    """Return one oscillator x'' + w2 x = force from rest."""
+    n = np.arange(1, p.steps + 1)
+    if p.hht:
+        return force / w2 * (1 - np.cos(np.sqrt(w2) * p.dt * n))
+    x = v = 0.0
+    acceleration = force if p.consistent else 0.0
+    found = []
+    for _ in n:
+        star = x + p.gg * p.dt * v + p.dt**2 * (0.5 - p.alpha) * acceleration
+        new = (force - w2 * star) / (1 + p.alpha * p.dt**2 * w2)
+        x = star + p.alpha * p.dt**2 * new
+        v = p.gg * v + p.dt * ((1 - p.delta) * acceleration + p.delta * new)
+        acceleration = new
+        found.append(x)
+    return np.array(found)
+
+
+# ---- what is said of them -------------------------------------------------------------------------------------------
+
+
+def judged(seed: int) -> Judged:
+    """Return what `compare` says of one history."""
+    with np.errstate(all="ignore"):
+        one = made(seed)
+        answer = compare(one.scene, one.foreign)
+    return Judged(one.maker, one.causes, tuple(answer.causes) or (SAME,))
+
+
+def verdict(one: Judged) -> str:
+    """Return whether the answer is right, silent or wrong.
+
+    A cause that noise or rounding hides leaves the history the scene's own: "same" is then no wrong cause.
+    """
+    named, true = set(one.named), set(one.causes)
+    if named == true or (named == {"base-compliance"} and true == {"springs-factor"}):
+        return "right"
+    if UNKNOWN in named:
+        return "silent"
+    return "hidden" if named == {SAME} else "wrong"
+
+
+def table(found: list[Judged]) -> str:
+    """Return the confusion matrix by kind of cause, and the share of named causes that are right."""
+    names = sorted({_kind(one.causes) for one in found})
+    columns = ("right", "silent", "hidden", "wrong")
+    counts = Counter((_kind(one.causes), verdict(one)) for one in found)
+    lines = [
+        "| what was done | histories | named right | not explained | same, within digits and noise | named wrong |"
+    ]
+    lines.append("|---|" + "---:|" * 5)
+    for name in names:
+        each = [counts[name, column] for column in columns]
+        lines.append(f"| {name} | {sum(each)} | " + " | ".join(str(n) if n else "" for n in each) + " |")
+    total = [sum(counts[name, column] for name in names) for column in columns]
+    lines.append(f"| **all** | {sum(total)} | " + " | ".join(map(str, total)) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _kind(causes: tuple[str, ...]) -> str:
+    return causes[0] if len(causes) == 1 else "two causes"
+
+
+def share(found: list[Judged]) -> float:
+    """Return the share of the named causes that are right."""
+    said = [verdict(one) for one in found if set(one.named) - {UNKNOWN, SAME}]
+    return said.count("right") / max(len(said), 1)
+
+
+def page_with(text: str, page: str) -> str:
+    """Return the page with the table in its place."""
+    pattern = re.escape(BEGIN) + ".*?" + re.escape(END)
+    return re.sub(pattern, lambda _: f"{BEGIN}\n{text}\n{END}", page, flags=re.DOTALL)
+
+
+def judge(count: int, processes: int = 1, first: int = 0) -> list[Judged]:
+    """Judge so many histories."""
+    if processes == 1:
+        return [judged(seed) for seed in range(first, first + count)]
+    with ProcessPoolExecutor(processes) as pool:
+        return list(pool.map(partial(judged), range(first, first + count), chunksize=5))
+
+
+if __name__ == "__main__":
+    wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    results = judge(wanted, int(sys.argv[2]) if len(sys.argv) > 2 else 2)
+    PAGE.write_text(page_with(table(results), PAGE.read_text()))
