@@ -11,8 +11,6 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,7 +24,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import numpy as np  # noqa: E402  (after the number of threads is set)
-from rivals import block_numpy, elements_skfem, estimates  # noqa: E402
+from rivals import block_numpy, elements_skfem  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
@@ -138,10 +136,12 @@ def opening_model(p: float = 1e9) -> dda.UnilateralModel:
     return dda.UnilateralModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Unilateral(p), 5e6)
 
 
-def opening_history(steps: int, dt: float, p: float = 1e9, singly: bool = False) -> dda.UnilateralResult:
+def opening_history(
+    steps: int, dt: float, model: dda.UnilateralModel | None = None, singly: bool = False
+) -> dda.UnilateralResult:
     """Solve the square block on corners that open; step by step in all six unknowns if `singly`."""
     options = dda.UnilateralOptions(full=singly)
-    return dda.solve_unilateral(opening_model(p), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
+    return dda.solve_unilateral(model or opening_model(), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
 
 
 def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
@@ -154,12 +154,13 @@ def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
 
 def opening_line(steps: int, dt: float, p: float, repeats: int = 5) -> str:
     """Return a line of the table of contact that opens: its cost over that of locked contact, and over single steps."""
-    model = dda.TwoBlockModel(opening_model(p).block, dda.Contact(p), 5e6)
+    unlocked = opening_model(p)
+    model = dda.TwoBlockModel(unlocked.block, dda.Contact(p), 5e6)
     locked = lambda: tuple(dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, dt), steps).columns.values())  # noqa: E731
-    opens = lambda: tuple(opening_history(steps, dt, p).columns.values())  # noqa: E731
+    opens = lambda: tuple(opening_history(steps, dt, unlocked).columns.values())  # noqa: E731
     spent = np.array([(timed(locked)[0], timed(opens)[0]) for _ in range(repeats)]).min(axis=0)
-    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, p, singly=True).columns.values()))
-    switches = np.count_nonzero(np.diff(opening_history(steps, dt, p).closed_m))
+    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, unlocked, singly=True).columns.values()))
+    switches = np.count_nonzero(np.diff(opening_history(steps, dt, unlocked).closed_m))
     numbers = f"{spent[0]:.2g} | {spent[1]:.2g} | {spent[1] / spent[0]:.1f} | {seconds / spent[1]:.0f}"
     text = f"| {p / 1e9:g} E | {dt:g} | {steps:,} | {switches} | {numbers} | {difference(opens(), answer):.0e} |"
     print(text, flush=True)
@@ -262,9 +263,9 @@ def growth(quick: bool) -> list[str]:
 
 def sweep_seconds(name: str, values: dict[str, float], solver: str, count: int, jobs: int = 1) -> float:
     """Return the seconds of a study of some time steps of a scene, results kept."""
-    scene = load_scene(name).with_values({"time.step": 1e-3, **values}).model_copy(update={"sweep": {}})
     steps = [1e-3 * (1 + i / count) for i in range(count)]
-    study = Study("sweep", "Sweep", "Sweep.", [scene], (solver,), {"time.step": steps}, measures=("history",))
+    scene = load_scene(name).with_values(values).model_copy(update={"sweep": {"time.step": steps}})
+    study = Study("sweep", "Sweep", "Sweep.", [scene], (solver,), measures=("history",))
     with tempfile.TemporaryDirectory() as directory:
         began = time.perf_counter()
         run_study(study, Results(directory), jobs=jobs)
@@ -276,17 +277,6 @@ def two_workers(count: int = 16, n: int = 48) -> str:
     values = {"fem.elements": n, "fem.degree": 1}
     one, two = (sweep_seconds("poisson", values, "fem", count, jobs) for jobs in (1, 2))
     return f"A sweep of {count} scenes by `fem` takes {one:.2g} s on one worker and {two:.2g} s on two."
-
-
-def start_up(name: str, arguments: list[str]) -> str:
-    """Return a line of the start-up table: processor seconds of a fresh interpreter, least of five."""
-    spent = []
-    for _ in range(5):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=HERE.parent)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return f"| `{name}` | {min(spent):.2f} |"
 
 
 PAGE = """# Speed
@@ -327,16 +317,6 @@ no state of any step is kept. The elements keep the vectors of the small space, 
 vectors (at most 400), beside the factor of one sparse matrix; the results directory 8 (1 + columns) n bytes a case.
 
 {sweep}
-
-## The estimate
-
-{honesty}
-
-## Start-up
-
-| what | processor seconds |
-|---|---|
-{start}
 """
 
 
@@ -345,7 +325,6 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--quick", action="store_true", help="leave the long contests out and print only")
     quick = options.parse_args().quick
-    commands = {"import dda": ["-c", "import dda"], "dda-validate --help": ["-m", "validation", "--help"]}
     page = PAGE.format(
         machine=f"{os.cpu_count()} cores, {platform.machine()}",
         python=platform.python_version(),
@@ -355,8 +334,6 @@ def main() -> None:
         elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),
-        honesty=estimates.honesty(40 if quick else 200),
-        start="\n".join(start_up(name, arguments) for name, arguments in commands.items()),
     )
     if quick:
         print(page)

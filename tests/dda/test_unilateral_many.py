@@ -9,9 +9,9 @@ from oracles.unilateral_checks import checked, mirrored, random_model, sums
 from dda import Contact, Scheme, TwoBlockModel, UnilateralOptions, solve, solve_unilateral
 
 MANY, FEW = 500, 40
-STEPS = 80
+STEPS = 50
 NAMES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "gap_m", "gap_n", "velocity")
-SEEDS = [pytest.param(seed, marks=[pytest.mark.long] * (seed >= FEW)) for seed in range(MANY)]
+SEEDS = [range(FEW), pytest.param(range(FEW, MANY), marks=pytest.mark.long)]
 ENERGIES = UnilateralOptions(energies=True)
 
 
@@ -27,8 +27,14 @@ def off(one, other, name):
     return np.max(np.abs(a - b)) / max(np.max(np.abs(b)), 1e-300)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_a_random_scene_keeps_the_invariants(seed):
+@pytest.mark.parametrize("seeds", SEEDS, ids=len)
+def test_random_scenes_keep_the_invariants(seeds):
+    for seed in seeds:
+        print(f"seed {seed}")  # which pytest shows of a test that fails
+        _keeps_the_invariants(seed)
+
+
+def _keeps_the_invariants(seed):
     model, scheme = random_model(seed), scheme_of(seed)
     result = checked(model, scheme, STEPS)  # N >= 0, w >= -N/p, momentum, energy identity
     total, _ = sums(result)
@@ -39,7 +45,8 @@ def test_a_random_scene_keeps_the_invariants(seed):
     again = solve_unilateral(model, scheme, STEPS, options=ENERGIES)
     assert all(np.array_equal(getattr(result, name), getattr(again, name)) for name in NAMES)
     _scales(model, scheme, result)
-    _mirrors(model, scheme, result)
+    if seed % 2:
+        _mirrors(model, scheme, result)
 
 
 def _scales(model, scheme, result):
@@ -67,7 +74,7 @@ def _mirrors(model, scheme, result):
         assert np.max(np.abs(mine - theirs)) <= bound * largest
 
 
-@pytest.mark.parametrize("seeds", [range(FEW), pytest.param(range(FEW, MANY), marks=pytest.mark.long)], ids=len)
+@pytest.mark.parametrize("seeds", SEEDS, ids=len)
 def test_what_never_opens_is_locked(seeds):
     """Steps beyond a/(c sqrt(6 alpha)) keep a pressed block on its springs."""
     names, compared = ("displacement", "contact_pressure", "rotation"), 0

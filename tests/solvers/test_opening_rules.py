@@ -21,7 +21,7 @@ AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 def scene() -> Scene:
     """A pressed block that lands, opens and lands again."""
     case = load_scene("unlocked").expand()[1]
-    return case.with_values({"time.step": 1e-4, "time.steps": 250, "load.gravity": 9.81, "block.velocity": -0.2})
+    return case.with_values({"time.step": 1e-4, "time.steps": 150, "load.gravity": 9.81, "block.velocity": -0.2})
 
 
 @pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
