@@ -14,13 +14,18 @@ from dda.model.polygon import Section
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.response import response
 from dda.one_block.solution import Result, solve
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, UnilateralResult, solve_unilateral
+from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.opening import OpeningSystem, opening_subdivided
+from dda.system.opening_solution import OpeningResult, solve_opening_system
+from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
@@ -40,6 +45,8 @@ __all__ = [
     "Material",
     "ModalForm",
     "Mode",
+    "OpeningResult",
+    "OpeningSystem",
     "Result",
     "Scheme",
     "Section",
@@ -55,8 +62,11 @@ __all__ = [
     "modal_form",
     "modes",
     "one_step_operator",
+    "opening_subdivided",
+    "response",
     "shared_edges",
     "solve",
+    "solve_opening_system",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",
@@ -65,5 +75,6 @@ __all__ = [
     "static_system",
     "subdivided",
     "system_modes",
+    "system_response",
     "textbook_applicable",
 ]

@@ -14,8 +14,9 @@ from fem_reference.problem.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
     from fem_reference.exact.bar import Bar, applicable
+    from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
     from fem_reference.history.solver import solve, static
-    from fem_reference.history.unilateral import UNILATERAL_COLUMNS, Unilateral, UnilateralResult, solve_unilateral
+    from fem_reference.history.unilateral import Unilateral, UnilateralResult, solve_unilateral
     from fem_reference.mesh.model import assemble
     from fem_reference.scheme.eigen import highest_frequency, modes
 
@@ -27,7 +28,7 @@ _HOMES = {
     "modes": "scheme.eigen",
     "solve": "history.solver",
     "static": "history.solver",
-    "UNILATERAL_COLUMNS": "history.unilateral",
+    "UNILATERAL_COLUMNS": "history.opening_columns",
     "Unilateral": "history.unilateral",
     "UnilateralResult": "history.unilateral",
     "solve_unilateral": "history.unilateral",

@@ -30,6 +30,9 @@ from rivals import block_numpy, elements_skfem, estimates  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
+from fem_reference.history.solver import run  # noqa: E402
+from fem_reference.mesh.model import build  # noqa: E402
+from fem_reference.scheme.newmark import Stepper  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
 from validation.engine.run import run_study  # noqa: E402
@@ -41,6 +44,8 @@ from validation.solvers.registry import get_solver  # noqa: E402
 TABLE = HERE.parent / "docs" / "speed.md"
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 PAPER = (0.5, 1.0, 1.0, 1e-3)  # alpha, delta, gg, dt [s]
+OPENING = ((10**5, 1e-3, 1e9), (10**5, 1e-4, 1e9), (10**5, 1e-5, 1e9), (10**6, 1e-5, 1e9), (10**6, 1e-6, 1e9))
+ELEMENTS = ((16, 1e-4, 2000), (32, 1e-4, 1000), (64, 1e-4, 300))  # a side, dt [s], steps
 History = tuple[np.ndarray, ...]  # displacement [m], contact pressure [Pa]
 
 
@@ -128,6 +133,72 @@ def dda_contest(steps: int, model: dda.TwoBlockModel | None, target: float, agre
     return Contest(name, lambda: dda_history(steps, model), "numpy loop", theirs, target, agreement, repeats)
 
 
+def opening_model(p: float = 1e9) -> dda.UnilateralModel:
+    """Return the square block on corners that open."""
+    return dda.UnilateralModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Unilateral(p), 5e6)
+
+
+def opening_history(
+    steps: int, dt: float, model: dda.UnilateralModel | None = None, singly: bool = False
+) -> dda.UnilateralResult:
+    """Solve the square block on corners that open; step by step in all six unknowns if `singly`."""
+    options = dda.UnilateralOptions(full=singly)
+    return dda.solve_unilateral(model or opening_model(), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
+
+
+def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
+    """Return the contest of the block on corners that open."""
+    name = f"dda, contact that opens, {steps:,} steps, dt = {dt:g} s, model built too"
+    ours = lambda: tuple(opening_history(steps, dt).columns.values())  # noqa: E731
+    theirs = lambda: block_numpy.opening(steps, dt=dt)  # noqa: E731
+    return Contest(name, ours, "numpy loop, all states' inverses", theirs, 50, 1e-9)
+
+
+def opening_line(steps: int, dt: float, p: float, repeats: int = 5) -> str:
+    """Return a line of the table of contact that opens: its cost over that of locked contact, and over single steps."""
+    unlocked = opening_model(p)
+    model = dda.TwoBlockModel(unlocked.block, dda.Contact(p), 5e6)
+    locked = lambda: tuple(dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, dt), steps).columns.values())  # noqa: E731
+    opens = lambda: tuple(opening_history(steps, dt, unlocked).columns.values())  # noqa: E731
+    spent = np.array([(timed(locked)[0], timed(opens)[0]) for _ in range(repeats)]).min(axis=0)
+    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, unlocked, singly=True).columns.values()))
+    switches = np.count_nonzero(np.diff(opening_history(steps, dt, unlocked).closed_m))
+    numbers = f"{spent[0]:.2g} | {spent[1]:.2g} | {spent[1] / spent[0]:.1f} | {seconds / spent[1]:.0f}"
+    text = f"| {p / 1e9:g} E | {dt:g} | {steps:,} | {switches} | {numbers} | {difference(opens(), answer):.0e} |"
+    print(text, flush=True)
+    return text
+
+
+def opening_elements(n: int, dt: float, shear: float = 0.0) -> tuple[fem_reference.Problem, fem_reference.Scheme]:
+    """Return the square block under a load off its centre, in bilinear elements."""
+    numbers = (2700.0, 1e9, 0.25, "plane stress", 1e9, shear, 5e6)
+    problem = fem_reference.Problem(SQUARE, 0, 2, *numbers, elements=n, degree=1, eccentricity=0.25)
+    return problem, fem_reference.Scheme(0.5, 1.0, 1.0, dt)
+
+
+def opening_elements_line(n: int, dt: float, steps: int, repeats: int = 3) -> str:
+    """Return a line of the table of elements on a base that opens: its steps over locked steps of the same mesh."""
+    problem, scheme = opening_elements(n, dt)
+    columns = ("displacement", "contact_pressure")
+    locked, opens, rival = [], [], []
+    for _ in range(repeats):
+        model = build(problem, full=True)
+        stepper = Stepper(model.M, model.K, model.F, scheme)
+        locked.append(timed(lambda: tuple(run(stepper, model, steps, columns, None)))[0])  # noqa: B023
+        found = fem_reference.solve_unilateral(problem, scheme, steps, columns=(*columns, "open_share"))
+        opens.append(found.stepping_seconds)
+        spent, answer = timed(lambda: elements_skfem.opening(steps, n, dt=dt))
+        rival.append(spent - found.setup_seconds)
+    share = np.count_nonzero(np.diff(found.columns["open_share"])) / steps
+    off = difference(tuple(found.columns[name] for name in columns), answer)
+    if not off <= 1e-9:
+        raise SystemExit(f"fem, contact that opens: the rival differs by {off:.2g} of the maximum")
+    times = f"{min(locked):.2g} | {min(opens):.2g} | {min(opens) / min(locked):.2f} | {min(rival) / min(opens):.1f}"
+    text = f"| {n} x {n} | {dt:g} | {steps:,} | {share:.1%} | {times} | {off:.0e} |"
+    print(text, flush=True)
+    return text
+
+
 def fem_contest(steps: int, mu: float, target: float, repeats: int) -> Contest:
     """Return a contest of the elements."""
     name = f"fem, 64 x 64, mu = {mu:g}, {steps:,} steps"
@@ -139,7 +210,7 @@ def fem_contest(steps: int, mu: float, target: float, repeats: int) -> Contest:
 def contests(quick: bool) -> list[Contest]:
     """Return the contests; `quick` leaves the long ones out."""
     model = dda_model()
-    found = [dda_contest(10**4, model, 200, 1e-11, 9), dda_contest(10**4, None, 0, 1e-11, 9)]
+    found = [dda_contest(10**4, model, 200, 1e-11, 9), dda_contest(10**4, None, 0, 1e-11, 9), opening_contest()]
     if not quick:
         found += [dda_contest(10**6, model, 500, 1e-9, 3), fem_contest(10**4, 0.25, 60, 1)]
     return [*found, fem_contest(1000, 0.25, 10, 3), fem_contest(1000, 0.0, 80, 2)]
@@ -226,11 +297,27 @@ PAGE = """# Speed
 Written by `make bench` ({machine}, Python {python}, numpy {numpy}); one BLAS thread on both sides, run by turns,
 least seconds of some repeats, set-up counted. Constant acceleration, p = E, dt = 1e-3 s. Ratios above one are ours;
 the last column is the greatest difference of the two answers over the maximum. The rivals are
-[`reports/rivals`](../reports/rivals) and, for FEniCSx, `fem_reference/fenicsx_worker.py`.
+[`reports/rivals`](../reports/rivals) and, for FEniCSx, `fem_reference/fenicsx`.
 
 | what | ours [s] | rival | rival [s] | ratio | asked for | difference |
 |---|---|---|---|---|---|---|
 {contests}
+
+## Contact that opens
+
+Constant acceleration. The rest of the time over that of locked contact is that of the switches, some 20 microseconds
+each, which are found, stepped singly and left again; single steps are those of `--full`.
+
+| p | dt [s] | steps | switches | locked [s] | opens [s] | over locked | single steps over it | difference |
+|---|---|---|---|---|---|---|---|---|
+{opening}
+
+Bilinear elements, mu = 0.25, load 0.25 m off the centre, no friction; steps alone on both sides, and the rival, a loop
+with scikit-fem and one factorisation for each set of closed nodes, with its factorisations.
+
+| mesh | dt [s] | steps | steps that switch | locked [s] | opens [s] | over locked | rival over it | difference |
+|---|---|---|---|---|---|---|---|---|
+{elements}
 
 ## Growth
 
@@ -267,6 +354,8 @@ def main() -> None:
         python=platform.python_version(),
         numpy=np.__version__,
         contests="\n".join([*map(compete, contests(quick)), fenicsx_line()]),
+        opening="\n".join(opening_line(*case) for case in OPENING[: 1 if quick else None]),
+        elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),
         honesty=estimates.honesty(40 if quick else 200),

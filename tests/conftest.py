@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
@@ -36,6 +37,8 @@ elements = 4
 
 
 TOGETHER = (  # modules whose tests share what takes long to make
+    "test_opened_chapters",
+    "test_contact_pack",
     "test_subblocks_chapter",
     "test_changes",
     "test_claims",
@@ -46,6 +49,8 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_kept_numbers",
     "test_paper_chapter",
     "test_report",
+    "test_site_program",
+    "test_walls",
     "test_work_precision",
 )
 
@@ -80,6 +85,18 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
         if interpreter() is None:
             pytest.skip(f"fenicsx is NOT RUN: {NEEDED}")
+
+
+def thinned(cases: Iterable[object], every: int) -> list[object]:
+    """Mark all but every n-th case as long.
+
+    Of a product of axes all values stay in the short tests if there are that many cases and n is prime to the
+    lengths of the axes.
+    """
+    listed = list(cases)
+    long = [[] if i % every == 0 else [pytest.mark.long] for i in range(len(listed))]
+    parts = [case if isinstance(case, tuple) else (case,) for case in listed]
+    return [pytest.param(*part, marks=marks) for part, marks in zip(parts, long, strict=True)]
 
 
 def beside(finished_cases: Path, directory: Path) -> Results:

@@ -21,6 +21,7 @@ _NAMES = {
     "damping": "advice.spectra",
     "get_solver": "solvers.registry",
     "load_scene": "scenes.scene",
+    "response": "advice.response",
     "solve": "solvers.registry",
 }
 __all__ = sorted(_NAMES)

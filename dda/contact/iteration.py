@@ -34,6 +34,7 @@ class Iteration(NamedTuple):
     corners: Corners | None
     solves: int
     failure: str | None = None
+    mean: tuple[float, ...] | None = None  # normal forces over the step where they are not those of its end [N]
 
 
 def open_close(law: Unilateral, before: Corners, free: Free, limit: int) -> Iteration:
@@ -86,7 +87,7 @@ def trial(law: Unilateral, before: Corners, free: Free, closed: tuple[bool, ...]
     nothing = (0.0,) * len(closed)
     if not any(closed):
         return Corners(closed, tuple(free.gap), nothing, before.reference, nothing, nothing)
-    if law.shear:
+    if len(free.slide):
         return glued(law, before, free, closed)
     gap, normal = _frictionless(law.compliance, free, closed)
     return Corners(closed, gap, nothing, before.reference, normal, nothing)

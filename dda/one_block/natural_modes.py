@@ -26,17 +26,22 @@ class ModalForm:
 
 
 def modal_form(form: GapForm) -> ModalForm:
-    """Solve K phi = w^2 M phi.
+    """Solve K phi = w^2 M phi."""
+    frequencies, shapes = graded_modes(form.M, form.K)
+    return ModalForm(frequencies, shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
+
+
+def graded_modes(M: Array, K: Array) -> tuple[Array, Array]:
+    """Return the frequencies w and mass-normalised shapes of K phi = w^2 M phi, K a positive diagonal.
 
     With a diagonal K the problem is that of G = K^-1/2 M K^-1/2, whose eigenvalues are 1 / w^2.
     Jacobi's rotations find each of them, and each component of the shapes, to full relative
     accuracy where they span thirty decades; a general eigenvalue solver keeps the digits of the
     largest one only.
     """
-    root = np.sqrt(form.K)
-    values, vectors = _jacobi(form.M / root / root[:, None])
-    shapes = vectors / root[:, None] / np.sqrt(values)
-    return ModalForm(1 / np.sqrt(values), shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
+    root = np.sqrt(K)
+    values, vectors = _jacobi(M / root / root[:, None])
+    return 1 / np.sqrt(values), vectors / root[:, None] / np.sqrt(values)
 
 
 def _jacobi(matrix: Array) -> tuple[Array, Array]:

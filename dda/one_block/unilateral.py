@@ -8,8 +8,8 @@ follows, so that every interval ends at its own time.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
@@ -20,15 +20,26 @@ from dda.contact.springs import base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
-from dda.one_block.solution import Result, check_request, step_times
-from dda.one_block.unilateral_energy import ENERGIES, Ledger
+from dda.one_block.solution import check_request, step_times
+from dda.one_block.unilateral_energy import CutStep, Ledger, energies
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.unilateral_step import IMPLICIT, State, StepLength, advance, start_state
+from dda.one_block.unilateral_history import (
+    SHORTEST,
+    History,
+    Step,
+    UnilateralResult,
+    glide,
+    observed,
+    state_of,
+    vector,
+)
+from dda.one_block.unilateral_phase import Phase, phase_of
+from dda.one_block.unilateral_step import CONSERVING, IMPLICIT, NEWMARK, Jump, State, StepLength, advance, start_state
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
 
-RULES = ("newmark", IMPLICIT)
+RULES = (NEWMARK, IMPLICIT, CONSERVING)
 COMPLETED = "completed"
 OVERFLOW = "overflow"
 FLOOR = 0.01  # shortest step that a cut may leave, over the scheme's step
@@ -73,6 +84,11 @@ class UnilateralModel:
         """All loads."""
         return Load(self.pressure, self.eccentricity, self.traction, self.gravity)
 
+    @cached_property
+    def reduced(self) -> UnilateralForm:
+        """Matrices and load in the unknowns that move."""
+        return self.form()
+
     def form(self, full: bool = False) -> UnilateralForm:
         """Return matrices and load in the unknowns that move; in all six if `full`."""
         return unilateral_form(self.block, self.contact, self.base, self.top, self.applied, self.velocity, full)
@@ -88,11 +104,11 @@ class UnilateralOptions:
         If a value is out of its range.
     """
 
-    rule: str = "newmark"  # or "implicit contact": average acceleration with the contact force of the step's end
+    rule: str = NEWMARK  # or "implicit", "energy-conserving": the block by average acceleration, contact of its own
     solve_limit: int = 6  # solves of the open-close iteration before all states are tried
     cut: float = 0.3  # length of a cut step over that of the failed one
-    energies: bool = False  # keep the energies of every step
-    full: bool = False  # keep all six unknowns and both corners, also where the motion is symmetric
+    energies: bool = False  # keep what the energies of every step are made of
+    full: bool = False  # keep all six unknowns and both corners where the motion is symmetric, make every step singly
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -102,31 +118,6 @@ class UnilateralOptions:
             raise ValueError(f"solve_limit: must be a positive integer, got {self.solve_limit!r}")
         if not 0 < self.cut < 1:
             raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")
-
-
-@dataclass(frozen=True, eq=False)
-class UnilateralResult(Result):
-    """Histories of the steps that were reached; element 0 is step 1. Forces act on the block.
-
-    `solves` counts the small systems of the open-close iteration, the confirming one of each step included.
-    """
-
-    outcome: str  # "completed", or why the history ends early, in words
-    normal_force_m: Array  # N at M [N], away from the base
-    normal_force_n: Array  # N at N [N]
-    shear_force_m: Array  # T at M [N], along the base from M to N
-    shear_force_n: Array  # T at N [N]
-    gap_m: Array  # w at M [m], negative when pressed
-    gap_n: Array  # w at N [m]
-    shear_m: Array  # stretch s - r of the shear spring at M [m], 0 where open
-    shear_n: Array  # stretch s - r at N [m]
-    closed_m: NDArray[np.bool_]  # state of M
-    closed_n: NDArray[np.bool_]  # state of N
-    velocity: Array  # of the centroid, upwards [m/s]
-    horizontal_velocity: Array  # of the centroid [m/s]
-    step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
-    step_cuts: NDArray[np.int_]  # times that a step was cut
-    energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
 
 
 def solve_unilateral(
@@ -163,54 +154,101 @@ def solve_unilateral(
     began = perf_counter()
     stepping = Stepping(model, scheme, options)
     ready = perf_counter()
-    rows = list(stepping.run(steps))
-    ended = perf_counter()
-    return _result(stepping, rows, columns, (ready - began, ended - ready))
+    with np.errstate(all="ignore"):
+        stepping.run(steps)
+        return _result(stepping, columns, began, ready)
 
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
     """Raise ValueError where rule, scheme and contact exclude each other."""
-    if options.rule == IMPLICIT and (scheme.alpha, scheme.delta) != (0.25, 0.5):
+    if options.rule != NEWMARK and (scheme.alpha, scheme.delta) != (0.25, 0.5):
         given = (scheme.alpha, scheme.delta)
-        raise ValueError(f"rule: implicit contact needs average acceleration, alpha = 1/4, delta = 1/2, got {given}")
-    if math.isinf(model.contact.stiffness) and scheme.alpha == 0:
-        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {model.contact.stiffness}")
+        raise ValueError(
+            f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {given}"
+        )
+    law = model.contact
+    if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
+        raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
+    if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
+        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
+    check_scheme(law, scheme)
 
 
-@dataclass(frozen=True)
-class Row:
-    """One reached step."""
-
-    state: State
-    solves: int
-    cuts: int
-    energies: tuple[float, ...]
+def check_scheme(law: Unilateral, scheme: Scheme) -> None:
+    """Raise ValueError where an explicit scheme meets a rigid stop."""
+    if math.isinf(law.stiffness) and scheme.alpha == 0:
+        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
 
 
 class Stepping:
-    """The history of one block, step by step."""
+    """The history of one block: step by step where contacts switch, many at once between."""
 
     def __init__(self, model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
         self.model, self.scheme, self.options = model, scheme, options
-        self.law, self.form = model.contact, model.form(options.full)
+        if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
+            model = replace(model, contact=replace(model.contact, shear=0.0))
+        self.law, self.form = model.contact, model.form(True) if options.full else model.reduced
         self.outcome, self.factorisations = COMPLETED, 0
         self.lengths: dict[float, StepLength] = {}
-        self.ledger = Ledger(self.form, self.law, scheme.step) if options.energies else None
+        self.phases: dict[tuple[bool, ...], Phase | str] = {}
+        self.history = History(self.form.layout)
+        self.cut_steps: dict[int, CutStep] = {}  # for their energies
+        self.start = start_state(self.form, self.law, scheme, model.velocity, options.rule)
 
-    def run(self, steps: int) -> Iterator[Row]:
-        """Yield the steps that are reached; `outcome` says how it ended."""
-        state = start_state(self.form, self.law, self.scheme, self.model.velocity)
-        for _ in range(steps):
-            reached, solves, cuts = self._interval(state)
+    def run(self, steps: int) -> None:
+        """Make the steps that are reached; `outcome` says how it ended."""
+        state, waiting = self.start, 1  # steps to be made singly: of the first one A0 may be any
+        while self.history.steps < steps:
+            if waiting <= 0:
+                state, waiting = self._ahead(state, steps)
+                continue
+            reached = self._interval(state)
             if reached is None:
                 return
-            if not math.isfinite(sum(reached.D)):
+            state, solves, cuts = reached
+            if not math.isfinite(sum(state.D)):
                 self.outcome = OVERFLOW
                 return
-            state = reached
-            yield Row(state, solves, cuts, self.ledger.row(state) if self.ledger else ())
+            self.history.add(Step(vector(state), state.corners.closed, solves, cuts))
+            waiting -= 1
 
-    def _interval(self, state: State) -> tuple[State | None, int, int]:
+    def _ahead(self, state: State, steps: int) -> tuple[State, int]:
+        """Return the state after some steps that are made at once, and how many to make singly then."""
+        history, v, closed = self.history, np.array(vector(state)), state.corners.closed
+        began = history.steps
+        while history.steps < steps and not isinstance(phase := self.phase_of(closed, steps), str):
+            made = glide(phase, v, closed, history.steps, steps - history.steps)
+            if made:
+                v = made[1]
+                history.add(made[0])
+            if history.steps == steps or self.jump is None:
+                break
+            after, found = self.jump.step(v, closed, self.options.solve_limit)
+            if found.corners is None or not math.isfinite(after.dot(after)):
+                break
+            v, closed = after, found.corners.closed
+            history.add(Step(v, closed, found.solves, 0))
+        if history.steps == began:
+            return state, 1
+        waiting = 1 if history.steps - began >= SHORTEST else SHORTEST
+        return state_of(self.form, self.law, self.scheme.step, state.corners._replace(closed=closed), v), waiting
+
+    @cached_property
+    def jump(self) -> Jump | None:
+        """Single steps of frictionless contacts; None where they are glued."""
+        return None if len(self.form.B) > self.form.contacts else Jump(self.form, self.law, self._length(1.0))
+
+    def phase_of(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
+        """Return the steps of a contact state, or why they are made singly."""
+        if closed not in self.phases:
+            if self.options.full:
+                return "all savings off"
+            if self.options.rule != NEWMARK:
+                return f"the rule {self.options.rule}"
+            self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
+        return self.phases[closed]
+
+    def _interval(self, state: State) -> tuple[State, int, int] | None:
         """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
         left = ratio = 1.0
         solves = cuts = 0
@@ -221,11 +259,11 @@ class Stepping:
             if after is None:
                 if ratio <= FLOOR:
                     self.outcome = str(found.failure)
-                    return None, solves, cuts
+                    return None
                 ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
                 continue
-            if self.ledger:
-                self.ledger.add(length, state, after)
+            if cuts and self.options.energies:
+                self.cut_steps.setdefault(self.history.steps, []).append((length, state, after))
             state = after
             if ratio == left:
                 return state, solves, cuts
@@ -242,76 +280,38 @@ class Stepping:
         return self.lengths[ratio]
 
 
-def _result(
-    stepping: Stepping, rows: Sequence[Row], columns: Sequence[str], seconds: tuple[float, float]
-) -> UnilateralResult:
-    form, steps = stepping.form, len(rows)
-    corners = [row.state.corners for row in rows]
-    normal, gap, shear, stretch = (
-        _per_corner([getattr(c, name) for c in corners]) for name in ("normal", "gap", "shear", "stretch")
-    )
-    if form.multiplicity == 2:  # the one contact is N, M moves and is held in the opposite direction
-        shear[0], stretch[0] = -shear[0] + 0.0, -stretch[0] + 0.0
-    closed = _per_corner([c.closed for c in corners]).astype(bool)
-    velocity = _centroid_velocity(stepping, rows)
-    kept = np.array([row.energies for row in rows]).reshape(steps, len(ENERGIES) if stepping.ledger else 0)
+def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: float) -> UnilateralResult:
+    form, model, history = stepping.form, stepping.model, stepping.history
+    values = observed(form, history, base_directions(model.block, model.base)[2], columns)
+
+    def balance() -> dict[str, Array]:
+        ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule)
+        return energies(ledger, history, stepping.start, stepping.cut_steps)
+
+    ended = perf_counter()
     return UnilateralResult(
-        time=step_times(stepping.scheme, steps),
-        columns=_columns(stepping, rows, normal, columns),
+        time=step_times(stepping.scheme, history.steps),
+        columns=values,
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=stepping.factorisations,
-        solves=sum(row.solves for row in rows),
-        notes=_notes(stepping, steps),
-        setup_seconds=seconds[0],
-        stepping_seconds=seconds[1],
+        factorisations=stepping.factorisations + sum(isinstance(p, Phase) for p in stepping.phases.values()),
+        solves=sum(part.solves if isinstance(part, Step) else part.steps for part in history.parts),
+        notes=_notes(stepping),
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
         outcome=stepping.outcome,
-        normal_force_m=normal[0],
-        normal_force_n=normal[1],
-        shear_force_m=shear[0],
-        shear_force_n=shear[1],
-        gap_m=gap[0],
-        gap_n=gap[1],
-        shear_m=stretch[0],
-        shear_n=stretch[1],
-        closed_m=closed[0],
-        closed_n=closed[1],
-        velocity=velocity[1],
-        horizontal_velocity=velocity[0],
-        step_solves=np.array([row.solves for row in rows], dtype=int),
-        step_cuts=np.array([row.cuts for row in rows], dtype=int),
-        energies=dict(zip(ENERGIES, kept.T, strict=True)) if stepping.ledger else None,
+        balance=balance if stepping.options.energies else None,
+        history=history,
+        form=form,
+        law=stepping.law,
+        momentum=form.translation.T / (model.block.material.density * model.block.section.area * stepping.scheme.step),
     )
 
 
-def _per_corner(values: Sequence[Sequence[float]]) -> Array:
-    """Return one row for M and one for N; a contact that stands for both gives both."""
-    if not len(values):
-        return np.zeros((2, 0))
-    array = np.array(values, dtype=float).T
-    return np.array([array[0], array[-1]])
-
-
-def _centroid_velocity(stepping: Stepping, rows: Sequence[Row]) -> Array:
-    """Return the horizontal and vertical velocity of the centroid, momentum over mass, (2, steps) [m/s]."""
-    form, block = stepping.form, stepping.model.block
-    mass = block.material.density * block.section.area
-    P = np.array([row.state.P for row in rows]).reshape(len(rows), len(form.unknowns))
-    velocity: Array = form.translation.T @ P.T / (mass * stepping.scheme.step)
-    return velocity
-
-
-def _columns(stepping: Stepping, rows: Sequence[Row], normal: Array, names: Sequence[str]) -> dict[str, Array]:
-    form, model = stepping.form, stepping.model
-    moved = np.array([row.state.D for row in rows]).reshape(len(rows), len(form.unknowns)) - form.start
-    a = base_directions(model.block, model.base)[2]
-    pressure = (normal[0] + normal[1]) / a
-    return {name: pressure if name == "contact_pressure" else moved @ form.observers[name] + 0.0 for name in names}
-
-
-def _notes(stepping: Stepping, steps: int) -> tuple[str, ...]:
+def _notes(stepping: Stepping) -> tuple[str, ...]:
     """Say what was saved and how the history ended, if early."""
-    names = stepping.form.unknowns
+    names, history = stepping.form.unknowns, stepping.history
     saved = (f"both corners as one, unknowns {', '.join(names)}",) if len(names) < 6 else ()
-    ended = () if stepping.outcome == COMPLETED else (f"{stepping.outcome} at step {steps + 1}",)
-    return (*saved, "stepped: contact opens and closes", *ended)
+    ended = () if stepping.outcome == COMPLETED else (f"{stepping.outcome} at step {history.steps + 1}",)
+    made = "blocked between switches" if history.glides else "stepped"
+    return (*saved, f"{made}: contact opens and closes", *ended)

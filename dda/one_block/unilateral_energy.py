@@ -7,95 +7,159 @@ c = alpha - delta/2 and V the velocity after gg,
               + sum over contacts of U1 - U0 + dw [(1 - delta) N0 + delta N1] + ds [(1 - delta) T0 + delta T1],
 
 [ ] the change over the step and U = N^2/(2 p) + T^2/(2 p_s). A contact that keeps its state is part of the
-algorithmic loss, one that opens or closes is a switching loss (negative: a gain).
+algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Energy-conserving contact does
+the work U0 - U1 itself and loses nothing.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.unilateral import SLIDES, Corners, Unilateral, slide_forces
+from dda.contact.unilateral import SLIDES, Unilateral
 from dda.one_block.unilateral_form import UnilateralForm
-from dda.one_block.unilateral_step import State, StepLength
+from dda.one_block.unilateral_history import History
+from dda.one_block.unilateral_step import CONSERVING, NEWMARK, State, StepLength
+from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
 
 ENERGIES = ("kinetic", "strain", "springs", "load", "algorithmic", "kinetic damping", "switching")
 
 
-class Ledger:
-    """Keeps the energies [J] after every step, the losses summed from t = 0 on."""
+class Instants(NamedTuple):
+    """States, one a row."""
 
-    def __init__(self, form: UnilateralForm, law: Unilateral, dt: float) -> None:
-        self.form, self.law, self.dt = form, law, dt
+    D: Array  # (k, n) unknowns
+    V: Array  # (k, n) momentum M V, its time in seconds
+    R: Array  # (k, n) inertia force M A [N]
+    normal: Array  # (k, c) [N]
+    shear: Array  # (k, c) [N]
+    gap: Array  # (k, c) [m]
+    closed: NDArray[np.bool_]  # (k, c)
+
+    def after(self, start: Instants) -> Instants:
+        """Return the states with which the steps to these begin."""
+        names = self._fields[:-1]
+        earlier = {name: np.concatenate([getattr(start, name), getattr(self, name)[:-1]]) for name in names}
+        return Instants(**earlier, closed=np.concatenate([start.closed, self.closed[:-1]]))
+
+
+CutStep = list[tuple[StepLength, State, State]]  # the parts of a step that was cut
+
+
+def energies(ledger: Ledger, history: History, start: State, cut_steps: dict[int, CutStep]) -> dict[str, Array]:
+    """Return the energies [J] after every step, the losses summed from t = 0 on.
+
+    Parameters
+    ----------
+    cut_steps
+        Parts of the steps that were cut, by the number of steps before.
+    """
+    dt = ledger.scheme.step
+    made = _made(ledger, history)
+    before = made.after(instants([start], dt))
+    losses = ledger.losses(ledger.scheme, before, made)
+    for number, parts in cut_steps.items():
+        pieces = [ledger.losses(at.scheme, instants([x], dt), instants([y], dt)) for at, x, y in parts]
+        losses[number : number + 1] = np.sum(pieces, axis=0)  # nothing, if the step was not reached
+    kept = np.column_stack([ledger.present(made), np.cumsum(losses, axis=0)])
+    return dict(zip(ENERGIES, kept.T, strict=True))
+
+
+def instants(states: list[State], dt: float) -> Instants:
+    """Return states as arrays; `dt` is the scheme's step, in whose units they are [s]."""
+    D, P, f = (np.array([state[part] for state in states]) for part in range(3))
+    corners = [state.corners for state in states]
+    N, T, w = (np.array([getattr(c, name) for c in corners]) for name in ("normal", "shear", "gap"))
+    return Instants(D, P / dt, f / dt**2, N, T, w, np.array([c.closed for c in corners]))
+
+
+def _made(ledger: Ledger, history: History) -> Instants:
+    """Return the states of a history."""
+    place = history.layout
+    v = history.observe(np.eye(place.size)[: place.contact(0).start]).T
+    D, V = v[:, place.D], v[:, place.P] / ledger.scheme.step
+    N, T, w = (values.T for values in history.contacts(ledger.law.compliance))
+    R = ledger.form.F - ledger.form.K * D
+    if ledger.rule == NEWMARK:
+        R = R + ledger.forces(N, T)
+    closed = np.column_stack([history.closed(i) for i in range(place.contacts)])
+    return Instants(D, V, R, N, T, w, closed)
+
+
+class Ledger:
+    """What a step of one block keeps and loses."""
+
+    def __init__(self, form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str) -> None:
+        self.form, self.law, self.scheme, self.rule = form, law, scheme, rule
         self.inverse = np.linalg.inv(form.M)
-        self.losses = np.zeros(3)
         self.slides = form.B[form.contacts :]
 
-    def row(self, state: State) -> tuple[float, ...]:
-        """Return the entries of `ENERGIES` for the present state."""
-        x = np.array(state.D)
-        strain = float(self.form.K @ (x * x)) / 2
-        load = -float(self.form.F @ (x - self.form.start))
-        return (self._kinetic(state), strain, self._springs(state.corners), load, *self.losses.tolist())
+    def present(self, at: Instants) -> Array:
+        """Return kinetic, strain, spring and load energy, (k, 4)."""
+        strain = (at.D * at.D) @ self.form.K / 2
+        load = -(at.D - self.form.start) @ self.form.F
+        return np.column_stack([self._kinetic(at.V), strain, self._springs(at).sum(axis=1), load])
 
-    def add(self, length: StepLength, before: State, after: State) -> None:
-        """Add the losses of an accepted step."""
-        kept, switched = self._contacts(length, before, after)
-        damped = (1 - length.scheme.gg**2) * self._kinetic(before)
-        self.losses += (self._bulk(length, before, after) + kept, damped, switched)
+    def losses(self, scheme: Scheme, before: Instants, after: Instants) -> Array:
+        """Return what steps of one length lose by the algorithm, by gg and by switching, (k, 3)."""
+        kept, switched = self._contacts(scheme, before, after)
+        damped = (1 - scheme.gg**2) * self._kinetic(before.V)
+        return np.column_stack([self._bulk(scheme, before, after) + kept, damped, switched])
 
-    def _kinetic(self, state: State) -> float:
-        momentum = np.array(state.P) / self.dt
-        return float(momentum @ self.inverse @ momentum) / 2
+    def _kinetic(self, momentum: Array) -> Array:
+        kinetic: Array = np.einsum("ki,ij,kj->k", momentum, self.inverse, momentum) / 2
+        return kinetic
 
-    def _spring(self, corners: Corners, i: int) -> float:
-        shear = corners.shear[i] ** 2 / self.law.shear if self.law.shear else 0.0
-        return self.form.multiplicity * (corners.normal[i] ** 2 * self.law.compliance + shear) / 2
+    def _springs(self, at: Instants) -> Array:
+        """Return the energy of the springs of every contact, (k, c)."""
+        shear = at.shear**2 / self.law.shear if self.law.shear else 0.0
+        energy: Array = self.form.multiplicity * (at.normal**2 * self.law.compliance + shear) / 2
+        return energy
 
-    def _springs(self, corners: Corners) -> float:
-        return sum(self._spring(corners, i) for i in range(self.form.contacts))
-
-    def _bulk(self, length: StepLength, before: State, after: State) -> float:
+    def _bulk(self, scheme: Scheme, before: Instants, after: Instants) -> Array:
         """Return the loss of the block itself, with what the first step's A0 adds where M A0 was not F - K0 D0."""
-        form, scheme = self.form, length.scheme
+        form, moved = self.form, after.D - before.D
         c, over = scheme.alpha - scheme.delta / 2, scheme.delta - 0.5
-        x0, x1 = np.array(before.D), np.array(after.D)
-        R0, R1 = np.array(before.f) / self.dt**2, np.array(after.f) / self.dt**2
-        loss = over * float(form.K @ (x1 - x0) ** 2)
-        missing = form.F - form.K * x0 - R0
-        if not length.implicit:
-            missing = missing + self._forces(before.corners)
-        loss += (1 - scheme.delta) * float((x1 - x0) @ missing)
+        loss = over * (moved**2 @ form.K)
+        missing = form.F - form.K * before.D - before.R
+        if self.rule == NEWMARK:
+            missing = missing + self.forces(before.normal, before.shear)
+        loss += (1 - scheme.delta) * np.sum(moved * missing, axis=1)
         if c:
-            h2, change = scheme.step**2, R1 - R0
-            stored = float(R1 @ self.inverse @ R1 - R0 @ self.inverse @ R0) / 2
-            loss += c * h2 * (stored + over * float(change @ self.inverse @ change))
+            h2 = scheme.step**2
+            stored = self._kinetic(after.R) - self._kinetic(before.R)
+            loss += c * h2 * (stored + 2 * over * self._kinetic(after.R - before.R))
         return loss
 
-    def _forces(self, corners: Corners) -> Array:
-        """Return multiplicity B' lambda."""
-        forces = np.array([*corners.normal, *slide_forces(corners.shear)][: len(self.form.B)])
-        return self.form.multiplicity * (forces @ self.form.B)
+    def forces(self, normal: Array, shear: Array) -> Array:
+        """Return multiplicity B' lambda, (k, n)."""
+        B, c = self.form.B, self.form.contacts
+        held = normal @ B[:c]
+        if len(self.slides):
+            both = shear if c == 1 else np.column_stack([shear.sum(axis=1), (shear[:, 1] - shear[:, 0]) / 2])
+            held = held + both @ self.slides
+        loaded: Array = self.form.multiplicity * held
+        return loaded
 
-    def _contacts(self, length: StepLength, before: State, after: State) -> tuple[float, float]:
+    def _contacts(self, scheme: Scheme, before: Instants, after: Instants) -> tuple[Array, Array]:
         """Return the losses of the contacts that keep their state and of those that change it."""
-        old, new = before.corners, after.corners
-        slid = self._slid(before, after)
-        late = 1.0 if length.implicit else length.scheme.delta
-        losses = [0.0, 0.0]
-        for i, was in enumerate(old.closed):
-            N = (1 - late) * old.normal[i] + late * new.normal[i]
-            T = (1 - late) * old.shear[i] + late * new.shear[i]
-            work = N * (new.gap[i] - old.gap[i]) + T * float(slid[i])
-            stored = self._spring(new, i) - self._spring(old, i)
-            losses[was != new.closed[i]] -= stored + self.form.multiplicity * work
-        return losses[0], losses[1]
+        if self.rule == CONSERVING:
+            return np.zeros(len(after.D)), np.zeros(len(after.D))
+        late = scheme.delta if self.rule == NEWMARK else 1.0
+        N = (1 - late) * before.normal + late * after.normal
+        T = (1 - late) * before.shear + late * after.shear
+        work = N * (after.gap - before.gap) + T * self._slid(after.D - before.D)
+        lost = self._springs(before) - self._springs(after) - self.form.multiplicity * work
+        same = before.closed == after.closed
+        return np.sum(lost * same, axis=1), np.sum(lost * ~same, axis=1)
 
-    def _slid(self, before: State, after: State) -> Array:
-        """Return the displacement of the contacts along the base [m]."""
+    def _slid(self, moved: Array) -> Array:
+        """Return the displacement of the contacts along the base, (k, c) [m]."""
         if not len(self.slides):
-            return np.zeros(self.form.contacts)
-        slid: Array = np.array(SLIDES[self.form.contacts]) @ (self.slides @ (np.array(after.D) - np.array(before.D)))
+            return np.zeros((len(moved), self.form.contacts))
+        slid: Array = moved @ self.slides.T @ np.array(SLIDES[self.form.contacts]).T
         return slid

@@ -31,7 +31,36 @@ Array = NDArray[np.float64]
 
 UNKNOWNS = ("ex", "e2", "gxy", "U", "w_M", "w_N")
 ONE = ("ex", "e2", "w")  # of a symmetric motion
+U_INDEX = UNKNOWNS.index("U")
 _SYMMETRIC = [3, 4, 1]  # ex, e2, w in gap_form.UNKNOWNS
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Places of a step's quantities in one vector v = (D, P, N, T, w)."""
+
+    unknowns: int  # n
+    contacts: int  # c
+
+    @property
+    def size(self) -> int:
+        """Length of v."""
+        return 2 * self.unknowns + 3 * self.contacts
+
+    @property
+    def D(self) -> slice:
+        """Unknowns."""
+        return slice(0, self.unknowns)
+
+    @property
+    def P(self) -> slice:
+        """Momentum dt M V."""
+        return slice(self.unknowns, 2 * self.unknowns)
+
+    def contact(self, kind: int) -> slice:
+        """Normal forces (0), shear forces (1) or gaps (2)."""
+        first = 2 * self.unknowns + kind * self.contacts
+        return slice(first, first + self.contacts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +77,11 @@ class UnilateralForm:
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
     observers: dict[str, Array]  # displacement column -> (n,) row over x - start
+
+    @property
+    def layout(self) -> Layout:
+        """Places of a step's quantities."""
+        return Layout(len(self.unknowns), self.contacts)
 
 
 def unilateral_form(
@@ -87,7 +121,7 @@ def _symmetric(block: Block, law: Unilateral, form: GapForm, a: float, R: Array,
     names = {3: "ex", 4: "e2", 1: "w"}
     elastic = dict(zip((3, 4, 1), (*_elastic(block)[:2], 0.0), strict=True))
     rows = [[1.0 if i == 1 else 0.0 for i in kept]]
-    if law.shear:
+    if law.shear and 3 in kept:  # else the corners do not slide
         rows.append([a / 2 if i == 3 else 0.0 for i in kept])
     index = np.array(kept)
     return UnilateralForm(

@@ -69,15 +69,15 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
     maps, first = _powers(scheme, frequencies, levels)
     observers = np.zeros((len(rows), len(first)))
     observers[:, :-1:2] = rows
-    inner = _doubled(observers, maps[:split]).reshape(-1, *observers.shape)
-    blocks = _doubled(first[None], maps[split:].transpose(0, 2, 1))[: -(-steps >> split)]
+    inner = doubled(observers, maps[:split]).reshape(-1, *observers.shape)
+    blocks = doubled(first[None], maps[split:].transpose(0, 2, 1))[: -(-steps >> split)]
     history = np.empty((len(rows), len(blocks), 1 << split))
     for index, out in enumerate(history):
         np.matmul(blocks, inner[:, index].T, out=out)
     return history.reshape(len(rows), -1)[:, :steps]
 
 
-def _doubled(start: Array, maps: Array) -> Array:
+def doubled(start: Array, maps: Array) -> Array:
     """Return the rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
     have = len(start)
     made = np.empty((have << len(maps), start.shape[1]))
@@ -97,7 +97,7 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
     maps = np.zeros((levels, n + 1, n + 1))
     maps[:, n, n] = 1.0
     first = np.ones(n + 1)
-    exact = _with_all_digits(scheme)
+    exact = with_all_digits(scheme)
     for i, w in enumerate(frequencies.tolist()):
         at = slice(2 * i, 2 * i + 2)
         table, first[at] = _mode(exact, w, levels)
@@ -105,23 +105,34 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
     return maps, first
 
 
-def _with_all_digits(scheme: Scheme) -> Scheme:
+def with_all_digits(scheme: Scheme) -> Scheme:
     """Return the scheme in numbers that `modal_step` takes in place of doubles."""
     fields: dict[str, Any] = {name: Exact.of(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
     return replace(scheme, **fields)
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
-    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
+    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled."""
+    entries, unit, (u, p) = mode_maps(exact, w, levels)
+    return entries, (u / _ONE, p / _ONE / unit)
+
+
+def mode_maps(exact: Scheme, w: float, levels: int) -> tuple[Array, float, tuple[int, int]]:
+    """Return the entries of the maps of one mode, (levels, 6), the unit of its p, and (u, p) 2^PLACES at step 1.
 
     The momentum is measured in the power of two that makes the off-diagonal entries about equal.
+
+    Parameters
+    ----------
+    exact
+        The scheme of `with_all_digits`.
     """
-    step, (u, p) = _one_step(exact, w)
+    step, first = _one_step(exact, w)
     b, c = step[1].bit_length(), step[2].bit_length()
     unit = math.ldexp(1.0, (c - b) // 2) if b and c else 1.0
     scales = np.array([1.0, unit, 1 / unit, 1.0, 1.0, 1 / unit]) / _ONE
     entries = [list(map(float, power)) for power in _squared(step, levels)]
-    return np.array(entries).reshape(-1, 6) * scales, (u / _ONE, p / _ONE / unit)
+    return np.array(entries).reshape(-1, 6) * scales, unit, first
 
 
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from dda.one_block.modes import Mode, scalar_eigenvalues
 from dda.one_block.solution import Result, bound_overflow, check_request, step_times
 from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
-from dda.system.joint_solver import factor
-from dda.system.system import BlockSystem, Equations, _inverse
+from dda.system.joint_solver import Factor, factor
+from dda.system.system import BlockSystem, Equations, inverses
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -40,7 +40,7 @@ def joint_flexibility(scheme: Scheme, C: csr_array, B: csr_array, inverse: csr_a
     return C + scheme.alpha * (B @ inverse @ B.T)
 
 
-class _Stepper:
+class Stepper:
     """The scheme on a system; everything is multiplied by dt^2 where the module says so."""
 
     def __init__(self, equations: Equations, scheme: Scheme) -> None:
@@ -49,15 +49,16 @@ class _Stepper:
         k, B = scheme.step**2 * equations.elastic, equations.B
         S = effective_matrix(scheme, equations.mass, k)
         self.k, self.B, self.Bt = equations.blockwise(k), B, B.T.tocsr()
-        self.inverse = equations.blockwise(_inverse(S))
+        self.inverse = equations.blockwise(inverses(S))
         self.BS = (B @ self.inverse).tocsr()
         self.BSt = self.BS.T.tocsr()
         self.S, self.C = equations.blockwise(S), equations.C / scheme.step**2
-        self.factor = factor(joint_flexibility(scheme, self.C, B, self.inverse))
+        flexibility = joint_flexibility(scheme, self.C, B, self.inverse)
+        self.factor = factor(flexibility) if B.shape[0] else Factor(np.copy, 0)
         stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
         self.corrections = sum(stiff > limit for limit in _STIFF)
 
-    def _increments(self, r: Array, push: Array) -> tuple[Array, Array]:
+    def increments(self, r: Array, push: Array) -> tuple[Array, Array]:
         """Return dD and dmu of S dD + alpha B' dmu = r, B dD - C' dmu = G dy.
 
         Where a block's stiffness outweighs its inertia in S, its rigid motion is a small difference
@@ -85,7 +86,7 @@ class _Stepper:
         f = F - held if s.start == "consistent" else 0 * F
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
-            dD, dmu = self._increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
+            dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
             D, mu = D + dD, mu + dmu
             held = self.k @ D + self.Bt @ mu
             f1 = F - held
@@ -122,7 +123,7 @@ def solve_system(
     check_request(steps, columns)
     began = perf_counter()
     equations = system.equations if full else system.reached
-    stepper = _Stepper(equations, scheme)
+    stepper = Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
         observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))

@@ -190,7 +190,8 @@ class Equations:
         nothing, none = np.zeros(len(self.F)), np.zeros(len(self.pressure))
         by_D = [self.observers.get(name, nothing) for name in columns]
         by_force = [self.pressure if name == "contact_pressure" else none for name in columns]
-        return np.array(by_D).reshape(len(columns), -1), np.array(by_force).reshape(len(columns), -1)
+        shape = len(columns), len(self.F)
+        return np.array(by_D).reshape(shape), np.array(by_force).reshape(len(columns), len(self.pressure))
 
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
@@ -215,13 +216,13 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
         empty = csr_array((0, 0))
         return B, G, empty, empty
     kappa = csr_array(block_diag([csr_array(group.stiffness) for group in groups]))
-    C = csr_array(block_diag([csr_array(_inverse(group.stiffness[None])[0]) for group in groups]))
+    C = csr_array(block_diag([csr_array(inverses(group.stiffness[None])[0]) for group in groups]))
     for matrix in (kappa, C):
         matrix.eliminate_zeros()
     return B, G, kappa, C
 
 
-def _inverse(matrices: Array) -> Array:
+def inverses(matrices: Array) -> Array:
     """Return the inverses of positive definite matrices, scaled so that widely spread diagonals keep their digits."""
     root = np.sqrt(np.einsum("nii->ni", matrices))
     scale = root[:, :, None] * root[:, None, :]

@@ -13,12 +13,15 @@ This is no linear complementarity problem: some steps have no consistent states,
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs
 
-from fem_reference.contact.open_close import Contact, Flags, Trial, corrected, iterate
+from fem_reference.contact.open_close import KEPT, Contact, Flags, Trial, corrected, iterate
 from fem_reference.problem.problem import Array
 
 ENUMERATED = 8
@@ -29,13 +32,53 @@ SETTLED = 1e-13
 """Change of phi at which the crossings are settled [-]."""
 
 
+class Factor(NamedTuple):
+    """Factorised equations of the closed points."""
+
+    rows: NDArray[np.int64]  # which of the forces (N, T) are unknown
+    weight: Array  # factors of their free gaps and slips on the right-hand side
+    lu: Array
+    pivots: NDArray[np.int64]
+
+
 @dataclass(frozen=True)
 class GluedBase:
-    """The base in one step: gaps and slips are (w, s) = (free_gap, free_slip) + C (N, T)."""
+    """What a base is in every step of one length, with the factors of its closed points kept."""
 
     C: Array  # gaps, then slips, of unit normal, then tangential, forces [m/N], shape (2 points, 2 points)
     compliance: Array  # 1 / k of each point [m/N], shape (points,)
     shear_stiffness: Array  # k_t of each point [N/m], shape (points,)
+    _factors: dict[bytes, Factor] = field(default_factory=dict)
+
+    def factor(self, states: Flags, phi: Array | None) -> Factor:
+        """The equations of the closed points, N / k + w = 0 and T + k_t phi s = 0, factorised; phi = 1 if None."""
+        if phi is not None:
+            return self._factorised(states, phi)
+        key = states.tobytes()
+        if key not in self._factors:
+            if len(self._factors) >= KEPT:
+                self._factors.clear()
+            self._factors[key] = self._factorised(states, np.ones(len(states)))
+        return self._factors[key]
+
+    def _factorised(self, states: Flags, phi: Array) -> Factor:
+        points = len(states)
+        kappa = self.shear_stiffness * phi
+        # Divided by its size each row is as good as any other for the pivots; phi may be zero.
+        flexibility = np.diag(self.C)
+        size = np.concatenate([self.compliance + flexibility[:points], 1 + kappa * flexibility[points:]])
+        weight = np.concatenate([np.ones(points), kappa]) / size
+        diagonal = np.concatenate([self.compliance, np.ones(points)]) / size
+        rows = np.flatnonzero(np.concatenate([states, states]))
+        matrix = weight[rows, None] * self.C[np.ix_(rows, rows)] + np.diag(diagonal[rows])
+        return Factor(rows, -weight[rows], *(dgetrf(matrix)[:2] if len(rows) else (matrix, rows)))
+
+
+@dataclass(frozen=True)
+class GluedStep:
+    """The base in one step: gaps and slips are (w, s) = (free_gap, free_slip) + C (N, T)."""
+
+    base: GluedBase
     free_gap: Array  # gaps without forces at the end of the step [m], shape (points,)
     free_slip: Array  # slips without forces beyond the references at the start of the step, s - r0 [m], shape (points,)
     gap: Array  # gaps at the start of the step [m], shape (points,)
@@ -44,6 +87,8 @@ class GluedBase:
     def forces(self, states: Flags) -> Trial:
         """Forces and gaps for given states, with the crossings that belong to them: phi for phi(forces(phi))."""
         closing = states & ~self.closed
+        if not closing.any():
+            return self._linear(states, None)
         phi = np.where(closing, 0.5, 1.0)
         weight, last = 1.0, np.inf
         for _ in range(PASSES):
@@ -59,28 +104,21 @@ class GluedBase:
 
     def _crossed(self, trial: Trial) -> Array:
         """Share phi of the step for which each point has been closed."""
-        depth = np.maximum(trial.normal, 0.0) * self.compliance
+        depth = np.maximum(trial.normal, 0.0) * self.base.compliance
         way = depth + np.maximum(self.gap, 0.0)
         return np.divide(depth, way, out=np.ones_like(way), where=way > 0)
 
-    def _linear(self, states: Flags, phi: Array) -> Trial:
-        """Forces for given states and crossings: N / k + w = 0 and T + k_t phi s = 0."""
-        points = len(states)
-        kappa = self.shear_stiffness * phi
-        # Divided by its size each row is as good as any other for the pivots; phi may be zero.
-        flexibility = np.diag(self.C)
-        size = np.concatenate([self.compliance + flexibility[:points], 1 + kappa * flexibility[points:]])
-        weight = np.concatenate([np.ones(points), kappa]) / size
-        diagonal = np.concatenate([self.compliance, np.ones(points)]) / size
-        right = -weight * np.concatenate([self.free_gap, self.free_slip])
-        matrix = weight[:, None] * self.C + np.diag(diagonal)
-        chosen = np.concatenate([states, states])
+    def _linear(self, states: Flags, phi: Array | None) -> Trial:
+        """Forces for given states and crossings."""
+        points, factor = len(states), self.base.factor(states, phi)
         found = np.zeros(2 * points)
-        found[chosen] = np.linalg.solve(matrix[np.ix_(chosen, chosen)], right[chosen])
-        return Trial(found[:points], found[points:], self.free_gap + (self.C @ found)[:points])
+        if len(factor.rows):
+            free = np.concatenate([self.free_gap, self.free_slip])
+            found[factor.rows] = dgetrs(factor.lu, factor.pivots, factor.weight * free[factor.rows])[0]
+        return Trial(found[:points], found[points:], self.free_gap + self.base.C[:points] @ found)
 
 
-def glued(base: GluedBase, limit: int) -> Contact:
+def glued(base: GluedStep, limit: int) -> Contact:
     """Contact of a glued base, from the states at the start of the step.
 
     Where the iteration does not converge and there are few points all sets of states are tried.
@@ -96,7 +134,7 @@ def glued(base: GluedBase, limit: int) -> Contact:
     return Contact(None, base.closed, limit + 1, failure)
 
 
-def _consistent(base: GluedBase) -> Iterator[tuple[Trial, Flags]]:
+def _consistent(base: GluedStep) -> Iterator[tuple[Trial, Flags]]:
     """All sets of states that their own forces and gaps ask for."""
     for choice in product((False, True), repeat=len(base.closed)):
         states = np.array(choice)

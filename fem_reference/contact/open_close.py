@@ -19,11 +19,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from fem_reference.problem.problem import Array
 
 Flags = NDArray[np.bool_]
+KEPT = 64
+"""Greatest number of sets of closed points whose factors are kept."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ class Contact:
     trial: Trial | None  # forces and gaps; None where no states are consistent, or more than one set may be
     closed: Flags  # closed points, shape (points,)
     solves: int  # solutions for the forces of given states [-]; a fallback counts as one
-    failure: str = ""  # why `trial` is None, in words
+    failure: str = ""  # why `trial` is None, in words: none was found, or several were
 
 
 def corrected(trial: Trial, closed: Flags) -> Flags:
@@ -70,11 +73,11 @@ def iterate(forces: Callable[[Flags], Trial], closed: Flags, limit: int) -> Cont
         if np.array_equal(following, closed) and trial.settled:
             return Contact(trial, closed, solves)
         closed = following
-    return Contact(None, closed, limit, "the open-close iteration does not converge")
+    return Contact(None, closed, limit, "no consistent contact state")
 
 
-def frictionless(C: Array, compliance: Array, free: Array, closed: Flags, limit: int) -> Contact:
-    """Contact of a frictionless base; there always is exactly one.
+class FrictionlessBase:
+    """A base without friction, with the factors of its closed points kept: there always is exactly one contact.
 
     Parameters
     ----------
@@ -82,23 +85,37 @@ def frictionless(C: Array, compliance: Array, free: Array, closed: Flags, limit:
         Gaps of unit forces [m/N], shape (points, points).
     compliance
         1 / k of each point [m/N], shape (points,).
-    free
-        Gaps without forces [m], shape (points,).
-    closed, limit
-        As in `iterate`.
     """
-    A = C + np.diag(compliance)
 
-    def forces(states: Flags) -> Trial:
-        N = np.zeros(len(free))
-        N[states] = np.linalg.solve(A[np.ix_(states, states)], -free[states])
-        return Trial(N, np.zeros(len(free)), free + C @ N)
+    def __init__(self, C: Array, compliance: Array) -> None:
+        self.C, self.A = C, C + np.diag(compliance)
+        self._factors: dict[bytes, tuple[NDArray[np.int64], Array]] = {}
 
-    found = iterate(forces, closed, limit)
-    if found.trial is not None:
-        return found
-    closed = complementary(A, free) > 0
-    return Contact(forces(closed), closed, limit + 1)
+    def contact(self, free: Array, closed: Flags, limit: int) -> Contact:
+        """Contact for gaps without forces `free` [m]; `closed` and `limit` as in `iterate`."""
+        found = iterate(lambda states: self.forces(free, states), closed, limit)
+        if found.trial is not None:
+            return found
+        closed = complementary(self.A, free) > 0
+        return Contact(self.forces(free, closed), closed, limit + 1)
+
+    def forces(self, free: Array, states: Flags) -> Trial:
+        """Forces and gaps for given states, A N = -free on the closed points."""
+        N, none = np.zeros(len(free)), np.zeros(len(free))
+        rows, factor = self._factor(states)
+        if len(rows):
+            N[rows] = dpotrs(factor, -free[rows])[0]
+        return Trial(N, none, free + self.C @ N)
+
+    def _factor(self, states: Flags) -> tuple[NDArray[np.int64], Array]:
+        """Closed points and the Cholesky factor of their part of A."""
+        key = states.tobytes()
+        if key not in self._factors:
+            if len(self._factors) >= KEPT:
+                self._factors.clear()
+            rows = np.flatnonzero(states)
+            self._factors[key] = rows, dpotrf(self.A[np.ix_(rows, rows)])[0] if len(rows) else self.A[:0, :0]
+        return self._factors[key]
 
 
 def complementary(A: Array, free: Array) -> Array:

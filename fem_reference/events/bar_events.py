@@ -132,7 +132,7 @@ class BarMotion:
         residual = mean - units.V + (units.b + units.q) * now - impulse
         pressure = -units.kappa * gap if piece.closed else ZERO
         Z, T = units.impedance, units.travel
-        return tuple(map(float, (middle * T, gap * T, pressure * Z, mean, impulse * Z, residual * Z)))
+        return tuple(map(float, (middle * T, gap * T, pressure * Z, mean, impulse * Z * T, residual * Z * T)))
 
     def _point(self, time: Decimal, y: Decimal) -> tuple[float, ...]:
         """Displacement, velocity and stress."""

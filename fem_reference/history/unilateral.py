@@ -4,35 +4,19 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from fem_reference.contact.points import ContactModel, build
 from fem_reference.contact.stepper import ContactState, ContactStepper
+from fem_reference.history.opening_columns import COUNTS, LOSSES, UNILATERAL_COLUMNS, Observer, observers
+from fem_reference.history.opening_losses import Losses
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
 COMPLETED, OVERFLOW = "completed", "overflow"
-UNILATERAL_COLUMNS = (
-    "displacement",
-    "contact_pressure",
-    "horizontal_displacement",
-    "rotation",
-    "base_shear",
-    "open_share",
-    "largest_gap",
-    "largest_penetration",
-    "kinetic_energy",
-    "strain_energy",
-    "spring_energy",
-    "load_energy",
-    "solves",
-    "cuts",
-)
-"""Columns of a history, one row a step: v at the centroid [m]; sum of N over the base's length [Pa]; u and rotation at
-the centroid [m, 1]; sum of T over the base's length [Pa]; share of the base with a positive gap [-]; largest gap and
-penetration [m]; energies [J], of the loads -F'D; solutions of the open-close iteration and cuts of the step [-]."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +34,7 @@ class Unilateral:
     shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
     limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
+    rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
 
     def __post_init__(self) -> None:
@@ -57,6 +42,7 @@ class Unilateral:
             ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
             ("velocity", "must be a finite number", math.isfinite(self.velocity)),
             ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
+            ("rule", "must be 'newmark' or 'implicit'", self.rule in ("newmark", "implicit")),
             ("limit", "must be at least 1", self.limit >= 1),
             ("cut", "must be between 0 and 1", 0 < self.cut < 1),
             ("shortest", "must be above 0 and at most 1", 0 < self.shortest <= 1),
@@ -70,7 +56,7 @@ class UnilateralResult:
     """A history with its outcome and work counts; row 0 is step 1."""
 
     time: Array  # time of each row [s], shape (rows,): fewer than steps asked for where the outcome is not completed
-    columns: dict[str, Array]  # one array of shape (rows,) for each of `UNILATERAL_COLUMNS`
+    columns: dict[str, Array]  # one array of shape (rows,) for each column that was asked for
     outcome: str  # ``"completed"``, or why it ended early
     unknowns: int  # number of unknowns that were integrated [-]
     points: int  # number of contact points of the base [-]
@@ -91,6 +77,7 @@ def solve_unilateral(
     contact: Unilateral | None = None,
     full: bool = False,
     every_point: bool = False,
+    columns: tuple[str, ...] = UNILATERAL_COLUMNS,
 ) -> UnilateralResult:
     """Integrate the block on a base that carries no tension, unstrained at t = 0 with all loads switched on.
 
@@ -106,27 +93,30 @@ def solve_unilateral(
         Solve the whole block where one column of elements would do.
     every_point
         Keep the forces and gaps of every point.
+    columns
+        Columns of the history, among `fem_reference.history.opening_columns.UNILATERAL_COLUMNS`.
 
     Raises
     ------
     ValueError
-        If the block cannot be meshed, its base moves, or `steps` is below one.
+        If the block cannot be meshed, its base moves, `steps` is below one or a column is unknown.
     """
     if steps < 1:
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
     contact = Unilateral() if contact is None else contact
     began = time.perf_counter()
     model = build(problem, full)
-    stepper = ContactStepper(model, scheme, contact.shear, contact.limit)
+    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule)
     state = stepper.start(contact.gap, contact.velocity)
     ready = time.perf_counter()
-    rows, outcome = _run(stepper, state, steps, contact, problem.base_length, every_point)
+    watched = _Watched(stepper, problem.base_length, tuple(dict.fromkeys(columns)), every_point)
+    rows, outcome = _run(stepper, state, steps, contact, watched)
     ended = time.perf_counter()
-    observed = np.array([row.observed for row in rows]).reshape(len(rows), len(UNILATERAL_COLUMNS)).T
+    observed = np.array([row.observed for row in rows]).reshape(len(rows), len(watched.columns)).T
     kept = (len(rows), len(model.share))
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
-        columns=dict(zip(UNILATERAL_COLUMNS, observed, strict=True)),
+        columns=dict(zip(watched.columns, observed, strict=True)),
         outcome=outcome,
         unknowns=len(model.F),
         points=len(model.share),
@@ -165,24 +155,47 @@ class _Row:
     gap: Array | None
 
 
+class _Watched:
+    """What is kept of every step."""
+
+    def __init__(self, stepper: ContactStepper, length: float, asked: tuple[str, ...], every_point: bool) -> None:
+        self.observers: list[Observer] = observers(stepper.model, length, asked)
+        self.counted = [name for name in COUNTS if name in asked]
+        lost = any(name in asked for name in LOSSES)
+        self.losses = Losses(stepper.model, stepper.scheme.start == "consistent", stepper.rule) if lost else None
+        seen = [name for name in asked if name not in (*LOSSES, *COUNTS)]
+        self.columns = (*seen, *(LOSSES if lost else ()), *self.counted)
+        self.every_point = every_point
+
+    def row(self, step: CutStep, state: ContactState) -> _Row:
+        """Return what is kept of a step that ends in a state."""
+        observed = [watch(state) for watch in self.observers]
+        observed += [] if self.losses is None else self.losses.values.tolist()
+        observed += [float(getattr(step, name)) for name in self.counted]
+        return _Row(observed, *((state.normal, state.gap) if self.every_point else (None, None)))
+
+
 def _run(
-    stepper: ContactStepper, state: ContactState, steps: int, contact: Unilateral, length: float, every_point: bool
+    stepper: ContactStepper, state: ContactState, steps: int, contact: Unilateral, watched: _Watched
 ) -> tuple[list[_Row], str]:
     """Rows of the steps, and the outcome."""
     rows: list[_Row] = []
+    accepted = None if watched.losses is None else watched.losses.add
     # A scheme beyond its limit grows until it overflows; the outcome says so.
     with np.errstate(over="ignore", invalid="ignore"):
         for _ in range(steps):
-            step = advance_with_cuts(stepper, state, contact)
+            step = advance_with_cuts(stepper, state, contact, accepted)
             if step.state is None:
                 return rows, step.failure
             state = step.state
-            observed = [*observe(stepper.model, state, length), float(step.solves), float(step.cuts)]
-            if not np.all(np.isfinite(observed)):
+            row = watched.row(step, state)
+            if not all(map(math.isfinite, row.observed)):
                 return rows, OVERFLOW
-            points = (state.normal, state.gap) if every_point else (None, None)
-            rows.append(_Row(observed, *points))
+            rows.append(row)
     return rows, COMPLETED
+
+
+Accepted = Callable[[Scheme, ContactState, ContactState], None]
 
 
 @dataclass
@@ -196,7 +209,9 @@ class CutStep:
     failure: str = ""  # why there is no state, in words
 
 
-def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Unilateral) -> CutStep:
+def advance_with_cuts(
+    stepper: ContactStepper, state: ContactState, contact: Unilateral, accepted: Accepted | None = None
+) -> CutStep:
     """One step; a piece without a contact is repeated shorter, from the state at its start, as are those after it.
 
     Parameters
@@ -207,6 +222,8 @@ def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Uni
         State at the start of the step; it is not changed.
     contact
         Factor and limit of the cuts.
+    accepted
+        Called with the scheme of each accepted piece and the states before and after it.
     """
     result = CutStep(state)
     left = trial = 1.0
@@ -221,6 +238,8 @@ def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Uni
                 return result
             trial = max(contact.cut * trial, contact.shortest)
             continue
+        if accepted is not None:
+            accepted(stepper.scheme_of(length), state, new)
         state = new
         result.pieces.append(trial)
         # What rounding leaves over is no piece.
@@ -228,33 +247,3 @@ def advance_with_cuts(stepper: ContactStepper, state: ContactState, contact: Uni
         trial = min(trial, left)
     result.state = state
     return result
-
-
-def observe(model: ContactModel, state: ContactState, length: float) -> list[float]:
-    """The first twelve of `UNILATERAL_COLUMNS` in a state.
-
-    Parameters
-    ----------
-    model, state
-        The block and its state.
-    length
-        Length of the base [m].
-    """
-    D, V = state.motion.D, state.motion.V
-    k, k_t = model.stiffness, model.shear_stiffness
-    sheared = np.divide(state.shear**2, k_t, out=np.zeros_like(k_t), where=k_t > 0)
-    seen = model.observers
-    return [
-        float(seen["displacement"] @ D),
-        float(state.normal.sum() / length),
-        float(seen["horizontal_displacement"] @ D),
-        float(seen["rotation"] @ D),
-        float(state.shear.sum() / length),
-        float(model.share @ (state.gap > 0)),
-        float(np.max(state.gap, initial=0.0)),
-        float(np.max(-state.gap, initial=0.0)),
-        float(V @ (model.M @ V) / 2),
-        float(D @ (model.K @ D) / 2),
-        float(np.sum(state.normal**2 / k + sheared) / 2),
-        float(-model.F @ D),
-    ]

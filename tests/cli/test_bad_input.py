@@ -141,7 +141,7 @@ LARGE = [
 @pytest.mark.parametrize(("solver", "values", "words"), LARGE)
 def test_what_cannot_fit_is_refused_with_the_estimate(solver, values, words):
     scene = parse_scene(DATA, "x.toml").with_values(values)
-    with pytest.raises(InputError, match="GB are there, got") as caught:
+    with pytest.raises(InputError, match="GB are available, got") as caught:
         solve(scene, solver)
     assert words in str(caught.value)
     assert completed(get_solver(solver), scene).outcome is Outcome.REFUSED

@@ -141,6 +141,28 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
     assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
+def test_an_interruption_in_a_long_call_is_told_as_well(tmp_path: Path) -> None:
+    """The main thread is where it hears of no signal: what it would say is said for it, once."""
+    code = (
+        "import signal, threading\nfrom validation.cli import entry, signals\nsignals.PATIENCE = 0.1\n"
+        "def deaf(act):\n    while True:\n        try:\n            threading.Event().wait(1)\n"
+        "        except KeyboardInterrupt:\n            pass\n"
+        "entry._guarded = deaf\nthreading.Timer(0.2, signal.raise_signal, [signal.SIGINT]).start()\nentry.main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "interrupted: finished rows are kept; run the same command again to continue\n"
+
+
+def test_an_end_of_a_file_is_no_interruption(monkeypatch: pytest.MonkeyPatch) -> None:
+    def torn(*arguments: object) -> None:
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr("validation.studies.catalogue.get_study", torn)
+    with pytest.raises(EOFError, match="too short"):
+        typed("list")
+
+
 def test_help_has_an_example_everywhere() -> None:
     for command in ("", "list", "run", "solve", "report", "figures"):
         done = typed(*command.split(), "--help")

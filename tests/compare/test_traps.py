@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import typed
 from faults import seams
-from oracles.plain_dda import Plain, run
+from oracles.plain_block import Plain, run
 
 from validation import load_scene
 from validation.compare.diagnosis import Answer, compare

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.unilateral_checks import DT, checked, mirrored, random_model, run, sums
 
 import dda.one_block.unilateral as unilateral
@@ -58,10 +59,11 @@ def test_the_random_scenes_open_and_close():
     assert np.count_nonzero(np.array(switches) > 1) > len(switches) / 2
 
 
+@pytest.mark.parametrize("seeds", thinned([range(5), range(5, 17)], 2))
 @pytest.mark.parametrize(("alpha", "glued", "gg"), [(0.5, False, 1.0), (0.5, True, 1.0), (0.75, True, 0.95)])
-def test_no_step_gains_energy_at_delta_one(alpha, glued, gg):
+def test_no_step_gains_energy_at_delta_one(alpha, glued, gg, seeds):
     steps = 0
-    for seed in range(17):
+    for seed in seeds:
         model, dt = random_model(seed, glued), 1e-4 * 4.0 ** (seed % 3)
         result = solve_unilateral(model, Scheme(alpha, 1.0, gg, dt), 400, options=UnilateralOptions(energies=True))
         total, _ = sums(result)
@@ -72,7 +74,7 @@ def test_no_step_gains_energy_at_delta_one(alpha, glued, gg):
         switching = np.diff(result.energies["switching"])
         assert np.min(switching) >= -1e-13 * np.max(np.abs(total)), seed
         steps += len(result.time)
-    assert steps > 6700  # three parameter sets: more than 20,000 steps
+    assert steps > 390 * len(seeds)  # three parameter sets: more than 20,000 steps
 
 
 def test_average_acceleration_gains_energy_by_opening():
@@ -228,7 +230,7 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     stubborn, given = failing(2)
     monkeypatch.setattr(unilateral, "advance", stubborn)
     model = random_model(3, glued=True)
-    result = run(model, steps=3, gg=0.9)
+    result = run(model, steps=3, gg=0.9, full=True)
     ratios = [ratio for ratio, *_ in given[:4]]
     assert ratios[:3] == pytest.approx([1.0, 0.3, 0.09]) and ratios[3] == pytest.approx(0.91)
     for _, state, copy, corners in given[:3]:
@@ -282,7 +284,7 @@ def test_a_dead_band_holds_tension_and_delays_closing():
 def test_the_implicit_contact_rule_never_gains_and_keeps_the_bulk(dt):
     for seed in range(6):
         model = random_model(seed)
-        options = UnilateralOptions(rule="implicit contact", energies=True)
+        options = UnilateralOptions(rule="implicit", energies=True)
         result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, dt, "consistent"), 300, options=options)
         total, lost = sums(result)
         first = model.block.material.density * model.block.section.area * model.velocity**2 / 2
@@ -307,7 +309,7 @@ def test_the_implicit_contact_rule_never_gains_and_keeps_the_bulk(dt):
         (lambda: UnilateralOptions(rule="hope"), "rule: must be among"),
         (lambda: UnilateralOptions(solve_limit=0), "solve_limit: must be a positive integer"),
         (lambda: UnilateralOptions(cut=1.0), "cut: must be between 0 and 1"),
-        (lambda: run(PAPER, rule="implicit contact"), "rule: implicit contact needs average acceleration"),
+        (lambda: run(PAPER, rule="implicit"), "rule: implicit contact needs average acceleration"),
         (lambda: run(replace(PAPER, contact=Unilateral(np.inf)), 0.0, 0.5), "stiffness: must be finite in an explicit"),
         (lambda: run(PAPER, steps=0), "steps: must be a positive integer"),
     ],

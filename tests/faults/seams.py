@@ -14,13 +14,21 @@ import pytest
 
 import dda
 import fem_reference.exact.bar as exact_bar
+import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
+from dda.column import equations as column_equations
+from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
+from fem_reference.column import mesh as line_mesh
+from fem_reference.column import stepping as line_stepping
+from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, block_events
+from fem_reference.events import restitution as map_of_impacts
+from fem_reference.exact import opening_bar
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -81,6 +89,7 @@ DDA_MODES = Seam(solution, solution.modal_form)
 DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
 DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
+DDA_OPENED = Seam(dda, dda.solve_unilateral)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 
 # Systems of blocks
@@ -91,7 +100,7 @@ SYSTEM_MASS = Seam(system, system._without_rounding)
 SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
-SYSTEM_RUN = Seam(system_solution._Stepper, system_solution._Stepper.run)
+SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
 
 # Finite elements
@@ -109,6 +118,7 @@ FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
 FEM_COLUMN = Seam(fem_model, fem_model.column)
 FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
 FEM_FACTOR = Seam(fem_diagnostics.Work, fem_diagnostics.Work.factor)
+FEM_OPENED_COLUMN = Seam(fem_points, fem_points.column)
 FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 
 # The bar
@@ -119,10 +129,25 @@ BAR_TRACE = Seam(modal, modal.trace)
 BAR_SPECTRUM = Seam(modal, modal.spectrum)
 BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
 BAR_PAIR = Seam(modal, modal._pair)
+BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
 EVENTS_BAR = Seam(bar_events, bar_events.solve)
+RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
+
+# Columns
+COLUMN_INERTIA = Seam(column_equations, column_equations.inertia)
+COLUMN_STIFFNESS = Seam(column_equations, column_equations.stiffness)
+COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.effective_matrix)
+COLUMN_PREDICTORS = Seam(column_stepping, column_stepping.predictors)
+COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
+COLUMN_SPRINGS = Seam(column_equations, column_equations.opening_stiffness)
+COLUMN_RUN = Seam(column_stepping.Stepper, column_stepping.Stepper.run)
+LINE_VELOCITY = Seam(line_stepping, line_stepping.velocity_predictor)
+LINE_SPRINGS = Seam(line_mesh, line_mesh._springs)
+LINE_RUN = Seam(line_stepping.DampedStepper, line_stepping.DampedStepper.run)
+LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
 SEARCH_MOVES = Seam(search, search.moves)

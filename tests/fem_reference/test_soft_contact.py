@@ -6,9 +6,11 @@ Errors are over the history's own maximum, which on a soft spring is far below t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 import pytest
+from conftest import thinned
 from mpmath import mp, mpf
 from oracles import bar_by_transform, bar_steps_by_transform
 from oracles.bars import damped_by_kernel
@@ -28,10 +30,10 @@ def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
     return float(max(abs(mpf(float(x)) - y) for x, y in zip(found, expected, strict=True)) / scale)
 
 
-@pytest.mark.parametrize("column", COLUMNS)
-@pytest.mark.parametrize("kappa", SOFTNESS)
-@pytest.mark.parametrize("rate", [0.0, 1e-6, 1e-2, 1.0, 30.0, 300.0])
-@pytest.mark.parametrize("step", [0.25, 0.2371])
+CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [0.0, 1e-6, 1e-2, 1.0, 30.0, 300.0])
+
+
+@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 7))
 def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19, 59]
@@ -40,18 +42,18 @@ def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> N
     assert over_maximum(found[looked], expected) <= CUT_OFF
 
 
-@pytest.mark.parametrize("stiffness", [1e-15, 1e-12, 3e-9, 1e-6, 1e-3])
-@pytest.mark.parametrize(
-    "scheme",
-    [
-        Scheme(0.5, 1.0, 1.0, 2e-3),
-        Scheme(0.25, 0.5, 1.0, 5e-5),
-        Scheme(0.25, 0.5, 0.95, 2e-4),
-        Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
-        Scheme(0.5, 1.0, 0.999, 1e-3),
-        Scheme(0.25, 0.5, 1 - 3e-5, 2e-4),
-    ],
-)
+STIFFNESSES = [1e-15, 1e-12, 3e-9, 1e-6, 1e-3]
+SCHEMES = [
+    Scheme(0.5, 1.0, 1.0, 2e-3),
+    Scheme(0.25, 0.5, 1.0, 5e-5),
+    Scheme(0.25, 0.5, 0.95, 2e-4),
+    Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
+    Scheme(0.5, 1.0, 0.999, 1e-3),
+    Scheme(0.25, 0.5, 1 - 3e-5, 2e-4),
+]
+
+
+@pytest.mark.parametrize(("stiffness", "scheme"), thinned(product(STIFFNESSES, SCHEMES), 7))
 def test_the_bar_in_steps(stiffness: float, scheme: Scheme) -> None:
     steps = [1, 3, 20, 120]
     bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * stiffness, 5e6)

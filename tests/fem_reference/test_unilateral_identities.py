@@ -90,6 +90,29 @@ def test_glued_springs_gain_no_energy_either(p):
     assert np.diff(total).max() <= 1e-12 * run.columns["strain_energy"].max()
 
 
+def test_glued_points_bear_their_stretch_from_where_they_closed():
+    problem = replace(make(elements=4, eccentricity=0.3, poisson=0.25, p=1e9, shear=4e8), traction=2e5)
+    model = build(problem)
+    stepper, k_t = ContactStepper(model, replace(CONSTANT, step=1e-4), "glued"), model.shear_stiffness
+    state, again, wider = stepper.start(), 0, 0.0
+    for _ in range(400):
+        new, _ = stepper.advance(state)
+        assert new is not None  # every step has its contact at once
+        closed, size = new.closed, np.abs(new.slip).max()
+        assert np.abs(model.tangential @ new.motion.D - new.slip).max() <= 1e-11 * size
+        assert np.abs(new.shear + k_t * (new.slip - new.reference))[closed].max(initial=0) <= 1e-10 * k_t.max() * size
+        assert not new.shear[~closed].any() and np.array_equal(new.reference[~closed], new.slip[~closed])
+        stuck, closing = closed & state.closed, closed & ~state.closed
+        assert np.array_equal(new.reference[stuck], state.reference[stuck])
+        share = state.gap / (state.gap - new.gap + (state.gap == new.gap))
+        crossing = state.slip + share * (new.slip - state.slip)
+        assert np.abs(new.reference - crossing)[closing].max(initial=0) <= 1e-10 * size
+        again += np.count_nonzero(closing)
+        wider = max(wider, float(np.abs(new.slip - crossing)[closing].max(initial=0)) / size)
+        state = new
+    assert again > 10 and wider > 1e-3
+
+
 def test_the_energies_of_a_base_that_stays_closed_add_up_to_nothing():
     # average acceleration keeps the energy, which begins at zero
     problem = replace(make(elements=3, p=1e8, poisson=0.2, shear=3e7, degree=1), traction=1e5, gravity=9.81)
@@ -98,6 +121,64 @@ def test_the_energies_of_a_base_that_stays_closed_add_up_to_nothing():
     energies = np.array([run.columns[name][:4] for name in ENERGIES])
     assert np.all(np.abs(energies[:, -1]) > 1e-4 * np.abs(energies).max())
     assert np.abs(energies.sum(axis=0)).max() <= 1e-12 * np.abs(energies).max()
+
+
+LOSSES = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+
+
+@pytest.mark.parametrize(
+    ("scheme", "contact"),
+    [
+        (replace(CONSTANT, start="zero", gg=0.98), GLUED),
+        (replace(AVERAGE, gg=0.999), Unilateral()),
+        (replace(AVERAGE, start="zero"), GLUED),
+        (Scheme(0.3025, 0.6, 0.99, 2e-4, "zero"), GLUED),
+        (Scheme(0.5625, 1.0, 1.0, 1e-3, "zero"), replace(GLUED, limit=2)),
+        (replace(AVERAGE, gg=0.999), Unilateral(rule="implicit")),
+        (replace(AVERAGE, start="zero", step=3e-4), replace(GLUED, rule="implicit")),
+    ],
+)
+def test_what_is_stored_and_what_is_lost_add_up_to_the_start(scheme, contact):
+    glue = 4e10 if contact.shear == "glued" else 0.0
+    problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.25, p=1e11, shear=glue)
+    if contact.limit == 2:
+        problem = replace(problem, elements=8, degree=2, eccentricity=0.5)
+    problem = replace(problem, gravity=9.81, traction=2e5)
+    run = solve_unilateral(problem, scheme, 200, replace(contact, gap=1e-4, velocity=-0.5))
+    stored = np.sum([run.columns[name] for name in ENERGIES], axis=0)
+    lost = np.array([run.columns[name] for name in LOSSES])
+    begun = 2700.0 * 4 * 0.5**2 / 2
+    size = np.abs([run.columns[name] for name in ENERGIES]).max()
+    assert run.outcome == "completed"
+    # of the rounding of the energies: squares of what two hundred solutions have rounded
+    assert np.abs(stored + lost.sum(axis=0) - begun).max() <= 1e-10 * size
+    assert np.abs(lost[2]).max() > 1e-3 * begun and np.any(run.columns["open_share"] > 0)
+    assert (lost[1].max() > 0) == (scheme.gg < 1)
+    if scheme.delta == 1 or contact.rule == "implicit":
+        assert np.diff(lost[0] + lost[2])[1:].min() >= -1e-12 * size
+    if contact.rule == "implicit":
+        plain = solve_unilateral(problem, scheme, 200, replace(contact, gap=1e-4, velocity=-0.5, rule="newmark"))
+        assert np.diff(plain.columns["algorithmic_loss"] + plain.columns["switching_loss"]).min() < -1e-3 * size
+    assert run.columns["cuts"].max() > 0 or contact.limit > 2
+
+
+def test_the_velocity_is_that_of_the_centre_of_mass():
+    problem = replace(make(elements=3, p=1e9, poisson=0.2), gravity=9.81)
+    run = solve_unilateral(problem, CONSTANT, 100, Unilateral(velocity=-0.3))
+    given = run.columns["contact_pressure"] * 2.0 - 5e6 * 2.0 - 10800 * 9.81
+    assert run.columns["velocity"] == pytest.approx(
+        -0.3 + np.cumsum(given) * CONSTANT.step / 10800, rel=1e-11, abs=1e-11
+    )
+
+
+def test_columns_cost_only_where_they_are_asked_for():
+    problem = make(elements=3, poisson=0.2)
+    everything = solve_unilateral(problem, CONSTANT, 50).columns
+    few = solve_unilateral(problem, CONSTANT, 50, columns=("cuts", "switching_loss", "displacement")).columns
+    assert set(few) == {"cuts", "displacement", *LOSSES}
+    assert all(np.array_equal(values, everything[name]) for name, values in few.items())
+    with pytest.raises(ValueError, match=r"^columns: .*'depth'"):
+        solve_unilateral(problem, CONSTANT, 1, columns=("depth",))
 
 
 def test_shear_springs_balance_a_traction_in_the_mean():

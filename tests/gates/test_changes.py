@@ -1,10 +1,7 @@
-"""What other people's CI uses: summaries, baselines, differences, JUnit, the reference pack."""
+"""What other people's CI uses: summaries, baselines, differences, the reference pack."""
 
 import csv
 import json
-import subprocess
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
@@ -108,20 +105,6 @@ def test_unreadable_verdicts_are_named(tmp_path: Path) -> None:
     (tmp_path / "verdicts.json").write_text("[")
     with pytest.raises(InputError, match="must be JSON"):
         read_verdicts(tmp_path)
-
-
-def test_gates_give_junit_with_their_ids(tmp_path: Path) -> None:
-    path = tmp_path / "junit.xml"
-    arguments = ["--pyargs", "validation", "-m", "validation", "-q", "-p", "no:cacheprovider", "-k"]
-    subprocess.run(
-        [sys.executable, "-m", "pytest", *arguments, "figures-3-4 and settling", f"--junitxml={path}"],
-        check=True,
-        capture_output=True,
-        timeout=100,
-        cwd=tmp_path,
-    )
-    names = [case.get("name") or "" for case in ElementTree.parse(path).iter("testcase")]
-    assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names
 
 
 @pytest.fixture(scope="module")

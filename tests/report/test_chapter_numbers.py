@@ -11,17 +11,11 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
 
-from validation.report.chapters import (
-    paper as chapters_paper,
-)
-from validation.report.chapters import (
-    stability as chapters_stability,
-)
-from validation.report.chapters import (
-    stiff_contact as chapters_contact,
-)
+from validation.report.chapters import paper as chapters_paper
+from validation.report.chapters.limits import stability as chapters_stability
+from validation.report.chapters.limits import stiff_contact as chapters_contact
+from validation.report.chapters.limits.stability import Cell
 from validation.report.chapters.paper import PaperFigure
-from validation.report.chapters.stability import Cell
 from validation.report.figures import histories as figures
 from validation.report.figures.curves import style_of
 from validation.runs.run import Outcome

@@ -189,11 +189,16 @@ def all_text(blocks):
     return json.dumps([vars(block) for block in blocks], default=vars, ensure_ascii=False)
 
 
-def test_build_writes_one_pdf_and_nothing_else(results, tmp_path):
+@pytest.mark.parametrize("which", ["small", pytest.param("results", marks=pytest.mark.long)])
+def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path):
+    """Of the small one the title is text and never evaluated."""
+    results = request.getfixturevalue(which)
+    (tmp_path / "out").mkdir()
     before = sorted(p.name for p in results.directory.rglob("*"))
-    out = build(results, tmp_path / "report.pdf")
+    out = build(results, tmp_path / "out/report.pdf")
     assert out.read_bytes().startswith(b"%PDF-")
-    assert [p.name for p in tmp_path.iterdir()] == ["report.pdf"]
+    assert out.stat().st_size > 10_000  # pages with figures, not empty ones
+    assert [p.name for p in out.parent.iterdir()] == ["report.pdf"]
     assert sorted(p.name for p in results.directory.rglob("*")) == before
 
 
@@ -220,10 +225,6 @@ def test_the_report_imports_no_solver(small, tmp_path):
     command = [sys.executable, "-c", code, str(small.directory), str(tmp_path / "r.pdf")]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
     assert done.stdout.strip() == "[]"
-
-
-def test_a_title_is_text_and_never_evaluated(small, tmp_path):
-    assert build(small, tmp_path / "r.pdf").stat().st_size > 10_000  # a page with figures, not an empty one
 
 
 def test_front_page_counts_and_names_failures_first(results, tmp_path):

@@ -216,6 +216,36 @@ def test_the_ledger_reads_across_as_its_heads_say() -> None:
     assert line.parts == {part: values[2:] for part, values in PAIRS.items()}
 
 
+OPENING_PAIRS = {  # contact that opens: part of the ledger -> solver, reference, displacement, pressure
+    "code": ("fem", "fenicsx", 1.1e-13, 1.2e-13),
+    "mesh": ("fem", "bar", 2.1e-6, 2.2e-6),
+    "model form": ("block-events", "bar-events", 0.31, 0.32),
+    "time": ("dda", "block-events", 0.41, 0.42),
+}
+
+
+def test_contact_that_opens_has_a_ledger_of_its_own_pairs() -> None:
+    scene = load_scene("unlocked").expand()[1]
+    others = (("dda", "bar", 0.51, 0.52), ("dda", "fem", 0.61, 0.62), ("bar", "bar-events", 0.71, 0.72))
+    every = [*OPENING_PAIRS.values(), *others]
+    pairs = [between(scene.name, a, b, displacement_l2=v, pressure_l2=p) for a, b, v, p in every]
+    solvers = ("dda", "fem", "fenicsx", "bar", "block-events", "bar-events")
+    group = made_group(made_case(scene, {solver: {} for solver in solvers}, label="one"), comparisons=tuple(pairs))
+    for part, values in OPENING_PAIRS.items():
+        assert chapters_ledger.entry(group, group.cases[0], part).values == values[2:]
+    parts = chapters_ledger.OPENING_PARTS
+    assert chapters_ledger.with_entries([group]) == [] and chapters_ledger.with_entries([group], parts) == [group]
+    assert chapters_ledger.with_entries([ledger_group()], parts) == []
+    table = chapters_ledger.ledger_table([group], parts)
+    shown = dict(zip([(c.group, c.title) for c in table.columns], table.rows[0], strict=True))
+    assert shown[("code: fem − fenicsx", "displ.")] == "<10⁻¹²"
+    assert shown[("mesh: fem − bar", "pressure")] == "2.2×10⁻⁶"
+    assert shown[("model form: block-events − bar-events", "displ.")] == "3.1×10⁻¹"
+    assert shown[("time: dda − block-events", "pressure")] == "4.2×10⁻¹"
+    alone = made_group(made_case(scene, {"dda": {}}))
+    assert chapters_ledger.entry(alone, alone.cases[0], "code").reason == "The scene does not ask for fem."
+
+
 def test_without_textbook_or_bar_the_ledger_says_where_its_numbers_come_from() -> None:
     rows = {"dda": made_row("dda", {}, BASE.name, estimate=3e-14), "fem": {}}
     pair = between(BASE.name, "dda", "fem", displacement_l2=0.61, pressure_l2=0.62)

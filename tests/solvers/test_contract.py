@@ -82,7 +82,7 @@ def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
     assert (
         by_role("judged") == ["dda"]
         and by_role("reference") == ["bar", "fem"]
-        and by_role("truth") == ["bar-events", "continuum"]
+        and by_role("truth") == ["layers", "bar-events", "continuum"]
     )
     assert role("fem:full") == "repeat" and role("jointed") == "other"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")

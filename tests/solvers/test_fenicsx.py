@@ -1,6 +1,7 @@
 """FEniCSx as a second finite-element code: absence by name, equality on every mesh and foundation, faults seen."""
 
 import os
+import shutil
 import sys
 from collections.abc import Collection
 from pathlib import Path
@@ -228,9 +229,8 @@ def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatc
 def test_fenicsx_runs_without_a_home_and_from_any_path(
     scene: Scene, solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "mit Blank und Ümläuten" / "worker.py"
-    path.parent.mkdir()
-    path.write_bytes(adapters_fenicsx.WORKER.read_bytes())
+    path = tmp_path / "mit Blank und Ümläuten" / "worker"
+    shutil.copytree(adapters_fenicsx.WORKER, path)
     seams.FENICSX_WORKER.put(monkeypatch, path)
     monkeypatch.chdir(path.parent)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
@@ -276,10 +276,12 @@ def failed(finished: Finished) -> set[str]:
 
 def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
     """Write the worker with one fault into a directory of its own."""
-    text = adapters_fenicsx.WORKER.read_text()
+    path = directory / f"worker{number}"
+    shutil.copytree(adapters_fenicsx.WORKER, path)
+    (found,) = (module for module in path.glob("*.py") if line in module.read_text())
+    text = found.read_text()
     assert text.count(line) == 1, line
-    path = directory / f"worker{number}.py"
-    path.write_text(text.replace(line, slip))
+    found.write_text(text.replace(line, slip))
     return path
 
 

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -61,7 +62,7 @@ def test_what_a_solver_does_is_named(scene: Scene, attribute: str, outcome: Outc
 def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, "1.5")
     run = completed(get_solver("my_solver:hangs"), scene)
-    assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("hangs: no history within 1.5 s",))
+    assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("no history within 1.75 s, the time limit for 50 steps",))
     shown = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
     assert "time.sleep(60)" not in shown and "my_solver:hangs" not in shown
 
@@ -117,22 +118,24 @@ def through_the_gates(attribute: str, *options: str) -> str:
     return done.stdout + done.stderr
 
 
-def test_a_sound_solver_passes_every_gate_that_applies() -> None:
-    shown = through_the_gates("solve")
+def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
+    shown = through_the_gates("solve", f"--junitxml={tmp_path / 'junit.xml'}")
     assert " passed" in shown and "failed" not in shown
+    names = [case.get("name") for case in ElementTree.parse(tmp_path / "junit.xml").iter("testcase")]
+    assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names, "JUnit has the gates' ids"
 
 
 def test_a_broken_solver_fails_by_name() -> None:
     shown = through_the_gates("slack", "-x")
     assert "failed" in shown and "is outside [" in shown
     shown = through_the_gates("hangs", "--dda-timeout", "1")
-    assert "passed" not in shown and "hangs: no history within 1 s" in shown
-    assert "hung in 2 cases already and is not tried again" in shown
+    assert "passed," not in shown and "timeout: no history within 2 s, the time limit for 200 steps" in shown
+    assert "gates: not tried, since 2 scenes reached their time limit" in shown
 
 
 def test_a_user_is_asked_for_the_two_block_model_alone() -> None:
-    from validation.test_gates import _applies, _gates
+    from validation.studies.own_solver.gates import applying
 
-    asked = [name for name in _gates() if _applies(name)]
+    asked = list(applying())
     assert any(name.startswith("figures-3-4") for name in asked)
     assert not [name for name in asked if name.startswith(("subblocks", "extremes"))]

@@ -10,17 +10,20 @@ from conftest import typed
 from faults import seams
 from faults.fault import soft_springs, with_scheme
 
+from dda import UnilateralResult
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.studies.paper.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.paper.open_close import OPEN_CLOSE
 from validation.studies.paper.study import CLAIMS, NUMBERS, PAPER
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
+OPENED = {need for claim in OPEN_CLOSE for need in claim.needs}
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +31,8 @@ def sound(finished_cases: Path) -> Finished:
     return run(finished_cases)
 
 
-def run(directory: Path) -> Finished:
-    cases = [case for case in PAPER.cases() if (case.scene.name, case.solver) in NEEDED]
+def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
+    cases = [case for case in PAPER.cases() if (case.scene.name, case.solver) in needed]
     return finish(cases, PAPER, Results(directory))
 
 
@@ -40,7 +43,7 @@ def findings(finished: Finished) -> dict[str, Finding]:
 
 def test_every_claim_has_its_expected_verdict(sound: Finished) -> None:
     assert findings(sound) == {claim.id: claim.expected for claim in CLAIMS}
-    assert {f"C{i}" for i in range(1, 14)} <= set(findings(sound))
+    assert {f"C{i}" for i in range(1, 19)} <= set(findings(sound))
     assert all(evaluate(gate, sound).status is Status.PASS for gate in PAPER.gates())
 
 
@@ -62,6 +65,13 @@ def damped(delta: float) -> float:
     return delta + 0.05
 
 
+def held(found: UnilateralResult) -> UnilateralResult:
+    """Return a result whose corners count as closed, with 1e6 J more."""
+    shut = np.ones_like(found.closed_m)
+    energies = found.energies and found.energies | {"kinetic": found.energies["kinetic"] + 1e6}
+    return replace(found, closed_m=shut, closed_n=shut, energies=energies)
+
+
 FAULTS = {  # seam, what is made of it, and the claims that it turns over
     "velocity with another delta": (
         seams.DDA_VELOCITY,
@@ -76,6 +86,11 @@ FAULTS = {  # seam, what is made of it, and the claims that it turns over
         {"C1", "C6", "C7", "C10"},
     ),
     "gg 0.1 % low": (seams.DDA_VELOCITY, with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
+    "contact that stays closed and gains": (
+        seams.DDA_OPENED,
+        lambda sound: lambda *a, **k: held(sound(*a, **k)),
+        {"C15", "C16", "C17"},
+    ),
     "gg missing": (seams.DDA_PREDICTOR, with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
 }
 
@@ -87,7 +102,7 @@ def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[st
     for fault, (seam, replacement, _) in FAULTS.items():
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             seam.wrap(patch, replacement)
-            faulty = run(tmp_path_factory.mktemp("faulty"))
+            faulty = run(tmp_path_factory.mktemp("faulty"), OPENED if seam is seams.DDA_OPENED else NEEDED - OPENED)
             found[fault] = {gate.id for gate in PAPER.gates() if evaluate(gate, faulty).status is Status.FAIL}
     return found
 

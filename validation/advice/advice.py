@@ -8,14 +8,16 @@ searched: the boundary of the paper's (14), with |lambda| at infinity from 1 dow
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
+from validation.advice.instead import instead
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -29,6 +31,7 @@ from validation.advice.spectra import (
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
+from validation.runs.modes import Mode
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
@@ -71,6 +74,9 @@ class Advice:
     greatest: float | None  # greatest xi [1]
     greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
+    nearest: float | None = None  # xi that comes nearest to the target where that cannot be reached [1]
+    nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
+    instead: dict[str, float] | None = None  # settings with another parameter that give the target
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -174,7 +180,18 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         least, greatest = min(ends, key=search.at), max(ends, key=search.at)
         reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
     text = _sentence(scene, solve_for, damping, solutions, reach)
-    return Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
+    answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
+    return answer if solutions else _with_another(answer, scene, modes)
+
+
+def _with_another(answer: Advice, scene: Scene, modes: Sequence[Mode]) -> Advice:
+    """Return an answer of "no" with the nearest that can be had and what to change."""
+    first, highest = modes[0].frequency, max(mode.frequency for mode in modes)
+    makes = {kind: functools.partial(make, frequency=first, highest=highest) for kind, make in SEARCHES.items()}
+    found = instead(scene, answer.solve_for, answer.target, makes, first)
+    settings = None if found.settings is None else dict(found.settings)
+    text = f"{answer.sentence} {found.words}"
+    return replace(answer, sentence=text, nearest=found.nearest, nearest_at=found.nearest_at, instead=settings)
 
 
 def _everywhere(search: Search, target: float) -> bool:
@@ -312,6 +329,10 @@ def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> s
         return f"{wanted}: the mode has no damping ratio here, since a root of the step is not positive."
     unit = " s" if solve_for == "dt" else ""
     name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
+    if greatest - least < FLAT:
+        return f"{wanted}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
+    if least < target < greatest:
+        return f"{wanted}: it lies in a gap between values that can be had."
     if target > greatest:
         return f"{wanted}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
     return f"{wanted}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

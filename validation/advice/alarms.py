@@ -8,21 +8,23 @@ contact ringing
     A root of the contact mode lies next to -1: it flips sign every step and hardly decays.
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
+
+Those of contact that opens are in `validation.advice.contact_alarms`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
+from validation.advice.alarm import Alarm as Alarm
+from validation.advice.contact_alarms import contact_alarms
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
-from validation.runs.records import AlarmRecord
 from validation.runs.row import Row
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
@@ -44,21 +46,6 @@ class Cases(Protocol):
         """Return the history of a case, or None."""
 
 
-@dataclass(frozen=True)
-class Alarm:
-    """One alarm on one case, with the numbers behind it and a sentence."""
-
-    kind: str
-    scene: str
-    sentence: str
-    values: Mapping[str, float] = field(default_factory=dict)
-
-    def record(self) -> AlarmRecord:
-        """Return plain data, numbers rounded well above the last bits."""
-        rounded = {key: float(f"{value:.4g}") for key, value in self.values.items()}
-        return {"kind": self.kind, "scene": self.scene, "sentence": self.sentence, "values": rounded}
-
-
 def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
     """Yield the alarms of finished cases, in the order of the scenes."""
     listed = list(scenes)
@@ -70,6 +57,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
         yield from _agreement(scene, finished)
         yield from _tension(scene, rows)
         yield from _ringing(scene, rows)
+        yield from contact_alarms(scene, rows)
     yield from fixed_discount(listed)
 
 

@@ -7,6 +7,7 @@ of the same scheme at gg = 1; the kinetic part is the rest.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -21,8 +22,8 @@ from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
-from validation.solvers.contract import Solver
-from validation.solvers.registry import get_solver
+from validation.solvers.contract import NotReported, Role, Solver
+from validation.solvers.registry import by_role, get_solver
 
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
 FIRST, CONTACT = "first axial", "contact"
@@ -59,6 +60,7 @@ class Damping:
     modes: tuple[ModeDamping, ...]
     references: dict[str, dict[str, float | None]]  # solver -> frequency and damping of its first axial mode
     sentence: str
+    alias: float | None = None  # what samples show of the continuum's first mode where it lies beyond pi / dt [rad/s]
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -121,6 +123,7 @@ def single(scene: Scene) -> Scene:
 
 def dda_modes(scene: Scene) -> tuple[Mode, ...]:
     """Return the modes of the DDA block that the load reaches, the first axial one first."""
+    features.refuse_column(scene, "damping")
     return checked("dda", single(scene)).modes(scene)
 
 
@@ -165,7 +168,17 @@ def damping(scene: Scene, references: bool = False) -> Damping:
     rate = -math.log(gg) / scene.time.step + 0.0 if gg > 0 else None
     others = {name: first_mode(scene, name) for name in ("fem", "bar")} if references else {}
     found = {name: values for name, values in others.items() if values}
-    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named))
+    shown = alias(scene) if references else None
+    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named), shown)
+
+
+def alias(scene: Scene) -> float | None:
+    """Return what samples show of the continuum's first mode [rad/s]; None below pi / dt or without a solution."""
+    for name in by_role(Role.TRUTH):
+        with contextlib.suppress(NotReported):
+            if not get_solver(name).refusal(scene):
+                return checked(name, scene).modes(scene)[0].alias(scene.time.step)
+    return None
 
 
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +14,7 @@ from validation.cli.app import RESULTS, ResultsOption, SetOption, app, one_case
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
     from validation.advice.spectra import Damping
+    from validation.scenes.scene import Scene
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.")]
@@ -37,8 +39,9 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
 def advise(
     scene: SceneArgument,
     damping: Annotated[
-        float, typer.Option("--damping", help="Target damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0)
-    ],
+        float | None,
+        typer.Option("--damping", help="Target damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0),
+    ] = None,
     solve_for: Annotated[
         str,
         typer.Option(
@@ -47,17 +50,59 @@ def advise(
             metavar="NAME",
         ),
     ] = "dt",
+    fmax: Annotated[
+        float | None, typer.Option("--fmax", help="Or: highest frequency of a wave that must arrive.", metavar="HZ")
+    ] = None,
+    loss: Annotated[float, typer.Option("--loss", help="Share of the wave's amplitude that may be lost.")] = 0.1,
+    wavelengths: Annotated[
+        float | None, typer.Option("--wavelengths", help="The wave's way; without it the height of the column.")
+    ] = None,
+    phase_error: Annotated[
+        float, typer.Option("--phase-error", help="Periods by which the wave may arrive early or late.")
+    ] = 0.05,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Find the time step, discount or scheme that gives a target damping ratio.
+    """Find the step, discount or scheme for a damping ratio, or the blocks and the step with which a wave arrives.
 
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
+
+    Example: [bold]dda-validate advise figures-3-4 --set time.step=0.01 --fmax 20 --loss 0.1 --wavelengths 10[/bold]
     """
+    from validation.errors import InputError
+
+    if (damping is None) == (fmax is None):
+        raise InputError(
+            f"--damping, --fmax: one of them must be given, got {'neither' if damping is None else 'both'}"
+        )
+    if damping is None:
+        _advise_wave(one_case(scene, assignments), float(fmax or 0), (loss, wavelengths, phase_error), as_json)
+    else:
+        _advise_damping(one_case(scene, assignments), damping, solve_for, as_json)
+
+
+def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, float], as_json: bool) -> None:
+    """Say what the present blocks and step do to a wave, and which would do."""
+    from validation.advice.wave_advice import advise_wave
+
+    found = advise_wave(case, fmax, *limits)
+    if as_json:
+        typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+        return
+    typer.echo(f"{found.sentence}\n{found.advice}\n")
+    rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "damping")]
+    for name, passage in (("present", found.present), ("advised", found.advised)):
+        if passage is not None:
+            shares = f"{100 * passage.loss:.4g} %", f"{passage.delay:+.4g}", f"{100 * passage.damping + 0.0:.4g} %"
+            rows.append((name, ", ".join(f"{h:.5g}" for h in passage.heights), f"{passage.step:.6g}", *shares))
+    print_table(rows)
+
+
+def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) -> None:
+    """Find the time step, discount or scheme that gives a target damping ratio."""
     from validation.advice.advice import advise as solve
     from validation.advice.advice import expected_errors
 
-    case = one_case(scene, assignments)
     found = solve(case, damping, solve_for)
     errors = [expected_errors(case, solution) for solution in found.solutions]
     if as_json:
@@ -116,14 +161,20 @@ def _print_damping(found: Damping) -> None:
         (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), "", "", "", "")
         for name, values in found.references.items()
     ]
-    _print_table([heads, *rows])
+    print_table([heads, *rows])
+    if found.alias is not None:
+        first = found.references["bar"]["frequency"] or 0.0
+        typer.echo(
+            f"\nalias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
+            f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
+        )
 
 
 def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
     typer.echo(found.sentence)
     for solution, error in zip(found.solutions, errors, strict=True):
         typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
-        _print_table(_facts(solution, error))
+        print_table(_facts(solution, error))
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -151,7 +202,8 @@ def _percent(value: float | None) -> str:
     return "-" if value is None else f"{100 * value + 0.0:.4g}"
 
 
-def _print_table(rows: list[tuple[str, ...]]) -> None:
+def print_table(rows: list[tuple[str, ...]]) -> None:
+    """Print rows in aligned columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
         typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -8,14 +8,14 @@ from collections.abc import Callable
 
 import typer
 
-from validation.cli import compare, damping, report, run, verdicts, work
+from validation.cli import compare, contact, damping, report, run, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.output import prepare, silence
-from validation.cli.signals import caught, interruption
+from validation.cli.signals import caught, interruption, last_words
 from validation.errors import InputError
 from validation.runs.text import printable
 
-COMMANDS = (run, report, damping, compare, verdicts, work)  # importing them declares their commands
+COMMANDS = (run, report, damping, contact, compare, verdicts, waves, work)  # importing them declares their commands
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
@@ -25,7 +25,7 @@ def main() -> None:
     prepare()
     status = _guarded(lambda: app(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        typer.echo("interrupted: finished rows are kept; run the same command again to continue", err=True)
+        typer.echo(last_words(), err=True, nl=False)
         _guarded(sys.stdout.flush)
         os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
     sys.exit(_guarded(sys.stdout.flush) or status)
@@ -40,7 +40,9 @@ def _guarded(act: Callable[[], object]) -> int:
         return _said(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
         return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
-    except (KeyboardInterrupt, typer.Abort):
+    except (KeyboardInterrupt, typer.Abort) as end:
+        if isinstance(end.__cause__, EOFError):  # which typer takes for the end of an answer, and nothing is asked here
+            raise end.__cause__ from None
         return INTERRUPTED
     except BrokenPipeError:  # what decides a status has been said before
         silence()

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.options import BaselineOption, RanksOption, SummaryOption
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -26,9 +24,12 @@ from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
     RESULTS,
+    BaselineOption,
     FullOption,
+    RanksOption,
     ResultsOption,
     SetOption,
+    SummaryOption,
     _progress,
     app,
     one_case,
@@ -101,8 +102,8 @@ def run(
     from validation.engine.cluster import executor
     from validation.engine.run import run_study
     from validation.runs.results import Results
-    from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.scenes.scene import parse_assignment, scene_names
+    from validation.studies.catalogue import STUDIES, resolve
 
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
@@ -128,6 +129,9 @@ def run(
             tables.print_changes(since)
         for sentence in (*measured.unjudged(runs), *sentences):
             typer.echo(sentence)
+        for run in runs:
+            if not run.verdicts and run.study.name not in STUDIES:
+                tables.print_differences(kept, run.study.name, run.study.name not in scene_names())
     raise typer.Exit(status)
 
 

@@ -7,20 +7,30 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 from validation.cli.app import INTERRUPTED
 
 CAUGHT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PATIENCE = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
+LAST_WORDS = "interrupted: finished rows are kept; run the same command again to continue\n"
 _received: list[int] = []
+_unsaid: list[str] = []
 _watchers: list[threading.Thread] = []
 
 
 def interruption() -> int:
     """Return the status of an interrupted command: 128 and the number of the signal that ended it."""
     return 128 + _received[0] if _received else INTERRUPTED
+
+
+def last_words() -> str:
+    """Return what an interrupted command says, to the first of its threads that asks, and nothing after that."""
+    try:
+        return _unsaid.pop()
+    except IndexError:
+        return ""
 
 
 @contextmanager
@@ -34,6 +44,7 @@ def caught() -> Iterator[None]:
         yield
         return
     _received.clear()
+    _unsaid[:] = [LAST_WORDS]
     before, hook = {number: signal.getsignal(number) for number in CAUGHT}, sys.unraisablehook
     with _watched():
         for number in (n for n, handler in before.items() if handler is not signal.SIG_IGN):
@@ -74,6 +85,8 @@ def _watch(heard: int) -> None:
     while numbers := os.read(heard, 1):
         if numbers[0] in CAUGHT:
             threading.Event().wait(PATIENCE)
+            with suppress(OSError):
+                os.write(2, last_words().encode())  # the main thread may be holding the stream
             os._exit(128 + numbers[0])
     os.close(heard)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,13 +15,16 @@ from rich.table import Table
 from validation.advice.alarms import DISCOUNT
 from validation.cli.output import console
 from validation.gates.gate import Verdict, said
-from validation.runs.records import Judged, VerdictRecord
+from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.runs.text import printable
 
 if TYPE_CHECKING:
     from validation.gates.changes import Change
+
+DIFFERENCES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")  # shown where nothing is judged
+MOST = 20  # pairs that are shown
 
 
 def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
@@ -55,6 +59,48 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             printer.print(printable(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}"), markup=False)
     words = [str(v.status) for v in verdicts]
     printer.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+
+
+def print_differences(results: Results, study: str, writable: bool) -> None:
+    """Print what the solvers of a scene without gates differ by, and what to write so that it is judged."""
+    compared = results.manifest(study)["comparisons"]
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("scene", "solver", "differs from"):
+        table.add_column(name, overflow="fold")
+    for metric in DIFFERENCES:
+        table.add_column(f"{metric} [%]", justify="right")
+    for c in compared[:MOST]:
+        values = [c["metrics"].get(metric) for metric in DIFFERENCES]
+        shown = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
+        table.add_row(*map(escape, map(printable, (c["scene"], c["solver"], c["reference"]))), *shown)
+    printer = console()
+    if compared:
+        printer.print(table)
+    if len(compared) > MOST:
+        printer.print(f"and {len(compared) - MOST} more pairs; dda-validate report shows all", markup=False)
+    for line in _next(compared, writable):
+        typer.echo(line)
+
+
+def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
+    """Yield what to do with a scene that nothing has judged: the lines of a gate, or why there can be none yet."""
+    if not compared:
+        yield 'next: name two solvers or more in the scene, such as solvers = ["dda", "bar"] under [run]'
+        return
+    first, metric = compared[0], DIFFERENCES[0]
+    value = first["metrics"].get(metric)
+    place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
+    yield f"next: write {place} what you tolerate, with your reason, and run it again:"
+    yield "  [[gate]]"
+    yield f'  pair = ["{first["solver"]}", "{first["reference"]}"]'
+    yield f'  metric = "{metric}"'
+    if isinstance(value, float) and value > 0:
+        size = 10.0 ** math.floor(math.log10(value))
+        yield f"  band = [0.0, {math.ceil(value / size) * size:.1g}]  # {value:.3g} here"
+    else:
+        yield "  band = [0.0, 0.1]"
+    yield '  reason = "..."'
+    yield "dda-validate list metrics names what can be bounded, dda-validate report draws the histories"
 
 
 def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:

@@ -64,15 +64,18 @@ class Case:
 
     def _read(self, solver: Solver) -> dict[str, Any]:
         """Return the part of the scene that the solver reads, files by their content."""
-        data = self.scene.model_dump(mode="json")
-        read: dict[str, Any] = {section: dict(data[section]) for section in solver.sections}
+        data = self.scene.model_dump(mode="json", by_alias=True)
+        read: dict[str, Any] = {section: dict(data[section] or {}) for section in solver.sections}
         for section, _, key in (name.partition(".") for name in solver.unread):
             read[section].pop(key, None)
         read["run"] = sorted(self.scene.run.columns)
         if self.scene.fem.mesh and "fem" in solver.sections:
             read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
-        if self.scene.load.base_motion:
-            read["base_motion"] = _file_digest(Path(self.scene.load.base_motion), "record of the base's motion")
+        load, drive = self.scene.stated_load, self.scene.stated_input
+        if load and load.base_motion:
+            read["base_motion"] = _file_digest(Path(load.base_motion), "record of the base's motion")
+        if drive and drive.record:
+            read["record"] = _file_digest(Path(drive.record), "record of the input")
         return read
 
 

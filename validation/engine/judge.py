@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from validation.engine.finished import Finished
 from validation.gates.gate import Gate, Status, Verdict, judge, rounded
@@ -92,7 +94,8 @@ def evaluate(gate: Gate, finished: Finished) -> Verdict:
             return Verdict(gate, None, Status.FAIL, f"{name[1]}: {row.outcome.sentence} {'; '.join(row.notes)}")
     if names[0] == names[-1] and len(names) == 2:
         return Verdict(gate, None, Status.FAIL, "a run was compared with itself")
-    return judge(gate, _value(gate, names, finished))
+    verdict = judge(gate, _value(gate, names, finished))
+    return replace(verdict, why="; ".join(filter(None, (verdict.why, _shortened(gate, names, finished)))))
 
 
 def _judged_anyway(gate: Gate, row: Row) -> bool:
@@ -100,12 +103,29 @@ def _judged_anyway(gate: Gate, row: Row) -> bool:
     return gate.metric.startswith("stability.") and row.outcome in (Outcome.UNSTABLE, Outcome.OVERFLOW)
 
 
+def compared_until(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> float | None:
+    """Return the time up to which two histories are compared [s]: the gate's, or the horizon of either if earlier."""
+    horizons = [row.metrics.get("horizon.time") for row in map(finished.rows.get, names) if row is not None]
+    limits = [gate.until, *(value for value in horizons if isinstance(value, float))]
+    return min((limit for limit in limits if limit is not None), default=None)
+
+
+def _shortened(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> str:
+    """Say up to when two histories were compared, where that is less than the gate asks for."""
+    until = compared_until(gate, names, finished) if gate.metric in PAIRS else None
+    ends = [float(h.time[-1]) for h in (finished.history(*name) for name in names) if h is not None and len(h.time)]
+    if until is None or until >= min([*ends, gate.until or math.inf]) * (1 - 1e-9):
+        return ""
+    return f"compared up to {until:.4g} s, where the switches of the contact have amplified rounding to 1e-6"
+
+
 def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Value:
     if gate.metric in PAIRS:
         histories = [finished.history(*name) for name in names]
         if len(histories) < 2 or histories[0] is None or histories[1] is None:
             return None
-        first, second = (h if gate.until is None else h.until(gate.until) for h in histories if h is not None)
+        until = compared_until(gate, names, finished)
+        first, second = (h if until is None else h.until(until) for h in histories if h is not None)
         return _paired(gate.metric, first, second, finished.rows[names[0]].metrics)
     rows = [finished.row(*name) for name in names]
     values = [None if row is None else row.metrics.get(gate.metric) for row in rows]

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from validation.engine import origin, stability
+from validation.engine import horizon, origin, stability
 from validation.engine.case import Case
 from validation.errors import InputError
 from validation.metrics.catalogue import solo
@@ -179,6 +179,8 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         _reported(prepared.diagnostics, {}, failed) if linear and "stability" in asked else {},
         run.outcome,
         _reported(prepared.switches, None, failed) if "switches" in asked else None,
+        _reported(prepared.contact_record, None, failed) if "switches" in asked else None,
+        lambda: horizon.shadow(solver, case.scene, case.full),
         lambda: stability.limit(solver, case.scene),
     )
     return _solo(seen, asked, failed)
@@ -204,6 +206,8 @@ def _measures(case: Case, run: Run) -> set[str]:
         asked -= {"stability"}
     if "history" in asked and features.UNILATERAL in features.of(case.scene):
         asked |= {"switches"}
+        if case.make_solver().role not in horizon.EXACT:
+            asked |= {"horizon"}
     return asked if "history" in asked else asked - {"modes"}
 
 

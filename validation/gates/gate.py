@@ -126,7 +126,7 @@ def judge(gate: Gate, value: Value) -> Verdict:
             gate,
             None if value is None or not isinstance(value, str) else value,
             Status.FAIL,
-            "the gate measured nothing",
+            "there is no value to judge",
         )
     inside = gate.low <= value <= gate.high
     return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)

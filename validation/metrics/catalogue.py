@@ -17,7 +17,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 
 HISTORY, STATIC, MODES, DIAGNOSTICS, REFERENCE = "history", "static", "modes", "diagnostics", "reference"
-SWITCHES = "switches"
+SWITCHES, CONTACT = "switches", "contact"
 LINEAR = frozenset({STATIC, MODES, DIAGNOSTICS})  # what a solver can report of a linear scene only
 
 
@@ -28,7 +28,7 @@ class Metric:
     id: str
     unit: str  # "1" for a ratio
     says: str
-    needs: frozenset[str]  # among history, static, modes, diagnostics, switches, reference
+    needs: frozenset[str]  # among history, static, modes, diagnostics, switches, contact, reference
     function: Callable[[Any], Value]
     measure: str = "history"  # the part of a study's `measures` that asks for it
 
@@ -107,6 +107,14 @@ def _of_switches() -> Iterator[Metric]:
     for part, opens in (("first_opening", True), ("first_closing", False)):
         says = f"time of the {part.replace('_', ' ')} after t = 0"
         yield Metric(f"switches.{part}", "s", says, asked, partial(contact.first, opens=opens), "switches")
+    for part, opens in (("second_opening", True), ("second_closing", False)):
+        says = f"time of the {part.replace('_', ' ')} after t = 0, corners that switch together as one"
+        yield Metric(f"switches.{part}", "s", says, asked, partial(contact.second, opens=opens), "switches")
+    for name, unit, says, function in contact.parts():
+        seen = partial(contact.reported, part=function)
+        yield Metric(name, unit, says, frozenset({CONTACT}), seen, "switches")
+    says = _first_line(contact.horizon)
+    yield Metric("horizon.time", "s", says, frozenset({HISTORY, SWITCHES}), contact.horizon, "horizon")
 
 
 KIND = Metric(

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
 from validation.metrics.measurable import Measurable
-from validation.metrics.values import NOT_REPORTED, UNDEFINED
+from validation.metrics.values import NOT_REPORTED, UNDEFINED, largest
+from validation.runs.contact import LOST, STORED, ContactRecord
+from validation.runs.history import Array
 from validation.runs.row import Value
+
+AGREED = 1e-6  # of the maximum: what two correct codes of one model keep as long as rounding is not amplified
+Part = Callable[[ContactRecord], Value]
 
 
 def count(m: Measurable) -> Value:
@@ -17,3 +27,189 @@ def first(m: Measurable, opens: bool) -> Value:
     if m.switches is None:
         return NOT_REPORTED
     return next((switch.time for switch in m.switches if switch.opens is opens), UNDEFINED)
+
+
+def second(m: Measurable, opens: bool) -> Value:
+    """Time at which a corner opens, or closes, for the second time [s]; corners that switch together count as one."""
+    if m.switches is None:
+        return NOT_REPORTED
+    times = sorted({switch.time for switch in m.switches if switch.opens is opens})
+    return times[1] if len(times) > 1 else UNDEFINED
+
+
+def reported(m: Measurable, part: Part) -> Value:
+    """Return a part of what the contact did, not reported where there is no record of it."""
+    return NOT_REPORTED if m.contact is None or not len(m.contact.time) else part(m.contact)
+
+
+def impulse(record: ContactRecord) -> Value:
+    """Integral of the normal forces over the run."""
+    return float(record.impulse[-1])
+
+
+def peak_force(record: ContactRecord) -> Value:
+    """Largest sum of the normal forces on the block."""
+    return float(record.force.max())
+
+
+def penetration(record: ContactRecord) -> Value:
+    """Largest penetration of a corner."""
+    return float(record.penetration.max()) + 0.0
+
+
+def gap(record: ContactRecord) -> Value:
+    """Largest gap of a corner."""
+    return float(record.gap.max())
+
+
+def open_share(record: ContactRecord) -> Value:
+    """Share of the time that the corners are open."""
+    return float(np.average(record.open_share, weights=np.diff(record.time, prepend=0.0)))
+
+
+def mean_solves(record: ContactRecord) -> Value:
+    """Mean number of solves of the open-close iteration in a step."""
+    return NOT_REPORTED if record.solves is None else float(record.solves.mean())
+
+
+def most_solves(record: ContactRecord) -> Value:
+    """Largest number of solves of the open-close iteration in a step."""
+    return NOT_REPORTED if record.solves is None else float(record.solves.max())
+
+
+def cuts(record: ContactRecord) -> Value:
+    """Number of times that a step was cut."""
+    return NOT_REPORTED if record.cuts is None else float(record.cuts.sum())
+
+
+def restitution(record: ContactRecord) -> Value:
+    """Greatest speed of the centre of mass upwards in flight after the first landing over its speed before it."""
+    if record.velocity is None:
+        return NOT_REPORTED
+    before, after = landing(record)
+    if not (before < 0 and len(after)):
+        return UNDEFINED
+    return max(0.0, float(np.max(after))) / -before
+
+
+def landing(record: ContactRecord) -> tuple[float, Array]:
+    """Return the velocity before the first landing, zero where there is none, and those in flight after it [m/s].
+
+    The first landing is the first step with a contact force.
+    """
+    pressed = record.force > 0
+    if record.velocity is None or not pressed.any():
+        return 0.0, np.zeros(0)
+    first = int(np.argmax(pressed))
+    before = record.start_velocity if first == 0 else float(record.velocity[first - 1])
+    return before, record.velocity[first:][~pressed[first:]]
+
+
+def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float]) -> Value:
+    """Return a number of the restitutions of the single contacts, undefined where none begins and ends in the run."""
+    if record.rebounds is None:
+        return NOT_REPORTED
+    found = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
+    return float(part(found)) if found else UNDEFINED
+
+
+def landing_speed(record: ContactRecord) -> Value:
+    """Greatest rate at which a gap closes before a contact."""
+    if record.rebounds is None:
+        return NOT_REPORTED
+    return max((rebound.closing for rebound in record.rebounds), default=UNDEFINED)
+
+
+def stored(record: ContactRecord, name: str) -> Value:
+    """Return an energy at the last step, or what was lost by then."""
+    return float(record.energies[name][-1]) if name in record.energies else NOT_REPORTED
+
+
+def total(record: ContactRecord) -> Array | None:
+    """Return the total energy at each step [J]; None where it is not reported."""
+    if not set(STORED) <= set(record.energies):
+        return None
+    return np.asarray(sum(record.energies[name] for name in STORED), dtype=np.float64)
+
+
+def given(record: ContactRecord) -> Value:
+    """Kinetic energy at the start and what the loads put in until they stand still."""
+    return record.given
+
+
+def rise(record: ContactRecord) -> Value:
+    """Greatest total energy above that at the start, over the energy that start and loads give."""
+    energy = total(record)
+    if energy is None:
+        return NOT_REPORTED
+    return max(0.0, float(energy.max()) - record.start_energy) / record.given if record.given else UNDEFINED
+
+
+def switching(record: ContactRecord) -> Value:
+    """Energy gained by opening and closing, over the energy that start and loads give; negative where it is lost."""
+    lost = record.energies.get(LOST[2])
+    if lost is None:
+        return NOT_REPORTED
+    return -float(lost[-1]) / record.given if record.given else UNDEFINED
+
+
+def imbalance(record: ContactRecord) -> Value:
+    """Largest defect of the energy balance, stored + lost = start, over the largest energy in it."""
+    energy = total(record)
+    if energy is None or not set(LOST) <= set(record.energies):
+        return NOT_REPORTED
+    parts = [record.energies[name] for name in (*STORED, *LOST)]
+    size = max(record.start_energy, *map(largest, parts))
+    defect = energy - record.start_energy + sum(record.energies[name] for name in LOST)
+    return largest(defect) / size if size else UNDEFINED
+
+
+def horizon(m: Measurable) -> Value:
+    """Time up to which two correct codes agree to 1e-6: a run with p (1 + 1e-12) stays that near [s]."""
+    shadow = m.shadow() if m.shadow is not None else None
+    if shadow is None or not len(m.history.time):
+        return NOT_REPORTED
+    n = min(len(shadow.time), len(m.history.time))
+    apart = np.zeros(n, bool)
+    for name, values in m.history.columns.items():
+        if name in ("displacement", "contact_pressure") and name in shadow.columns:
+            apart |= ~(np.abs(values[:n] - shadow.columns[name][:n]) <= AGREED * largest(values))
+    met = np.flatnonzero(apart)
+    return float(m.history.time[met[0] - 1 if len(met) else n - 1]) if not (len(met) and met[0] == 0) else 0.0
+
+
+PARTS: tuple[tuple[str, str, Part], ...] = (
+    ("contact.impulse", "N s", impulse),
+    ("contact.peak_force", "N", peak_force),
+    ("contact.penetration", "m", penetration),
+    ("contact.gap", "m", gap),
+    ("contact.open_share", "1", open_share),
+    ("contact.mean_solves", "1", mean_solves),
+    ("contact.most_solves", "1", most_solves),
+    ("contact.cuts", "1", cuts),
+    ("contact.landing_speed", "m/s", landing_speed),
+    ("contact.restitution", "1", restitution),
+    ("energy.given", "J", given),
+    ("energy.rise", "1", rise),
+    ("energy.switching_gain", "1", switching),
+    ("energy.imbalance", "1", imbalance),
+)
+OF_CONTACTS: dict[str, tuple[str, Callable[[Sequence[float]], float]]] = {
+    "first": ("of the first contact", lambda values: values[0]),
+    "mean": ("mean over the contacts", lambda values: float(np.mean(values))),
+    "most": ("greatest of a contact", max),
+}
+
+
+def parts() -> Iterator[tuple[str, str, str, Part]]:
+    """Yield id, unit, meaning and function of every metric of a contact's record."""
+    for name, unit, function in PARTS:
+        yield name, unit, (function.__doc__ or "").partition("\n")[0].removesuffix("."), function
+    for part, (words, pick) in OF_CONTACTS.items():
+        says = f"rate at which the gap opens over that at which it closed: {words}"
+        yield f"contact.restitution_{part}", "1", says, partial(of_rebounds, part=pick)
+    for name in STORED:
+        yield f"energy.{name}", "J", f"energy at the last step: {name}", partial(stored, name=name)
+    for name in LOST:
+        says = f"energy lost by then: {name} (negative: gained)"
+        yield f"energy.lost_{name.replace(' ', '_')}", "J", says, partial(stored, name=name)

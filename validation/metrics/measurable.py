@@ -10,6 +10,7 @@ import numpy as np
 
 from validation.metrics.poles import Pole, poles
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
+from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, Array, History
 from validation.runs.modes import Mode, Switch
 from validation.runs.row import Value
@@ -28,6 +29,8 @@ class Measurable:
     diagnostics: Mapping[str, float] = field(default_factory=dict)
     outcome: Outcome = Outcome.COMPLETED
     switches: tuple[Switch, ...] | None = None  # of a unilateral contact
+    contact: ContactRecord | None = None  # of a unilateral contact
+    shadow: Callable[[], History | None] | None = None  # runs the scene again with p (1 + 1e-12)
     limit: Callable[[], Value] | None = None  # finds the largest w dt without growth
 
     def column(self, name: str) -> Array | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.metrics.measurable import Measurable
 from validation.metrics.poles import Pole
-from validation.metrics.values import NOT_REPORTED, UNDEFINED
+from validation.metrics.values import ALIAS, NOT_REPORTED, UNDEFINED
 from validation.runs.modes import Mode, contact_index
 from validation.runs.row import Value
 
@@ -35,8 +35,15 @@ def operator_frequency(eigenvalues: tuple[complex, complex], step: float) -> Val
     return float(abs(np.log(first)) / step) if abs(first.imag) > 1e-14 * abs(first) else UNDEFINED
 
 
+def sampled_damping(mode: Mode, step: float) -> float:
+    """Damping ratio xi = -ln |l| / (w dt) of a motion that is exact in time, whose |l| has no alias."""
+    return -math.log(mode.spectral_radius) / (mode.frequency * step) + 0.0
+
+
 def of_mode(m: Measurable, mode: Mode, part: str) -> Value:
     """Return one number of a mode; `least_root` is the real part of the root next to -1."""
+    if mode.alias(m.step) is not None and part in ("numerical_frequency", "damping"):
+        return ALIAS if part == "numerical_frequency" else sampled_damping(mode, m.step)
     if part == "damping":
         return operator_damping(mode.eigenvalues)
     if part == "numerical_frequency":
@@ -59,4 +66,6 @@ def contact(m: Measurable, part: str) -> Value:
 
 def measured(m: Measurable, part: str) -> Value:
     """Return frequency or damping of the strongest oscillating pole of the displacement."""
+    if m.modes and m.modes[0].alias(m.step) is not None:
+        return ALIAS
     return float(getattr(m.pole, part)) if isinstance(m.pole, Pole) else m.pole

@@ -1,4 +1,4 @@
-"""Values of metrics: numbers, or the two words for what has no number; norms and ratios without overflow."""
+"""Values of metrics: numbers, or the words for what has no number; norms and ratios without overflow."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 
 UNDEFINED, NOT_REPORTED = "undefined", "not reported"  # no meaning here; the solver does not give it
+ALIAS = "alias"  # a frequency beyond pi / dt, of which samples every dt show another
 QUANTITIES = {
     "displacement": DISPLACEMENT,
     "pressure": PRESSURE,

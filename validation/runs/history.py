@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,17 +24,28 @@ class Mode:
         The two eigenvalues of the one-step operator that are not identically zero [1].
     contact_share
         Static contact pressure that the mode carries over the applied pressure [1]; None where not reported.
+    sampled
+        Whether the eigenvalues are what a motion that is exact in time does in a step, and no scheme's.
     """
 
     frequency: float
     share: float
     eigenvalues: tuple[complex, complex]
     contact_share: float | None = None
+    sampled: bool = False
 
     @property
     def spectral_radius(self) -> float:
         """Largest modulus of the eigenvalues [1]."""
         return max(abs(value) for value in self.eigenvalues)
+
+    def alias(self, step: float) -> float | None:
+        """Frequency [rad/s] that samples every `step` [s] show of a motion beyond Nyquist's pi / dt, None below it."""
+        if not self.sampled or 0 in self.eigenvalues or self.frequency * step <= math.pi:
+            return None
+        decay = -sum(math.log(abs(value)) for value in self.eigenvalues) / 2  # of the motion in a step [1]
+        turned = math.sqrt(max(0.0, (self.frequency * step) ** 2 - decay**2))
+        return abs(cmath.log(self.eigenvalues[0])) / step if turned > math.pi else None
 
 
 def contact_index(modes: Sequence[Mode]) -> int | None:

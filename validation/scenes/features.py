@@ -5,9 +5,11 @@ A solver says which of them it handles; a scene that has another one is refused 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from validation.errors import InputError
 from validation.scenes.scene import Scene
 
 
@@ -18,10 +20,13 @@ class Feature:
     name: str
     present: Callable[[Scene], bool]
     linear: bool = True
+    of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
 
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
-UNILATERAL, DEAD_BAND = "unilateral contact", "dead bands"
+UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
+COLUMN = "column"
+IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
@@ -29,16 +34,38 @@ FEATURES = (
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
+    Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
+    Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
+    Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
+    Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
 )
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
+RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
+
+
+def _present(scene: Scene) -> tuple[Feature, ...]:
+    asked = FEATURES if scene.column is None else [feature for feature in FEATURES if feature.of_columns]
+    return tuple(feature for feature in asked if feature.present(scene))
 
 
 def of(scene: Scene) -> tuple[str, ...]:
     """Return the names of the features that a scene has."""
-    return tuple(feature.name for feature in FEATURES if feature.present(scene))
+    return tuple(feature.name for feature in _present(scene))
 
 
 def linear(scene: Scene) -> bool:
     """Whether the motion is linear: modes, spectra, a static solution and closed forms exist."""
-    return all(feature.linear for feature in FEATURES if feature.present(scene))
+    return all(feature.linear for feature in _present(scene))
+
+
+def refuse_column(scene: Scene, what: str) -> None:
+    """Refuse a scene with a column where only a block has an answer.
+
+    Raises
+    ------
+    InputError
+        The scene has a column.
+    """
+    if scene.column is not None:
+        raise InputError(f"{scene.name}: {what} takes scenes of a block only, got one with a column")

@@ -30,7 +30,7 @@ def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:
         adjacent = j == i + 1 or (i == 0 and j == n - 1)
         if _folds_back(edges[i], edges[j]) if adjacent else _cross(edges[i], edges[j]):
             raise ValueError(f"vertices must not cross themselves, got edges {i} and {j} that do")
-    if _signed_area(vertices) <= 0:
+    if area(vertices) <= 0:
         raise ValueError("vertices must run counter-clockwise, got a clockwise outline")
 
 
@@ -44,7 +44,8 @@ def _turn(o: Point, a: Point, b: Point) -> float:
     return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
 
 
-def _signed_area(points: tuple[Point, ...]) -> float:
+def area(points: tuple[Point, ...]) -> float:
+    """Return the area of an outline, negative where it runs clockwise [m2]."""
     origin = points[0]
     return sum(_turn(origin, a, b) for a, b in itertools.pairwise(points[1:])) / 2
 

@@ -12,6 +12,7 @@ from validation.runs.files import read_table
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
+STRAIGHT = 1e-9  # of a path, across it
 HEADERS = (["time", "x"], ["time", "y"], ["time", "x", "y"], ["time", "y", "x"])
 
 
@@ -52,6 +53,32 @@ def read_record(path: Path) -> Record:
         raise InputError(f"{path}: time must increase from row to row, got {time[late]:g} after {time[late - 1]:g}")
     still = np.zeros_like(time)
     return Record(time, columns.get("x", still), columns.get("y", still))
+
+
+def direction(record: Record) -> tuple[float, float]:
+    """Return the unit vector of the straight line that the base moves along, towards +x, or +y where it is steeper.
+
+    Raises
+    ------
+    InputError
+        The base does not move, or along no straight line.
+    """
+    moved = np.column_stack([record.x, record.y])
+    moved = moved / (np.max(np.abs(moved)) or 1.0)
+    _, sizes, lines = np.linalg.svd(moved, full_matrices=False)
+    if sizes[0] == 0:
+        raise InputError("load.base_motion: must move for a response to it, got a base at rest")
+    if len(sizes) > 1 and sizes[1] > STRAIGHT * sizes[0]:
+        raise InputError("load.base_motion: must run along one straight line for a response to it, got another path")
+    line = np.where(np.abs(lines[0]) > STRAIGHT, lines[0], 0.0)
+    x, y = (line * np.sign(line[np.argmax(np.abs(line))])).tolist()
+    return x + 0.0, y + 0.0
+
+
+def base_direction(scene: Scene) -> tuple[float, float] | None:
+    """Return the direction that a scene's base moves along, or None where it is fixed."""
+    record = base_record(scene)
+    return None if record is None else direction(record)
 
 
 def base_record(scene: Scene) -> Record | None:

@@ -12,18 +12,15 @@ import math
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, get_args
 
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
+from validation.scenes.kinds import SceneTables
 from validation.scenes.tables import (
-    BlockSection,
-    ContactSection,
-    FemSection,
     GateSection,
-    LoadSection,
     RunSection,
     Section,
     TimeSection,
@@ -33,16 +30,10 @@ SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
 
 
-class Scene(Section):
+class Scene(SceneTables):
     """A scene as its file states it; `expand` resolves the sweep into single cases."""
 
-    name: str = "scene"
-    title: str = ""
-    block: BlockSection
-    contact: ContactSection
-    load: LoadSection
     time: TimeSection
-    fem: FemSection = FemSection()
     run: RunSection = RunSection()
     sweep: dict[str, Any] = Field(default_factory=dict)
     gate: tuple[GateSection, ...] = ()
@@ -62,6 +53,10 @@ class Scene(Section):
         count = max(map(len, lists.values()), default=1) if mode == "zip" else math.prod(map(len, lists.values()))
         if count > MOST_CASES:
             raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_patch(self) -> Self:
         if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
             raise ValueError(
                 f"fem: patch_width must be at most half the base length "
@@ -71,6 +66,8 @@ class Scene(Section):
 
     @model_validator(mode="after")
     def _check_pressed_part(self) -> Self:
+        if self.column is not None:
+            return self
         (x1, y1), (x2, y2) = self.block.edge(self.block.top)
         half = math.hypot(x2 - x1, y2 - y1) / 2
         if self.load.eccentricity and abs(self.load.eccentricity) >= half:
@@ -81,13 +78,23 @@ class Scene(Section):
 
     @model_validator(mode="after")
     def _check_impact(self) -> Self:
-        if self.block.velocity and self.contact.law == "locked":
+        if self.column is None and self.block.velocity and self.contact.law == "locked":
             raise ValueError(f'block: velocity goes with contact.law = "unilateral" only, got {self.block.velocity:g}')
         return self
 
     @model_validator(mode="after")
+    def _check_rule(self) -> Self:
+        given = self.time.alpha, self.time.delta
+        if self.column is None and self.contact.rule != "newmark" and given != (0.25, 0.5):
+            raise ValueError(
+                f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: time.alpha must be "
+                f"0.25 and time.delta 0.5, got {given[0]:g} and {given[1]:g}"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _check_files(self) -> Self:
-        for field, name in (("fem: mesh", self.fem.mesh), ("load: base_motion", self.load.base_motion)):
+        for field, name in self.files():
             try:
                 if name is not None:
                     regular(Path(name))
@@ -150,7 +157,7 @@ class Scene(Section):
 
     def definition(self) -> dict[str, Any]:
         """Return the scene as plain data (what a file would state)."""
-        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True))
+        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
         return data
 
 
@@ -180,12 +187,15 @@ def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> 
 
 def _sweepable() -> set[str]:
     """Return the dotted keys of the tables that a sweep may vary."""
-    tables = {name: field.annotation for name, field in Scene.model_fields.items() if name != "run"}
-    sections = {n: t for n, t in tables.items() if isinstance(t, type) and issubclass(t, Section)}
-    return {f"{name}.{key}" for name, table in sections.items() for key in table.model_fields}
+    keys = set()
+    for name, field in Scene.model_fields.items():
+        for table in (field.annotation, *get_args(field.annotation)):
+            if name != "run" and isinstance(table, type) and issubclass(table, Section):
+                keys |= {f"{field.alias or name}.{key}" for key in table.model_fields}
+    return keys
 
 
-_FILES = ("fem.mesh", "load.base_motion")
+_FILES = ("fem.mesh", "load.base_motion", "input.record")
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
     "time.gg_rate": ("time.gg",),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
 from validation.scenes.outline import Point, check_polygon, convex_quadrilateral
 
@@ -23,6 +23,15 @@ def _real(value: object) -> float:
     if not math.isfinite(number):
         raise ValueError("must be a finite number")
     return number
+
+
+def _stiffness(value: object) -> float:
+    """Accept a number, or inf for a rigid stop, which plain data write as a word."""
+    return math.inf if value in (math.inf, "inf") else _real(value)
+
+
+def _stiffness_as_data(value: float) -> float | str:
+    return "inf" if math.isinf(value) else value
 
 
 def _count(value: object) -> int:
@@ -43,6 +52,9 @@ def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
 
 Real = Annotated[float, BeforeValidator(_real)]
 Positive = Annotated[Real, Field(gt=0)]
+Stiffness = Annotated[
+    float, BeforeValidator(_stiffness), Field(gt=0), PlainSerializer(_stiffness_as_data, when_used="json")
+]
 NonNegative = Annotated[Real, Field(ge=0)]
 Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
 Flag = Annotated[bool, Field(strict=True)]
@@ -134,8 +146,9 @@ class ContactSection(Section):
     """Corner springs at the two ends of the base edge: locked, or unilateral, which carry no tension."""
 
     law: Literal["locked", "unilateral"] = "locked"
-    stiffness: Positive  # p, N/m per corner spring
+    stiffness: Stiffness  # p, N/m per corner spring; inf is a rigid stop, for unilateral contact only
     shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
+    rule: Literal["newmark", "implicit", "energy-conserving"] = "newmark"  # how a step takes the contact force
     gap: NonNegative = 0.0  # m, between block and springs at t = 0
     band: tuple[NonNegative, NonNegative] = (0.0, 0.0)  # m: closes below -band[0], opens above band[1]
     solve_limit: Count = 6  # solves of the open-close iteration before every contact state is tried
@@ -143,12 +156,25 @@ class ContactSection(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        alone = sorted(self.model_fields_set & {"gap", "band", "solve_limit", "cut"})
+        alone = sorted(self.model_fields_set & {"rule", "gap", "band", "solve_limit", "cut"})
         if self.law == "locked" and alone:
             raise ValueError(f'{alone[0]} goes with law = "unilateral" only, got it with a locked contact')
+        if math.isinf(self.stiffness):
+            self._check_rigid()
+        if self.rule == "energy-conserving" and any(self.band):
+            raise ValueError(f'band goes with rule = "newmark" or "implicit", got {list(self.band)} with {self.rule!r}')
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self
+
+    def _check_rigid(self) -> None:
+        if self.law == "locked" or self.rule == "energy-conserving":
+            held = 'law = "locked"' if self.law == "locked" else 'rule = "energy-conserving"'
+            raise ValueError(f"stiffness must be finite with {held}, got inf")
+        if self.shear_stiffness is None:
+            raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
+        if self.band[1] > 0:
+            raise ValueError(f"band must open at once, band[1] = 0, where stiffness = inf, got {list(self.band)}")
 
     @property
     def shear(self) -> float:

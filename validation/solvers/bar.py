@@ -8,13 +8,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.runs.modes import Mode
-from validation.runs.run import Run
+import numpy as np
+
+from validation.runs.contact import ContactRecord
+from validation.runs.history import Array, Complex, History
+from validation.runs.modes import Mode, Switch
+from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
-from validation.solvers.translation import check_columns, naming, no_fields, to_run
+from validation.solvers.translation import check_columns, flips, naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -60,12 +66,67 @@ class NewmarkBar(Prepared):
         """Raise: the bar has no matrix and modes without end."""
         raise NotReported("bar: the exact bar has no matrix and no largest frequency")
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space."""
+        from fem_reference.exact.vibration import response
+
+        with naming(self.scene):
+            return response(self.bar, self.scheme, frequencies, BAR_COLUMNS, exact)
+
+
+class OpeningBar(Prepared):
+    """A bar on a spring that carries no tension, under the scheme of its scene; there is nothing to save."""
+
+    def __init__(self, scene: Scene, name: str) -> None:
+        from fem_reference.exact.opening_bar import OpeningBar as Exact
+
+        self.scene, self.name, self.scheme = scene, name, scheme_of(scene)
+        with naming(scene):
+            self.bar = Exact.of(problem_of(scene), scene.contact.gap, scene.block.velocity)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        no_fields(self.name, self.scene, fields)
+        check_columns(self.scene, OPENING_COLUMNS)
+        with naming(self.scene), np.errstate(over="ignore", invalid="ignore"):
+            found = self.bar.solve(self.scheme, self.scene.time.steps)
+        self.found = found
+        force = found.contact_pressure * self.bar.width / 2
+        values = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
+        columns = dict(zip(OPENING_COLUMNS, values, strict=True))
+        history = History(found.time, {name: columns[name] for name in self.scene.run.columns})
+        seconds = {"setup": found.setup_seconds, "stepping": found.stepping_seconds}
+        notes = ("exact in space: a bar on a spring that carries no tension",)
+        return Run(Outcome.COMPLETED, history, {"steps": len(found.time)}, seconds, notes)
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the switches of the base between the steps."""
+        return flips({"base": self.found.closed}, self.found.time)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; the bar reports no energies."""
+        found, step = self.found, self.scheme.step
+        force = found.contact_pressure * self.bar.width
+        return ContactRecord(
+            time=found.time,
+            force=force,
+            impulse=opened.summed(force, step, self.scheme.delta),
+            penetration=np.maximum(0.0, -found.gap),
+            gap=np.maximum(0.0, found.gap),
+            open_share=1 - found.closed,
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=found.velocity,
+            rebounds=opened.rebounds(np.array([found.gap]), step),
+        )
+
 
 class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
-    handles: frozenset[str] = frozenset({features.SUB_BLOCKS})
+    handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT})
     sections = MESH_SECTIONS
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
@@ -73,19 +134,21 @@ class ExactBar(Solver):
     line: LineStyle | None = LineStyle("#000000", (), 0.8, 3)
 
     def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return BAR_COLUMNS
+        """Return the columns that this solver has; those beyond the first two are of contact that opens."""
+        return OPENING_COLUMNS if features.UNILATERAL in self.handles else BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for this scene."""
-        from fem_reference.exact import bar
+        from fem_reference.exact import bar, opening_bar
         from fem_reference.scheme import modal
 
-        return bar.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
+        exact = opening_bar if features.UNILATERAL in features.of(scene) else bar
+        return exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:
-        """Build the bar."""
-        return NewmarkBar(scene, self.name)
+        """Build the bar, on a locked spring or on one that carries no tension."""
+        opens = features.UNILATERAL in features.of(scene)
+        return OpeningBar(scene, self.name) if opens else NewmarkBar(scene, self.name)
 
 
 class ContinuousBar(NewmarkBar):
@@ -99,10 +162,15 @@ class ContinuousBar(NewmarkBar):
         """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
         step = self.scene.time.step
         half_rate = -math.log(self.scene.time.discount) / step / 2
-        return tuple(Mode(m.frequency, m.share, _sampled(m.frequency, half_rate, step)) for m in super().modes())
+        every = super().modes()
+        return tuple(Mode(m.frequency, m.share, _factors(m.frequency, half_rate, step), None, True) for m in every)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time."""
+        return super().response(frequencies, exact=True)
 
 
-def _sampled(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
+def _factors(w: float, half_rate: float, step: float) -> tuple[complex, complex]:
     """Return the factors by which a damped oscillation changes in a step."""
     root = cmath.sqrt(half_rate**2 - w**2)
     return cmath.exp((root - half_rate) * step), cmath.exp((-root - half_rate) * step)
@@ -112,6 +180,7 @@ class Continuum(ExactBar):
     """Exact in space and time."""
 
     name = "continuum"
+    handles = frozenset({features.SUB_BLOCKS})
     role, rank = Role.TRUTH, 6.0
     line = LineStyle("#999999", (), 0.7, 1)
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
+from validation.runs.contact import ContactRecord
+from validation.runs.history import Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
@@ -44,7 +46,8 @@ class Prepared:
     """A scene that a solver has built once; everything is asked of it.
 
     `run` is required. The others raise `NotReported` where the solver does not offer them, and are asked of linear
-    scenes only: what opens or slips has no modes, no spectrum and no single static solution.
+    scenes only: what opens or slips has no modes, no spectrum, no response to one frequency and no single static
+    solution.
     """
 
     def run(self, fields: Path | None = None) -> Run:
@@ -67,9 +70,22 @@ class Prepared:
         """Return spectral radius, condition number and residual of the step."""
         raise NotReported("no diagnostics are reported")
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the complex amplitudes of displacement and contact pressure at frequencies in Hz; no step is run.
+
+        They are those of the motion that is left when transients have gone, under the scene's loads, which vibrate in
+        phase with the amplitudes that the scene gives them; where the base moves, under its motion alone, for 1 m along
+        its direction. They are as the scene's scheme steps them, or as the same model answers that is `exact` in time.
+        """
+        raise NotReported("no frequency response is reported")
+
     def switches(self) -> tuple[Switch, ...]:
         """Return the openings and closings of a unilateral contact after t = 0, in the order of time."""
         raise NotReported("no switches are reported")
+
+    def contact_record(self) -> ContactRecord:
+        """Return what a unilateral contact did at each step of the history that was run."""
+        raise NotReported("nothing of the contact is reported")
 
 
 class Solver:
@@ -168,6 +184,10 @@ class Solver:
         """Return the diagnostics of a scene (a solver that is one function may override it)."""
         return self.prepare(scene).diagnostics()
 
+    def response(self, scene: Scene, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of a scene (a solver that is one function may override it)."""
+        return self.prepare(scene).response(frequencies, exact)
+
 
 class PreparedByFunction(Prepared):
     """A scene for a solver that is one function, with what else it overrides."""
@@ -190,6 +210,12 @@ class PreparedByFunction(Prepared):
     def diagnostics(self) -> Mapping[str, float]:
         """Return what the solver reports."""
         return self.solver.diagnostics(self.scene) if self._has("diagnostics") else super().diagnostics()
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return what the solver reports."""
+        if not self._has("response"):
+            return super().response(frequencies, exact)
+        return self.solver.response(self.scene, frequencies, exact)
 
     def _has(self, part: str) -> bool:
         return getattr(type(self.solver), part) is not getattr(Solver, part)

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.modes import Mode, Switch
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.dda_opening import COUNTS, FORCES, GAPS, OpeningBlock, OpeningSubBlocks
 from validation.solvers.limits import check_step
-from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
+from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -98,6 +101,15 @@ class OneBlock(Prepared):
 
         return vars(dda.diagnostics(self.model, self.scheme))
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, mode by mode."""
+        import dda
+
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
+        with naming(self.scene):
+            return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+
 
 class SubBlocks(OneBlock):
     """A block cut into glued sub-blocks."""
@@ -144,55 +156,26 @@ class SubBlocks(OneBlock):
         """Raise: diagnostics are those of one whole block."""
         raise NotReported("dda reports diagnostics of a whole block only")
 
-
-FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
-GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
-COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
-
-
-class OpeningBlock(Prepared):
-    """A whole block on corners that carry no tension."""
-
-    def __init__(self, scene: Scene, full: bool) -> None:
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the system."""
         import dda
 
-        self.scene, self.full = scene, full
-        self.result: dda.UnilateralResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
-        with naming(scene):
-            block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
-            loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
-            self.options = dda.UnilateralOptions(solve_limit=c.solve_limit, cut=c.cut, full=full)
-
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
-        import dda
-
-        no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
-        asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
+        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        along = base_direction(self.scene)
         with naming(self.scene):
-            r = dda.solve_unilateral(self.model, scheme_of(self.scene), self.scene.time.steps, asked, self.options)
-        self.result = r
-        contact = {name: getattr(r, name) for name in (*GAPS, *FORCES)}
-        counts = {"solves": r.step_solves.astype(float), "cuts": r.step_cuts.astype(float)}
-        return opened_run(self.scene, r, {**r.columns, **contact, **counts})
-
-    def switches(self) -> tuple[Switch, ...]:
-        """Return the switches between the steps of the history that was run."""
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        r = self.result
-        return flips({"M": r.closed_m.astype(float), "N": r.closed_n.astype(float)}, r.time)
+            return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
     name = "dda"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND}) | features.LOADS
+    handles = (
+        frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
+        | features.LOADS
+        | features.RULES
+    )
+    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -201,22 +184,28 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS)
+        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
-        apart = own & {features.SUB_BLOCKS, features.BASE_MOTION}
-        if features.UNILATERAL in own and apart:
-            return f"it does not handle {', '.join(sorted(apart))} together with {features.UNILATERAL}"
+        if {features.UNILATERAL, features.BASE_MOTION} <= own:
+            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+        if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
+            return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         return None
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.blocks import BlockColumn
+
+            return BlockColumn(scene, scheme_of(scene))
         if features.UNILATERAL in features.of(scene):
-            return OpeningBlock(scene, full)
+            kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
+            return kind(scene, scheme_of(scene), full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
 
@@ -231,6 +220,10 @@ class Printed(OneBlock):
         with naming(self.scene):
             found = dda.solve_textbook(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns)
             return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: the printed recursion is no M D'' + K D = F where mu is not zero."""
+        raise NotReported("dda-textbook reports no frequency response: the printed recursion is stepped only")
 
 
 class Textbook(DDA):

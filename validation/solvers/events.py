@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+import operator
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs.contact import LOST, STORED, ContactRecord, Rebound
 from validation.runs.history import Array, History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, no_fields
 
 if TYPE_CHECKING:
+    from fem_reference.events import bar_events, block_events
     from fem_reference.events import switches as events
     from fem_reference.events.bar_model import BarProblem
     from fem_reference.events.block_model import BlockProblem
@@ -26,6 +31,7 @@ FORCES = ("normal_force_m", "normal_force_n")  # N, on the block, at the two end
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
 BLOCK_COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", *GAPS, *FORCES)
 BAR_COLUMNS = ("displacement", "contact_pressure", *GAPS, *FORCES)
+SAMPLES, IN_CONTACT = 400, 9  # instants in which peaks are sought: of the motion, at least, and of each contact
 TOLD = 6  # switches that a note names
 
 
@@ -101,6 +107,34 @@ class Motion(Prepared):
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)
 
+    def finely(self, *corners: str) -> Array:
+        """Return instants between the steps as well, at least `SAMPLES`, and in each contact, to find peaks in [s]."""
+        t = self.scene.time
+        parts = -(-SAMPLES // t.steps)
+        even = t.step / parts * np.arange(1.0, t.steps * parts + 1)
+        spans = [span for corner in corners for span in self.spans(corner)]
+        within = [np.linspace(first, last or self.end, IN_CONTACT + 2)[1:-1] for first, last in spans]
+        return np.unique(np.concatenate([even, *within]).clip(max=self.end))
+
+    @property
+    def end(self) -> float:
+        """Last instant [s]."""
+        return float(self.instants()[-1])
+
+    def spans(self, corner: str) -> list[tuple[float, float | None]]:
+        """Return when each contact of a corner begins and ends [s]; None where it goes on."""
+        own = [one for one in self.found or () if one.corner == corner]
+        begins = [one.time for one in own if one.kind == "closes"]
+        ends = [one.time for one in own if one.kind == "opens"]
+        if self.starts_closed(corner):
+            begins.insert(0, 0.0)
+        after = [time for time in ends if begins and time > begins[0]]
+        return [(begin, after[i] if i < len(after) else None) for i, begin in enumerate(begins)]
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether a corner is closed just after t = 0."""
+        raise NotImplementedError
+
     def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
         """Return the run of the columns that are asked for."""
         self.found = switches
@@ -109,6 +143,11 @@ class Motion(Prepared):
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
         history = History(self.instants(), asked)
         return Run(Outcome.COMPLETED, history, work, seconds, ("exact in time", switches_in_words(switches)))
+
+
+def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
+    """Return the contacts that begin with a landing: one that rests on its springs at t = 0 does not."""
+    return tuple(rebound for rebound in rebounds if rebound.closing > 0)
 
 
 def switches_in_words(switches: Sequence[events.Switch]) -> str:
@@ -123,6 +162,12 @@ def switches_in_words(switches: Sequence[events.Switch]) -> str:
 class BlockMotion(Motion):
     """The block of one strain."""
 
+    motion: block_events.BlockMotion
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether a corner is closed just after t = 0."""
+        return self.motion.closed_at_start["MN".index(corner)]
+
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         from fem_reference.events.block_events import solve
@@ -131,15 +176,52 @@ class BlockMotion(Motion):
         check_columns(self.scene, BLOCK_COLUMNS)
         began, problem, t = perf_counter(), block_of(self.scene), self.instants()
         with naming(self.scene):
-            motion = solve(problem, float(t[-1]))
+            self.motion = motion = solve(problem, self.end)
         found = motion.at(t)
         named = (found.displacement[1], found.contact_pressure, found.displacement[0], found.displacement[2])
         columns = (*named, *found.gap, *found.normal_force)
         return self.observed(dict(zip(BLOCK_COLUMNS, columns, strict=True)), motion.switches, began)
 
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
+        if self.found is None:
+            raise NotReported(f"{self.name}: the scene was not run")
+        t, push = self.finely(*"MN"), opened.pushing(self.scene)
+        found = self.motion.at(t)
+        velocity, start = found.velocity[1], self.scene.block.velocity
+        spans = [(first, last, i) for i, corner in enumerate("MN") for first, last in self.spans(corner)]
+        return ContactRecord(
+            time=t,
+            force=found.normal_force.sum(axis=0),
+            impulse=opened.mass(self.scene) * (velocity - start) + push * t,
+            penetration=np.maximum(0.0, -found.gap).max(axis=0),
+            gap=np.maximum(0.0, found.gap).max(axis=0),
+            open_share=1 - found.closed.mean(axis=0),
+            start_velocity=start,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=velocity,
+            rebounds=landings(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
+            energies={name: getattr(found, name) for name in STORED}
+            | dict.fromkeys(LOST[:2], np.zeros_like(t))
+            | {LOST[2]: found.released},
+        )
+
+    def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
+        """Return the rates of a corner's gap as its contact begins and ends."""
+        times = [first] if last is None else [first, last]
+        rates = [float(rate) for rate in np.atleast_1d(self.motion.at(times).gap_velocity[corner])]
+        return Rebound(-rates[0], None if last is None else rates[1])
+
 
 class BarMotion(Motion):
     """The bar."""
+
+    motion: bar_events.BarMotion
+
+    def starts_closed(self, corner: str) -> bool:
+        """Whether the base is closed just after t = 0."""
+        return self.motion.closed_at_start
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -149,18 +231,43 @@ class BarMotion(Motion):
         check_columns(self.scene, BAR_COLUMNS)
         began, problem, t = perf_counter(), bar_of(self.scene), self.instants()
         with naming(self.scene):
-            motion = solve(problem, float(t[-1]))
+            self.motion = motion = solve(problem, self.end)
         found = motion.at(t)
         force = found.contact_pressure * problem.width / 2
         columns = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
         return self.observed(dict(zip(BAR_COLUMNS, columns, strict=True)), motion.switches, began)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did; the bar reports no energies."""
+        if self.found is None:
+            raise NotReported(f"{self.name}: the scene was not run")
+        t, width = self.finely("base"), self.motion.problem.width
+        found = self.motion.at(t)
+        return ContactRecord(
+            time=t,
+            force=found.contact_pressure * width,
+            impulse=found.impulse * width,
+            penetration=np.maximum(0.0, -found.gap),
+            gap=np.maximum(0.0, found.gap),
+            open_share=np.asarray(found.gap > 0, dtype=np.float64),
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=found.mean_velocity,
+            rebounds=landings(itertools.starmap(self._rebound, self.spans("base"))),
+        )
+
+    def _rebound(self, first: float, last: float | None) -> Rebound:
+        """Return the velocities of the base as its contact begins and ends."""
+        rates = [None if at is None else float(self.motion.fields(at, [0.0]).velocity[0]) for at in (first, last)]
+        return Rebound(-(rates[0] or 0.0), rates[1])
 
 
 class BlockEvents(Solver):
     """The block of one strain on springs that carry no tension, exact in time: what `dda` tends to as dt -> 0."""
 
     name = "block-events"
-    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT}) | features.RULES
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
@@ -186,7 +293,7 @@ class BarEvents(BlockEvents):
     """The bar on a spring that carries no tension, exact in space and time: what `fem` tends to."""
 
     name = "bar-events"
-    handles = frozenset({features.UNILATERAL, features.WEIGHT})
+    handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
 
@@ -203,3 +310,33 @@ class BarEvents(BlockEvents):
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BarMotion(scene, self.name)
+
+
+def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tuple[float, float, float, float]:
+    """Return mean, least, greatest and mean square of the restitution of a penalty contact over its phase.
+
+    A mass without load under Newmark's scheme; the phase is where in a step it lands, uniform from 0 to 1.
+
+    Parameters
+    ----------
+    alpha, delta, gg
+        The scheme and its discount.
+    omega
+        sqrt(k / m) dt, `math.inf` for a rigid contact.
+
+    Raises
+    ------
+    ValueError
+        A number is out of the range in which the map is defined.
+    """
+    from fem_reference.events.restitution import ContactScheme, statistics
+
+    found = statistics(ContactScheme(alpha, delta, gg), omega)
+    return found.mean, found.low, found.high, found.mean_square
+
+
+def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phase: float) -> float:
+    """Return the restitution of one phase; see `impact_statistics`."""
+    from fem_reference.events.restitution import ContactScheme, restitution
+
+    return float(restitution(ContactScheme(alpha, delta, gg), omega, phase)[0])

@@ -9,17 +9,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
+from validation.runs.contact import LOST, STORED, ContactRecord
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.record import base_record
+from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
+from validation.solvers import opened
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
 
 if TYPE_CHECKING:
     import fem_reference
+    from fem_reference.history.unilateral import UnilateralResult
     from fem_reference.mesh.model import Model
 
 MESH_SECTIONS = ("block", "contact", "load", "time", "run", "fem")
@@ -85,6 +90,13 @@ def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
 
 
+def moving_base(scene: Scene) -> str | None:
+    """Return None, or that a base which carries no tension may not move."""
+    if {features.UNILATERAL, features.BASE_MOTION} <= set(features.of(scene)):
+        return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
+    return None
+
+
 class Mesh(Prepared):
     """A block meshed and assembled once."""
 
@@ -135,6 +147,20 @@ class Mesh(Prepared):
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response of the mesh."""
+        from fem_reference.history.response import response
+
+        check_stable(self.scene, self.model)
+        columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
+        with naming(self.scene):
+            return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
+
+
+# J, in the order of `STORED` and `LOST`
+ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
+LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+
 
 class OpeningMesh(Prepared):
     """A block on a foundation that carries no tension, point by point of its base."""
@@ -147,32 +173,60 @@ class OpeningMesh(Prepared):
         c = scene.contact
         glue = "glued" if c.shear else "frictionless"
         with naming(scene):
-            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut)
+            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut, c.rule)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
-        from fem_reference.history.unilateral import UNILATERAL_COLUMNS, solve_unilateral
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
         no_fields("fem with unilateral contact", self.scene, fields)
         check_columns(self.scene, UNILATERAL_COLUMNS)
-        with naming(self.scene):
-            found = solve_unilateral(self.problem, self.scheme, self.scene.time.steps, self.contact, self.full)
-        self.pressed = found.columns["contact_pressure"] > 0
-        self.time = found.time
+        found = self._solved((*self.scene.run.columns, "contact_pressure"))
+        self.pressed, self.time = found.columns["contact_pressure"] > 0, found.time
         return opened_run(self.scene, found, found.columns)
+
+    def _solved(self, columns: tuple[str, ...]) -> UnilateralResult:
+        from fem_reference.history.unilateral import solve_unilateral
+
+        steps = self.scene.time.steps
+        with naming(self.scene):
+            return solve_unilateral(self.problem, self.scheme, steps, self.contact, self.full, columns=columns)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
         return flips({"base": self.pressed.astype(float)}, self.time)
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contact did, from the same steps with their energies."""
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
+
+        found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
+        seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
+        force = seen["contact_pressure"] * self.scene.block.base_length
+        return ContactRecord(
+            time=found.time,
+            force=force,
+            impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
+            penetration=seen["largest_penetration"],
+            gap=seen["largest_gap"],
+            open_share=seen["open_share"],
+            start_velocity=self.scene.block.velocity,
+            start_energy=opened.start_energy(self.scene),
+            given=opened.given_energy(self.scene),
+            velocity=seen["velocity"],
+            energies={name: seen[column] for name, column in energies},
+            solves=seen["solves"],
+            cuts=seen["cuts"],
+        )
 
 
 class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
-    sections: tuple[str, ...] = MESH_SECTIONS
-    unread = OF_SUB_BLOCKS
+    handles = features.LOADS | {features.SUB_BLOCKS, features.UNILATERAL, features.IMPLICIT, features.COLUMN}
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "column", "input")
+    unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
     role, rank = Role.REFERENCE, 2.0
@@ -181,21 +235,20 @@ class FiniteElements(Solver):
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         import fem_reference
-        from fem_reference.history.unilateral import UNILATERAL_COLUMNS
+        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
-        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS)))
+        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        if features.UNILATERAL not in features.of(scene):
-            return None
-        if features.BASE_MOTION in features.of(scene):
-            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-        spread = scene.fem.foundation == "distributed"
-        return None if spread else f"unilateral contact needs a distributed foundation, not {scene.fem.foundation!r}"
+        return moving_base(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
         if reason := self.applicable(scene):
             raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+        if scene.column is not None:
+            from validation.solvers.columns.elements import LineColumn
+
+            return LineColumn(scene, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

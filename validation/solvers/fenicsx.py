@@ -1,6 +1,6 @@
 """Adapter of FEniCSx: finds an interpreter that has dolfinx and asks the worker there.
 
-The worker is `fem_reference/fenicsx_worker.py`; dolfinx is never imported here, nor by anything but that file.
+The worker is the folder `fem_reference/fenicsx`; dolfinx is never imported here, nor by anything outside that folder.
 """
 
 from __future__ import annotations
@@ -21,20 +21,22 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import History
+from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable, moving_base
 from validation.solvers.processes.worker import ask
-from validation.solvers.translation import check_columns, no_fields, pulls
+from validation.solvers.translation import check_columns, flips, no_fields, pulls
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx_worker.py")  # type: ignore[union-attr,arg-type]
+OPENING_COLUMNS = (*COLUMNS, "base_shear", "open_share", "largest_gap", "largest_penetration", "solves", "cuts")
+WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx")  # type: ignore[union-attr,arg-type]
 # One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
 # that is not of the locale's characters, unless Python reads paths as UTF-8.
 ENVIRONMENT = {
@@ -120,10 +122,10 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    handles = frozenset({features.SUB_BLOCKS}) | features.LOADS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
     sections = MESH_SECTIONS
     unread = OF_SUB_BLOCKS
-    sources = ("fem_reference.fenicsx_worker",)
+    sources = ("fem_reference.fenicsx",)
     distributed = True
     meshed = True
     saves = False
@@ -134,8 +136,8 @@ class FEniCSx(Solver):
         self.ranks = 1
 
     def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return COLUMNS
+        """Return the columns that this solver has; those beyond the first three are of contact that opens."""
+        return OPENING_COLUMNS
 
     def option(self, text: str) -> Solver:
         """Return the solver for ``fenicsx:N``, N ranks."""
@@ -150,7 +152,9 @@ class FEniCSx(Solver):
         """Return None, or which springs this solver does not take."""
         if scene.fem.foundation == "nodes":
             return "it takes springs spread over edges or at the corners, and none at nodes"
-        return None
+        if features.UNILATERAL in features.of(scene) and scene.fem.foundation == "patch":
+            return "it takes unilateral contact on the whole base or at the corners, and none on patches"
+        return moving_base(scene)
 
     def missing(self) -> str | None:
         """Return None, or what is not installed and how to get it."""
@@ -188,8 +192,10 @@ class RemoteMesh(Prepared):
         """Run the scene."""
         scene = self.scene
         no_fields(self.solver.name, scene, fields)
-        check_columns(scene, COLUMNS)
-        check_stable(scene)
+        opens = features.UNILATERAL in features.of(scene)
+        check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
+        if not opens:
+            check_stable(scene)
         if missing := self.solver.missing():
             return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:
@@ -205,10 +211,16 @@ class RemoteMesh(Prepared):
         history = History(np.asarray(answer["time"], float), columns)
         counters = ("unknowns", "nonzeros", "factorisations", "solves")
         work = {name: int(answer[name]) for name in counters}
-        work |= {"steps": self.scene.time.steps, "ranks": self.solver.ranks}
+        work |= {"steps": len(answer["time"]), "ranks": self.solver.ranks}
         seconds = {part: float(answer[f"{part}_seconds"]) for part in ("setup", "stepping")}
         where = f"dolfinx {answer['version']}, {answer['memory'] / 1e6:.0f} MB at the peak over all ranks"
-        return Run(Outcome.COMPLETED, history, work, seconds, (where, *pulls(history)))
+        return Run(Outcome(answer["outcome"]), history, work, seconds, (where, *pulls(history)))
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the switches of the whole base between the steps: no point of it presses, or some do."""
+        if "pressed" not in self.answer:
+            raise NotReported("fenicsx has no switches of a locked base")
+        return flips({"base": np.asarray(self.answer["pressed"], float)}, np.asarray(self.answer["time"], float))
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""
@@ -257,6 +269,11 @@ def request(scene: Scene) -> dict[str, Any]:
         "start": t.start,
         "steps": t.steps,
         "columns": scene.run.columns,
+        "law": c.law,
+        "gap": c.gap,
+        "velocity": b.velocity,
+        "solve_limit": c.solve_limit,
+        "cut": c.cut,
         **(_mesh_of(scene) if f.mesh else {}),
     }
 

@@ -24,7 +24,10 @@ GIGABYTE = 1e9
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
+    if scene.column is not None:
+        model = _column(scene, solver)
+    else:
+        model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
 
 
@@ -42,6 +45,13 @@ def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
     return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
 
 
+def _column(scene: Scene, solver: Solver) -> tuple[float, str]:
+    """Bytes of the few diagonals of a column's matrices."""
+    blocks = float(sum(layer.blocks for layer in scene.column.layer)) if scene.column else 0.0
+    each = scene.fem.degree * scene.fem.per_side if solver.meshed else 2
+    return UNKNOWN * blocks * each, "column.layer"
+
+
 def _blocks(scene: Scene) -> tuple[float, str]:
     """Bytes of the dense matrices of sub-blocks."""
     if scene.block.subdivide is None:
@@ -57,7 +67,7 @@ def check(scene: Scene, solver: Solver) -> None:
     Raises
     ------
     InputError
-        With the field, the estimate and what is there.
+        With the field, the estimate and what is available.
     """
     size, field = needed(scene, solver)
     there = available()
@@ -66,7 +76,7 @@ def check(scene: Scene, solver: Solver) -> None:
         value = getattr(getattr(scene, section), key)
         raise InputError(
             f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
-            f"{there / GIGABYTE:.3g} GB are there, got {value}"
+            f"{there / GIGABYTE:.3g} GB are available, got {value}"
         )
 
 

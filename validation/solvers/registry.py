@@ -21,6 +21,7 @@ BUILT_IN = {
     "fenicsx": "validation.solvers.fenicsx:FEniCSx",
     "bar": "validation.solvers.bar:ExactBar",
     "continuum": "validation.solvers.bar:Continuum",
+    "layers": "validation.solvers.columns.layers:ExactLayers",
     "block-events": "validation.solvers.events:BlockEvents",
     "bar-events": "validation.solvers.events:BarEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",

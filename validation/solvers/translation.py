@@ -30,7 +30,7 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
         "steps": scene.time.steps,
     }
     seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
-    tension = pulls(history)
+    tension = pulls(history) if scene.column is None else ()
     return Run(
         Outcome.COMPLETED,
         history,

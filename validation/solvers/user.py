@@ -25,7 +25,11 @@ from validation.solvers.dda import DDA
 from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
 from validation.solvers.translation import no_fields, pulls
 
-LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case, and what sets it
+LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case beside the steps, and what sets it
+# s for each step of the scene: an interpreted loop over a small dense system takes some 0.03 ms a step, a code that
+# writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
+ALLOWANCE = 5e-3
+PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
 UNITS = {  # what a value in another unit is, over the value in SI
     "time": {1e3: "milliseconds", 1e6: "microseconds"},
     DISPLACEMENT: {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"},
@@ -56,6 +60,19 @@ class UserSolver(Solver):
         """Take the scene; the solver sees it when it is run."""
         return Asked(self, scene)
 
+    def command(self) -> list[str]:
+        """Return the command of the process that the solver runs in."""
+        worker = [sys.executable, "-m", "validation.solvers.processes.user_worker"]
+        return [*worker, self.target, os.getcwd(), *filter(None, sys.path)]
+
+    def parts(self) -> frozenset[str]:
+        """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""
+        try:
+            answer = ask(self.command(), os.environ, {"parts": sorted(PARTS)}, base_limit())
+        except (WorkerHangs, WorkerDied):  # as its first run will do, and say
+            return PARTS
+        return frozenset(answer.get("parts", PARTS))
+
 
 class Asked(Prepared):
     """A scene for a user's solver; what it reports beside the history comes with it."""
@@ -67,20 +84,20 @@ class Asked(Prepared):
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene in the solver's own process."""
         no_fields(self.solver.name, self.scene, fields)
-        limit = float(os.environ.get(VARIABLE, LIMIT))
-        worker = [sys.executable, "-m", "validation.solvers.processes.user_worker"]
-        command = [*worker, self.solver.target, os.getcwd(), *filter(None, sys.path)]
+        limit = base_limit() + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
-            self._answer = ask(command, os.environ, request, limit)
+            self._answer = ask(self.solver.command(), os.environ, request, limit)
         except WorkerHangs:
-            return Run(Outcome.TIMEOUT, notes=(f"hangs: no history within {limit:g} s",))
+            said = f"no history within {limit:g} s, the time limit for {self.scene.time.steps} steps"
+            return Run(Outcome.TIMEOUT, notes=(said,))
         except WorkerDied as error:
             return Run(Outcome.RAISED, notes=(words(f"crashed: {error}"),))
         if "inapplicable" in self._answer:
             return Run(Outcome.NOT_APPLICABLE, notes=(words(str(self._answer["inapplicable"])),))
         if "raised" in self._answer:
-            return Run(Outcome.RAISED, notes=(words(str(self._answer["raised"])),))
+            place = f" ({words(str(self._answer['at']))})" if self._answer.get("at") else ""
+            return Run(Outcome.RAISED, notes=(words(str(self._answer["raised"])) + place,))
         return _judged(self.scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
 
     def static(self) -> Mapping[str, float]:
@@ -102,6 +119,11 @@ class Asked(Prepared):
         if not self._answer.get("modes"):
             raise NotReported(f"{self.solver.name} reports no modes")
         return tuple(Mode(w, share, (complex(*a), complex(*b))) for w, share, (a, b, *_) in self._answer["modes"])
+
+
+def base_limit() -> float:
+    """Return the time limit of a case beside what its steps add [s]."""
+    return float(os.environ.get(VARIABLE, LIMIT))
 
 
 def words(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from validation.gates.gate import Gate
@@ -16,7 +17,12 @@ APART = 1e-17  # two programs never agree to the last bit: a smaller difference 
 def cases(*names: str) -> Iterator[Scene]:
     """Yield the single cases of built-in scenes."""
     for name in names:
-        yield from load_scene(name).expand()
+        yield from _expanded(name)
+
+
+@cache
+def _expanded(name: str) -> tuple[Scene, ...]:
+    return load_scene(name).expand()
 
 
 def about(value: float, half: float) -> tuple[float, float]:

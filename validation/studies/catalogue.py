@@ -25,6 +25,9 @@ STUDIES = {
     "stability": "validation.studies.stability:full",
     "subblocks": "validation.studies.subblocks:SUBBLOCKS",
     "opening": "validation.studies.opening:OPENING",
+    "rebound": "validation.studies.contact.rebound:STUDY",
+    "impacts": "validation.studies.contact.impacts:STUDY",
+    "waves": "validation.studies.waves.study:study",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")

@@ -19,9 +19,10 @@ from validation.solvers.registry import role
 def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
     judged = {scene for scene, solver in finished.rows if role(solver) is Role.JUDGED}
+    blocks = [scene for scene in scenes if scene.column is None]
     return {
-        "alarms": [alarm.record() for alarm in alarms(scenes, finished)],
-        "budgets": list(budgets(scene for scene in scenes if scene.name in judged and features.linear(scene))),
+        "alarms": [alarm.record() for alarm in alarms(blocks, finished)],
+        "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
     }
 
 

@@ -1,9 +1,10 @@
-"""The paper's block unlocked: exact motions against an independent program's numbers, and DDA against exact motions."""
+"""The paper's block unlocked: exact motions against an independent program's numbers, DDA and elements against them."""
 
 from __future__ import annotations
 
 import functools
 import math
+import operator
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -53,12 +54,21 @@ def cases() -> dict[float, Scene]:
     return {case.contact.stiffness / case.block.young: case for case in load_scene(SCENE).expand()}
 
 
-REFINED = {  # scene -> order of DDA in the step, through openings and landings
-    "unlocked-constant": 1.0,
-    "unlocked-average": 2.0,
-    "unlocked-average-zero": 1.0,
+BLOCK = ("dda", "block-events")
+REFINED = {  # scene -> what converges to what, the step or mesh width that is refined, and the order
+    "unlocked-constant": (BLOCK, "time.step", 1.0),
+    "unlocked-average": (BLOCK, "time.step", 2.0),
+    "unlocked-average-zero": (BLOCK, "time.step", 1.0),
+    "unlocked-mesh": (("fem", "bar"), "fem.elements", -4.0),
 }
 NEXT = 0.1  # of an order: what the next order adds over four halvings, seen as the drift of the local orders
+LEDGER = "unlocked-ledger"
+MODEL_FORM = {  # p/E -> relative L2 of the exact block against the exact bar over 250 steps of 0.2 ms, as printed
+    1.0: (0.182, 0.267),
+    10.0: (0.200, 0.904),
+    100.0: (0.321, 1.893),
+}
+SECOND_CODE = ((f"{LEDGER}[contact.stiffness=1e+09]", "fenicsx"),)
 
 
 def derived() -> tuple[Derived, ...]:
@@ -67,22 +77,24 @@ def derived() -> tuple[Derived, ...]:
 
 
 def refined(name: str) -> Derived:
-    """Return the row of the order of DDA in a scene whose step is refined."""
-    steps = load_scene(name).expand()
-    needs = tuple((case.name, solver) for case in steps for solver in ("dda", "block-events"))
-    return Derived(name, "order", needs, functools.partial(order, steps))
+    """Return the row of the order in a scene whose step or mesh is refined."""
+    solvers, key, _ = REFINED[name]
+    levels = load_scene(name).expand()
+    needs = tuple((case.name, solver) for case in levels for solver in solvers)
+    return Derived(name, "order", needs, functools.partial(order, levels, solvers, key))
 
 
-def order(steps: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
-    """Return the order in dt, with its sign, fitted to the displacement's error against the exact motion."""
+def order(levels: tuple[Scene, ...], solvers: tuple[str, str], key: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the order, with its sign, fitted to the displacement's error of one solver against the other."""
     errors = []
-    for case in steps:
-        histories = [finished.history(case.name, solver) for solver in ("dda", "block-events")]
+    for case in levels:
+        histories = [finished.history(case.name, solver) for solver in solvers]
         if histories[0] is None or histories[1] is None:
             return {}
         error = pair("displacement.l2", histories[0], histories[1])
         errors.append(error if isinstance(error, float) else math.nan)
-    slope = np.polyfit(np.log([case.time.step for case in steps]), np.log(errors), 1)[0]
+    sizes = [float(operator.attrgetter(key)(case)) for case in levels]
+    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
     return {"displacement": float(slope)}
 
 
@@ -109,7 +121,7 @@ def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*value_gates(), *switch_gates(), *order_gates())
+    return (*value_gates(), *switch_gates(), *order_gates(), *form_gates())
 
 
 def value_gates() -> Iterator[Gate]:
@@ -122,10 +134,21 @@ def value_gates() -> Iterator[Gate]:
 
 
 def order_gates() -> Iterator[Gate]:
-    """Yield the gates on the order of DDA through openings and landings."""
-    for name, value in REFINED.items():
-        reason = f"order {value:g} of the scheme in smooth motion, kept through switches; {NEXT:g} for the next order"
+    """Yield the gates on the order of DDA in the step and of elements in the mesh, through openings and landings."""
+    for name, (_, key, value) in REFINED.items():
+        what = "of the scheme in smooth motion" if key == "time.step" else "of quadratic elements, as errors over n"
+        reason = f"order {value:g} {what}, kept through switches; {NEXT:g} for the next order"
         yield Gate(name, ("order",), "displacement", value - NEXT, value + NEXT, reason)
+
+
+def form_gates() -> Iterator[Gate]:
+    """Yield the gates on the model form, exact in time: one strain against a wave."""
+    why = "model form, physics: an independent program on the same instants, half a unit of its last digit"
+    for case in load_scene(LEDGER).expand():
+        printed = MODEL_FORM[case.contact.stiffness / case.block.young]
+        for quantity, value in zip(("displacement", "pressure"), printed, strict=True):
+            edges = value - 5e-4, value + 5e-4
+            yield Gate(case.name, ("block-events", "bar-events"), f"{quantity}.l2", *edges, why, "other code", 5e-4)
 
 
 def _near(case: Scene, kind: str, metric: str, value: float, least: float) -> Gate:
@@ -169,7 +192,8 @@ OPENING = Study(
     NAME,
     "Contact that opens: exact motions of the block and of the bar",
     "The same block on springs that carry no tension: when it leaves the ground, when it lands, and what it carries.",
-    [SCENE, *REFINED],
+    [SCENE, *REFINED, LEDGER],
+    extra=SECOND_CODE,
     gates=gates,
     derived=derived,
 )

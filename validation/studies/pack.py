@@ -39,6 +39,7 @@ Made by dda-validation (`dda-validate export-pack`). Nothing of it needs to be i
 | scenes, SI units | `scenes/NAME.toml` |
 | histories, one row a step from the first step on | `histories/NAME.SOLVER.csv` |
 | bands | `bands.csv`, and the same as `bands.json` |
+| contact that opens: exact motions, a restitution map | `contact`, with a README of its own |
 
 One block of unit thickness stands on two locked corner springs (normal stiffness `contact.stiffness`, shear stiffness
 the same unless `shear_stiffness` is given) and is loaded from t = 0 on by `load.pressure`, downwards on its top edge.
@@ -91,16 +92,16 @@ def write_pack(directory: Path) -> Written:
     cases = {case.scene.name: case.scene for case in study.cases() if case.solver == JUDGED}
     gates = [g for g in study.gates() if g.pair[0] == JUDGED and not set(g.pair) & set(ALSO_DDA)]
     for part in ("scenes", "histories"):
-        _make(directory / part)
+        make_directory(directory / part)
     for scene in cases.values():
-        _write(directory / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+        write_text(directory / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
     wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
     for name, solver in wanted:
         write_csv(_history(cases[name], solver), directory / "histories" / history_file(name, solver))
     bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
-    _write(directory / "bands.csv", _as_csv(bands))
-    _write(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
-    _write(directory / "README.md", README)
+    write_text(directory / "bands.csv", _as_csv(bands))
+    write_text(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
+    write_text(directory / "README.md", README)
     return Written(len(cases), len(wanted), len(bands))
 
 
@@ -140,8 +141,17 @@ def as_toml(scene: Scene) -> str:
 
 
 def _line(item: tuple[str, Any]) -> str:
-    """Return a key and its value in TOML, which writes numbers, words and lists as JSON does."""
-    return f"{item[0]} = {json.dumps(item[1], ensure_ascii=False)}"
+    """Return a key and its value in TOML."""
+    return f"{item[0]} = {_value(item[1])}"
+
+
+def _value(value: Any) -> str:
+    """Return a value in TOML, which writes numbers, words and lists as JSON does; tables stand in their line."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(map(_line, value.items()))} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _history(scene: Scene, solver: str) -> Any:
@@ -159,12 +169,20 @@ def _as_csv(rows: Iterable[dict[str, Any]]) -> str:
     return text.getvalue()
 
 
-def _make(path: Path) -> None:
+def make_directory(path: Path) -> None:
+    """Make a directory and those above it.
+
+    Raises
+    ------
+    InputError
+        It cannot be made.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{path}: cannot be made: {error.strerror}; choose another place") from None
 
 
-def _write(path: Path, text: str) -> None:
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole or not at all."""
     write_atomically(path, lambda stream: stream.write(text.encode()))

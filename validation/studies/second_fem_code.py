@@ -12,7 +12,8 @@ from validation.studies.declaration import Study
 
 SQUARES = ("two-codes-constant", "two-codes-average")
 POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh
-SCENES = (*SQUARES, *POLYGONS)
+OPENING = "two-codes-opening"
+SCENES = (*SQUARES, *POLYGONS, OPENING)
 SAME = 1e-10  # of the maximum
 
 

@@ -53,17 +53,20 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
 
 
 def alarm_blocks(group: Group) -> list[Block]:
-    """Return the alarms of a scene: a table for each kind that belongs to cases, a remark for the others."""
+    """Return the alarms of a scene: a table for each kind that has numbers side by side, a remark for each other."""
     labels = {case.name: case.label for case in group.cases}
     kinds: dict[str, list[AlarmRecord]] = {kind: [] for kind in TABLES}
-    others: list[Block] = []
     for alarm in group.alarms:
-        said = alarm["sentence"]
-        if alarm["kind"] in kinds:
-            kinds[alarm["kind"]].append(alarm)
-        else:
-            others.append(Callout(f"{said[:1].upper()}{said[1:]}.", "warn"))
-    return [*(TABLES[kind](own, labels) for kind, own in kinds.items() if own), *others]
+        kinds.setdefault(alarm["kind"], []).append(alarm)
+    tables = [TABLES[kind](own, labels) for kind, own in kinds.items() if own and kind in TABLES]
+    return [*tables, *(Callout(remark(own), "warn") for kind, own in kinds.items() if kind not in TABLES)]
+
+
+def remark(alarms: Sequence[AlarmRecord]) -> str:
+    """Return the sentence of an alarm; of several of one kind the first, and how many cases it is raised in."""
+    said = alarms[0]["sentence"]
+    count = f" (the first of {len(alarms)} cases with this alarm)" if len(alarms) > 1 else ""
+    return f"{said[:1].upper()}{said[1:]}{count}."
 
 
 Alarms = Sequence[AlarmRecord]

@@ -9,7 +9,7 @@ from pathlib import Path
 from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Group, groups
 from validation.report.chapters.gates import ORDER, band, under_headings, value_cell
-from validation.report.chapters.ledger import ledger_lines, ledger_table, part_values, with_entries
+from validation.report.chapters.ledger import OPENING_PARTS, ledger_lines, ledger_table, part_values, with_entries
 from validation.report.chapters.registry import CHAPTERS
 from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import percent, plain, span
@@ -29,20 +29,19 @@ def front_matter(results: Results, studies: Sequence[str], directory: Path) -> l
     for study in studies:
         verdicts += results.verdicts(study)
         named += [] if study in CHAPTERS else groups(results, results.manifest(study))
-    found = with_entries(named)
+    found, opening = with_entries(named), with_entries(named, OPENING_PARTS)
     blocks: list[Block] = [
         Paragraph(headline(found, verdicts), "lead"),
         *_failures(verdicts),
         Heading("Verdicts", 3),
         verdict_counts(results, studies),
     ]
-    if not found:
-        return blocks
-    blocks += [Heading("Error ledger", 3), ledger_table(found)]
-    lines = ledger_lines(found)
-    if any(set(line.parts.values()) != {(None, None)} for line in lines):
+    if found:
+        blocks += [Heading("Error ledger", 3), ledger_table(found)]
         caption = "The error ledger: displacement filled, contact pressure open."
-        blocks.append(histories.saved(histories.ledger_figure(lines), directory, LEDGER_FIGURE, caption))
+        blocks.append(histories.saved(histories.ledger_figure(ledger_lines(found)), directory, LEDGER_FIGURE, caption))
+    if opening:
+        blocks += [Heading("Error ledger of contact that opens", 3), ledger_table(opening, OPENING_PARTS)]
     return blocks
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from validation.report.blocks import Table, columns
@@ -10,12 +10,19 @@ from validation.report.chapters.data import Case, Group
 from validation.report.chapters.text import DASH, bounded, power, raised
 from validation.report.figures.histories import LedgerLine
 from validation.runs.run import Outcome
+from validation.scenes import features
 
 PARTS = {
     "code": ("dda", "dda-textbook"),
     "mesh": ("fem", "bar"),
     "model form": ("dda", "bar"),
     "time": ("bar", "continuum"),
+}
+OPENING_PARTS = {  # contact that opens: no recursion is printed for it, and both models are known exact in time
+    "code": ("fem", "fenicsx"),
+    "mesh": ("fem", "bar"),
+    "model form": ("block-events", "bar-events"),
+    "time": ("dda", "block-events"),
 }
 METRICS = ("displacement.l2", "pressure.l2")
 NOT_COMPARED = "The results hold no comparison of this pair."
@@ -33,11 +40,18 @@ class Entry:
     remark: str = ""
 
 
+def parts_of(case: Case) -> Mapping[str, tuple[str, str]]:
+    """Return the parts of the ledger, each the solver and its reference."""
+    return PARTS if features.linear(case.scene) else OPENING_PARTS
+
+
 def entry(group: Group, case: Case, part: str) -> Entry:
     """Return a part of the ledger for one case."""
-    solver, reference = PARTS[part]
+    solver, reference = parts_of(case)[part]
     if (found := _compared(group, case, solver, reference)) is not None:
         return found
+    if parts_of(case) is OPENING_PARTS:
+        return Entry(reason=_absence(case, solver) or _absence(case, reference) or NOT_COMPARED)
     if part == "code" and (row := case.rows.get("dda")) is not None and row.estimate is not None:
         return Entry((row.estimate, row.estimate), remark="Code: the solver's own estimate of its rounding.")
     if part == "model form" and (instead := _against_fem(group, case)) is not None:
@@ -68,11 +82,11 @@ def _absence(case: Case, solver: str) -> str:
     return f"{solver}: {row.outcome}" + (f" ({'; '.join(row.notes)})." if row.notes else ".")
 
 
-def with_entries(groups: Sequence[Group]) -> list[Group]:
-    """Return the groups with the cases that some part of the ledger applies to."""
+def with_entries(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]] = PARTS) -> list[Group]:
+    """Return the groups with the cases of these parts that some of them applies to."""
     kept = []
     for group in groups:
-        cases = tuple(case for case in group.cases if _has_entry(group, case))
+        cases = tuple(case for case in group.cases if parts_of(case) is parts and _has_entry(group, case))
         kept += [replace(group, cases=cases)] if cases else []
     return kept
 
@@ -81,8 +95,8 @@ def _has_entry(group: Group, case: Case) -> bool:
     return any(entry(group, case, part).values != (None, None) for part in PARTS)
 
 
-def ledger_table(groups: Sequence[Group]) -> Table:
-    """Return the ledger of all cases, reasons and remarks numbered below."""
+def ledger_table(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]] = PARTS) -> Table:
+    """Return the ledger of all cases, which have these parts, reasons and remarks numbered below."""
     notes: list[str] = []
     rows = []
     for group in groups:
@@ -91,8 +105,8 @@ def ledger_table(groups: Sequence[Group]) -> Table:
             rows.append((name, *_row(group, case, notes)))
             name = ""  # once above its cases
     titles = columns("text", "Scene", "Case")
-    for part, (solver, reference) in PARTS.items():
-        over = f"{part}: {solver} − {reference}" if part != "code" else "code: dda − textbook"
+    for part, (solver, reference) in parts.items():
+        over = f"{part}: {solver} − {reference.removeprefix('dda-')}"
         titles += columns("decimal", "displ.", "pressure", group=over)
     caption = "Relative L2 difference over the whole history, as a fraction; below 10⁻¹² a bound."
     return Table(titles, tuple(rows), caption, tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)))

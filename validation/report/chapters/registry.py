@@ -11,9 +11,12 @@ CHAPTERS: dict[str, str] = {
     "work-precision": "validation.report.chapters.work:chapter",
     "paper": "validation.report.chapters.paper:paper_chapter",
     "subblocks": "validation.report.chapters.subblocks:chapter",
-    "stability": "validation.report.chapters.stability:stability_chapter",
-    "stability-small": "validation.report.chapters.stability:stability_chapter",
-    "stiff-contact": "validation.report.chapters.stiff_contact:contact_chapter",
+    "stability": "validation.report.chapters.limits.stability:stability_chapter",
+    "stability-small": "validation.report.chapters.limits.stability:stability_chapter",
+    "impacts": "validation.report.chapters.opened.impacts:chapter",
+    "rebound": "validation.report.chapters.opened.rebound:chapter",
+    "waves": "validation.report.chapters.waves:chapter",
+    "stiff-contact": "validation.report.chapters.limits.stiff_contact:contact_chapter",
 }
 DEFAULT_CHAPTER = "validation.report.chapters.scene:scene_chapter"
 

@@ -15,7 +15,16 @@ from validation.report.chapters.damping import alarm_blocks, budget_blocks
 from validation.report.chapters.data import Case, Group, groups, varied_fields
 from validation.report.chapters.gates import gate_table
 from validation.report.chapters.ledger import METRICS
-from validation.report.chapters.text import AS_STATED, cell, parameters, percent, plain, span, word_notes
+from validation.report.chapters.text import (
+    AS_STATED,
+    cell,
+    load_size,
+    parameters,
+    percent,
+    plain,
+    span,
+    word_notes,
+)
 from validation.report.figures import histories
 from validation.report.figures.curves import COLUMNS, Panel
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -54,7 +63,8 @@ def scene_page(group: Group, directory: Path) -> list[Block]:
     blocks += [_history_block(group, column, directory) for column in _columns(group)]
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    if any(_finished(case) for case in group.cases) and features.linear(group.cases[0].scene):
+    first = group.cases[0].scene
+    if any(_finished(case) for case in group.cases) and features.linear(first) and first.column is None:
         blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
     blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
     if group.verdicts:
@@ -110,7 +120,7 @@ def _tension(group: Group) -> str:
     for solver in group.solvers:
         values = [case.number(solver, "pressure.minimum") for case in group.cases]
         least = min((value for value in values if value is not None), default=0.0)
-        if least < -1e-6 * abs(group.cases[0].scene.load.pressure):
+        if least < -1e-6 * load_size(group.cases[0].scene):
             pulled[solver] = least
     if not pulled:
         return ""
@@ -290,6 +300,6 @@ def _measured(measure: Measure, value: Value, scene: Scene) -> str:
     if not isinstance(value, int | float):
         return cell(value)
     if measure.decimals is None:
-        noise = NOISE * abs(scene.load.pressure) if measure.metric == "pressure.minimum" else 0.0
+        noise = NOISE * load_size(scene) if measure.metric == "pressure.minimum" else 0.0
         return cell(value if abs(value) > noise else 0.0, measure.factor)
     return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")

@@ -15,6 +15,7 @@ AS_STATED = "as stated"  # label of a case without swept values
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
+    ("alias", "alias", "the frequency lies beyond π/Δt, and samples every Δt show another."),
     ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
 )
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
@@ -135,16 +136,9 @@ def _pressure(text: str) -> tuple[str, str]:
 
 def parameters(scene: Scene, varied: set[str]) -> str:
     """Return the data of a scene in one line, without the fields that vary between its cases."""
-    block, time = scene.block, scene.time
-    outline = f"a = {block.side:g} m" if block.side else f"polygon of {len(block.outline)} vertices"
+    time = scene.time
     items = [
-        ("block.side", outline),
-        ("block.density", f"ρ = {block.density:g} kg/m³"),
-        ("block.young", f"E = {short(block.young, 2)} Pa"),
-        ("block.poisson", f"μ = {block.poisson:g}"),
-        ("block.hypothesis", block.hypothesis),
-        ("contact.stiffness", f"p = {short(scene.contact.stiffness, 2)} N/m"),
-        ("load.pressure", f"q = {short(scene.load.pressure, 2)} Pa"),
+        *(_of_column(scene) if scene.column is not None else _of_block(scene)),
         ("time.step", f"dt = {time.step:g} s"),
         ("time.steps", f"{time.steps} steps"),
         ("time.alpha", f"α = {time.alpha:g}"),
@@ -152,7 +146,55 @@ def parameters(scene: Scene, varied: set[str]) -> str:
         ("time.gg", f"gg = {time.discount:.6g}"),
         ("time.start", f"{time.start} initial acceleration"),
         ("fem.degree", f"elements of degree {scene.fem.degree}"),
+        *_of_mesh(scene),
+    ]
+    return ", ".join(text for field, text in items if field not in varied) + "."
+
+
+def _of_block(scene: Scene) -> list[tuple[str, str]]:
+    """Return the data of a block, its contact and its load, by their fields."""
+    block = scene.block
+    outline = f"a = {block.side:g} m" if block.side else f"polygon of {len(block.outline)} vertices"
+    return [
+        ("block.side", outline),
+        ("block.density", f"ρ = {block.density:g} kg/m³"),
+        ("block.young", f"E = {short(block.young, 2)} Pa"),
+        ("block.poisson", f"μ = {block.poisson:g}"),
+        ("block.hypothesis", block.hypothesis),
+        ("contact.stiffness", f"p = {short(scene.contact.stiffness, 2)} N/m"),
+        ("load.pressure", f"q = {short(scene.load.pressure, 2)} Pa"),
+    ]
+
+
+def _of_mesh(scene: Scene) -> list[tuple[str, str]]:
+    """Return the data of the elements, by their fields."""
+    if scene.column is not None:
+        return [("fem.elements", f"{scene.fem.per_side} a block")]
+    return [
         ("fem.elements", f"{scene.fem.per_side} a side" if not scene.fem.mesh else "mesh from a file"),
         ("fem.foundation", f"{scene.fem.foundation} foundation"),
     ]
-    return ", ".join(text for field, text in items if field not in varied) + "."
+
+
+def _of_column(scene: Scene) -> list[tuple[str, str]]:
+    """Return the data of a column and its drive, by their fields."""
+    column, drive = scene.column, scene.input
+    if column is None:
+        return []
+    blocks = sum(layer.blocks for layer in column.layer)
+    joints = f"{len(column.joint)} joint{'s' * (len(column.joint) > 1)}" if column.joint else "no joints"
+    glue = "welded" if column.glue is None else f"glued with {short(column.glue, 2)} Pa/m"
+    return [
+        ("column.layer", f"{len(column.layer)} layer{'s' * (len(column.layer) > 1)} of {blocks} blocks in all"),
+        ("column.height", f"{column.height:g} m high"),
+        ("column.motion", f"{column.motion} waves"),
+        ("column.glue", glue),
+        ("column.joint", joints),
+        ("column.base", f"{column.base} base"),
+        ("input.shape", f"{drive.shape or 'record'} at the {drive.at}"),
+    ]
+
+
+def load_size(scene: Scene) -> float:
+    """Return the size of the pressure on a block [Pa], beside which smaller ones are rounding; a column has none."""
+    return abs(scene.load.pressure) if scene.column is None else math.inf

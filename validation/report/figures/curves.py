@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from validation.runs.history import Array, History
+from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle
 from validation.solvers.registry import get_solver, is_solver
 
@@ -60,6 +61,7 @@ COLUMNS = {
     "contact_pressure": ("Contact pressure", "Pa"),
     "horizontal_displacement": ("Horizontal displacement", "m"),
     "rotation": ("Rotation", "rad"),
+    **{name: (name.replace("_", " ").capitalize(), "m" if name.startswith("d") else "Pa") for name in AT_HEIGHTS},
 }
 
 

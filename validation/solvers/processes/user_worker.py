@@ -1,7 +1,7 @@
 """The process in which a user's solver runs: ``python -m validation.solvers.processes.user_worker module:attribute``.
 
 A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
-them, or "raised" with the error.
+them, or "raised" with the error and "at" with its place. A request of "parts" is answered with those that it has.
 """
 
 from __future__ import annotations
@@ -9,7 +9,10 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import sysconfig
+import traceback
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,6 +28,8 @@ FORMS = (
     "(time, displacement, contact_pressure), or a table of these columns"
 )
 NAMES = ("time", "displacement", "contact_pressure")
+ROOT = Path(__file__).parents[2]  # of this package
+INSTALLED = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
 
 
 def load(name: str) -> Any:
@@ -80,12 +85,25 @@ def text_of(error: BaseException) -> str:
         return f"{type(error).__name__}, whose text raises {type(worse).__name__}"
 
 
+def place_of(error: BaseException, home: Path) -> str:
+    """Return where the solver's own code raised an error, or called what did: ``file:line, in function``."""
+    own = anywhere = ""
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        file = Path(frame.f_code.co_filename)
+        if file.name.startswith("<") or file.is_relative_to(ROOT):
+            continue
+        shown = file.relative_to(home) if file.is_relative_to(home) else file
+        anywhere = f"{shown}:{line}, in {frame.f_code.co_name}"
+        own = own if any(map(file.is_relative_to, INSTALLED)) else anywhere
+    return own or anywhere
+
+
 def optional(solver: Any, part: str, scene: Scene) -> Any:
     """Return what a solver reports beside its history, or None."""
     function: Callable[[Scene], Any] | None = getattr(solver, part, None)
     try:
         return None if function is None else function(scene)
-    except LookupError:  # NotReported among them
+    except (LookupError, NotImplementedError):  # NotReported among them
         return None
 
 
@@ -94,8 +112,11 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     scene = parse_scene(request["scene"], "scene")
     unknown = [name for name in request["features"] if name not in getattr(solver, "handles", features.FIRST)]
     if unknown:
-        return {"inapplicable": f"it does not say that it handles {', '.join(unknown)} (give it `handles`)"}
-    found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
+        return {"inapplicable": f"the solver does not state that it handles {', '.join(unknown)} (give it `handles`)"}
+    try:
+        found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
+    except NotImplementedError as error:
+        return {"inapplicable": f"the solver says that it is not made for this scene: {error}"}
     static, modes = optional(solver, "static", scene), optional(solver, "modes", scene) or ()
     return {
         "columns": {str(name): plain(str(name), values) for name, values in found.items()},
@@ -114,9 +135,11 @@ def main(name: str, paths: list[str]) -> None:
         os.chdir(place)  # which the last scene may have left
         try:
             kept.extend([] if kept else [load(name)])
+            if "parts" in request:
+                return {"parts": [part for part in request["parts"] if hasattr(kept[0], part)]}
             return run(kept[0], request)
         except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
-            return {"raised": text_of(error)}
+            return {"raised": text_of(error), "at": place_of(error, Path(place))}
 
     serve(answer)
 

@@ -7,18 +7,18 @@ that they judge. Their histories are rounded to doubles at the end and cost mill
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.history import Array, History
+from validation.runs.history import Array, Complex, History
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.bar import BAR_COLUMNS, ExactBar, NewmarkBar
-from validation.solvers.contract import Prepared, Role
+from validation.solvers.contract import NotReported, Prepared, Role
 from validation.solvers.dda import DDA, OneBlock
 from validation.solvers.fem import FiniteElements, Mesh
 from validation.solvers.sixty_digits.block import Number
@@ -45,7 +45,15 @@ def _doubles(values: list[Number]) -> Array:
     return found
 
 
-class PreciseBlock(OneBlock):
+class _StepsOnly(Prepared):
+    """A scene that is stepped in sixty-digit arithmetic, and nothing else."""
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: doubles are not sixty digits."""
+        raise NotReported("sixty digits are stepped only: no frequency response is reported")
+
+
+class PreciseBlock(_StepsOnly, OneBlock):
     """A whole block in sixty-digit arithmetic; there is nothing to save."""
 
     def run(self, fields: Path | None = None) -> Run:
@@ -73,7 +81,7 @@ class PreciseDDA(DDA):
         return PreciseBlock(scene, full)
 
 
-class PreciseNewmarkBar(NewmarkBar):
+class PreciseNewmarkBar(_StepsOnly, NewmarkBar):
     """A bar under the Newmark scheme in sixty-digit arithmetic."""
 
     def run(self, fields: Path | None = None) -> Run:
@@ -87,6 +95,7 @@ class PreciseBar(ExactBar):
     """The bar under the Newmark scheme in sixty-digit arithmetic."""
 
     name = "bar-60"
+    handles = frozenset({features.SUB_BLOCKS})
     sources = ("validation.solvers.sixty_digits",)
     role, rank = Role.REPEAT, 9.0
     line = None
@@ -96,7 +105,7 @@ class PreciseBar(ExactBar):
         return PreciseNewmarkBar(scene, self.name)
 
 
-class PreciseMesh(Mesh):
+class PreciseMesh(_StepsOnly, Mesh):
     """A mesh whose own matrices are stepped in sixty-digit arithmetic."""
 
     def run(self, fields: Path | None = None) -> Run:

@@ -1,34 +1,9 @@
-"""The block by FEniCSx: a program of one file, run by whatever interpreter has dolfinx.
-
-It shares no line with the rest of this package: own nodes for the same mesh, own weak forms (UFL), own Newmark
-loop on PETSc matrices, factored once by PETSc's LU on one rank and by MUMPS on more. It reads one JSON object a
-line from standard input and answers each with one line of JSON that carries the request's "id"; it ends where its
-input ends::
-
-    python3 fenicsx_worker.py < requests.jsonl
-    mpirun -n 2 python3 fenicsx_worker.py < requests.jsonl
-
-A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness,
-shear_stiffness, pressure, eccentricity, traction, gravity, moved (displacements (x, y) of the base at t = 0, dt, ...
-or null), last (where the base comes to rest), degree, foundation, patch_width, elements and
-cells ("quadrilaterals" or "triangles"; or points and cells of a mesh file), alpha,
-delta, gg, step, start, steps, columns. An answer holds time, columns, static, unknowns, nonzeros, factorisations,
-solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad input),
-"inapplicable" or "raised" with a sentence.
-
-Runs with dolfinx 0.5 and with the interface of 0.7 to 0.10 (basix elements, another order of arguments).
-"""
+"""The block: nodes of the mesh, weak forms in UFL, matrices, loads and observers."""
 
 from __future__ import annotations
 
-import gc
 import inspect
-import json
-import os
-import resource
-import sys
-import time
-from typing import IO, Any
+from typing import Any
 
 import dolfinx
 import dolfinx.fem.petsc
@@ -41,7 +16,6 @@ from petsc4py import PETSc
 
 COMM = MPI.COMM_WORLD
 BASE, TOP, PRESSED = 1, 2, 3  # the top without its pressed part, and that part
-IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
 Request = dict[str, Any]
 
 
@@ -339,155 +313,3 @@ def assembled(form: Any, add: Any = None) -> Any:
         add(matrix)
         matrix.assemble()
     return matrix
-
-
-class Factor:
-    """Counted solutions with a matrix that is factored once."""
-
-    factorisations = 0
-    solves = 0
-
-    def __init__(self, matrix: Any) -> None:
-        self.ksp = PETSc.KSP().create(COMM)
-        self.ksp.setOperators(matrix)
-        self.ksp.setType("preonly")
-        pc = self.ksp.getPC()
-        pc.setType("lu")
-        pc.setFactorSolverType("petsc" if COMM.size == 1 else "mumps")
-        self.ksp.setUp()
-        self.matrix = matrix
-        Factor.factorisations += 1
-
-    def __call__(self, right: Any) -> Any:
-        """Solve for one right-hand side."""
-        found = self.matrix.createVecRight()
-        self.ksp.solve(right, found)
-        Factor.solves += 1
-        return found
-
-
-class Newmark:
-    """The scheme solved for the displacement, S = M + alpha dt^2 K factored once.
-
-    D* = D + gg dt V + dt^2 (1/2 - alpha) A,  D1 = D + S^-1 [M (D* - D) + alpha dt^2 (F - K D)],
-    A1 = (D1 - D*) / (alpha dt^2), or M^-1 (F - K D1) for alpha = 0,  V1 = gg V + dt ((1 - delta) A + delta A1).
-    """
-
-    def __init__(self, block: Block, request: Request) -> None:
-        self.M, self.K, self.moved = block.M, block.K, request["moved"]
-        self.constant, self.pushes, self.step = block.F, block.pushes, 0
-        self.F = self.load(self.moved[0] if self.moved else (0.0, 0.0))
-        self.dt, self.gg = request["step"], request["gg"]
-        self.alpha, self.delta = request["alpha"], request["delta"]
-        S = self.M.copy()
-        S.axpy(self.alpha * self.dt**2, self.K, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
-        self.solve = Factor(S)
-        self.nonzeros = int(S.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
-        self.D, self.V, self.A = (self.K.createVecRight() for _ in range(3))
-        if request["start"] == "consistent":
-            self.A = (Factor(self.M) if self.alpha > 0 else self.solve)(self.F)
-
-    def load(self, moved: Any) -> Any:
-        """The load where the base is displaced by (x, y)."""
-        x, y = moved
-        return self.constant + x * self.pushes[0] + y * self.pushes[1] if x or y else self.constant
-
-    def _residual(self) -> Any:
-        r = self.K.createVecRight()
-        self.K.multAdd(-self.D, self.F, r)
-        return r
-
-    def advance(self) -> Any:
-        """Take one step and return the displacement."""
-        dt, alpha, A = self.dt, self.alpha, self.A
-        if self.moved:
-            self.step += 1
-            self.F = self.load(self.moved[self.step])
-        ahead = self.gg * dt * self.V + dt**2 * (0.5 - alpha) * A  # D* - D
-        increment = self.solve(self.M * ahead + alpha * dt**2 * self._residual())
-        self.D = self.D + increment
-        self.A = (increment - ahead) / (alpha * dt**2) if alpha > 0 else self.solve(self._residual())
-        self.V = self.gg * self.V + dt * ((1 - self.delta) * A + self.delta * self.A)
-        return self.D
-
-
-def run(request: Request) -> dict[str, Any]:
-    """Answer one request; every rank runs this, and all return the same."""
-    Factor.factorisations = Factor.solves = 0
-    began = time.perf_counter()
-    block = Block(request)
-    scheme = Newmark(block, request)
-    ready = time.perf_counter()
-    rows = [block.observers[name] for name in request["columns"]]
-    history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
-    ended = time.perf_counter()
-    done = Factor.factorisations, Factor.solves
-    rest = Factor(block.K)(scheme.load(request["last"]))
-    static = {name: float(row.dot(rest)) for name, row in block.observers.items()}
-    static["contact_pressure"] += float(block.carried_pressure(request["last"]))
-    if request["moved"] and "contact_pressure" in request["columns"]:
-        history[:, request["columns"].index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
-    memory = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
-    return {
-        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
-        "columns": {name: history[:, i].tolist() for i, name in enumerate(request["columns"])},
-        "static": static,
-        "unknowns": block.K.getSize()[0],
-        "nonzeros": scheme.nonzeros,
-        "factorisations": done[0],
-        "solves": done[1],
-        "setup_seconds": ready - began,
-        "stepping_seconds": ended - ready,
-        "memory": memory,
-        "version": dolfinx.__version__,
-    }
-
-
-def answer(request: Request) -> dict[str, Any]:
-    """Run one request; what fails alike on every rank is an answer, anything else ends all ranks."""
-    try:
-        return run(request)
-    except Inapplicable as error:
-        return {"inapplicable": str(error)}
-    except ValueError as error:
-        return {"refused": str(error)}
-    except Exception as error:
-        if COMM.size > 1:
-            sys.stderr.write(f"{type(error).__name__}: {error}\n")
-            COMM.Abort(1)
-        return {"raised": f"{type(error).__name__}: {error}"}
-
-
-def next_line() -> str:
-    """Line that the first rank reads; the others wait for it without keeping a processor busy."""
-    if COMM.rank == 0:
-        line = sys.stdin.readline()
-        for rank in range(1, COMM.size):
-            COMM.send(line, dest=rank)
-        return line
-    while not COMM.iprobe(source=0):
-        time.sleep(IDLE)
-    return str(COMM.recv(source=0))
-
-
-def answers_only() -> IO[str]:
-    """Keep standard output for answers: whatever a library writes there goes to standard error."""
-    kept = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)
-    return kept
-
-
-def main() -> None:
-    """Answer request after request."""
-    out = answers_only()
-    while line := next_line():
-        request = json.loads(line)
-        found = answer(request)
-        if COMM.rank == 0:
-            out.write(json.dumps({**found, "id": request.get("id")}) + "\n")
-            out.flush()
-        gc.collect()  # on every rank at the same place: matrices are freed together
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,239 @@
+r"""Histories of a column by the Newmark scheme with a dashpot.
+
+One step from (D, V, A) is the scheme's (6) and (7), solved for the acceleration:
+
+    D* = D + gg dt V + dt^2 (1/2 - alpha) A,        V* = gg V + dt (1 - delta) A
+    (M + delta dt C + alpha dt^2 K) A1 = F1 - C V* - K D*
+    D1 = D* + alpha dt^2 A1,                        V1 = V* + delta dt A1
+
+The matrix has three diagonals below and on the main one and is factorised once. Nothing is divided by alpha, and
+alpha = 0 is the same code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.column.column import Column
+from dda.column.equations import WIDTH, Bands, Equations, equations
+from dda.one_block.solution import Result, bound_overflow, step_times
+from dda.scheme.newmark import Scheme
+
+Array = NDArray[np.float64]
+DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"  # of the top [m], on the base [Pa]
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What drives a column, at t = 0 and at every step, each (steps + 1,).
+
+    The base's motion is that of the base itself or, above a half-space, the particle motion of the wave that comes up.
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ or a number is not finite.
+    """
+
+    displacement: Array  # of the base [m]
+    velocity: Array  # of the base, or of the incident wave [m/s]
+    acceleration: Array  # of the base [m/s^2]
+    pressure: Array  # on the top, towards the base where positive (in shear: against the displacement) [Pa]
+
+    def __post_init__(self) -> None:
+        """Check lengths and numbers."""
+        parts = [np.asarray(part) for part in vars(self).values()]
+        if len({part.shape for part in parts}) != 1 or parts[0].ndim != 1:
+            raise ValueError(f"drive: must hold arrays of one length, got {[part.shape for part in parts]}")
+        if not all(np.all(np.isfinite(part)) for part in parts):
+            raise ValueError("drive: must hold finite numbers only, got NaN or infinity")
+
+
+def column_names(heights: Sequence[float]) -> tuple[str, ...]:
+    """Return the names of the columns of a history: of top and base, then of every height that is asked for."""
+    own = [f"{name}_{number + 1}" for name in (DISPLACEMENT, "stress") for number in range(len(heights))]
+    return (DISPLACEMENT, PRESSURE, *own)
+
+
+def solve_column(
+    column: Column,
+    scheme: Scheme,
+    drive: Drive,
+    columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
+    heights: Sequence[float] = (),
+) -> Result:
+    """Step a column from rest and return the asked columns.
+
+    Parameters
+    ----------
+    drive : Drive
+        What drives it; it holds one instant more than there are steps.
+    columns : sequence of str
+        ``displacement`` of the top [m], ``contact_pressure`` on the base [Pa], ``displacement_1``, ... [m] and
+        ``stress_1``, ... [Pa, positive in compression; in shear minus the shear stress] at the heights.
+    heights : sequence of float
+        Heights above the base [m]; where two blocks meet, the lower one is observed.
+
+    Raises
+    ------
+    ValueError
+        If a column is unknown or a height lies outside.
+    """
+    import scipy.linalg  # noqa: F401  (before the clock starts)
+
+    for name in columns:
+        if name not in column_names(heights):
+            raise ValueError(f"columns: must be among {', '.join(column_names(heights))}, got {name!r}")
+    began = perf_counter()
+    system = equations(column)
+    stepper = Stepper(system, scheme)
+    observed = observers(system, columns, heights)
+    ready = perf_counter()
+    with np.errstate(all="ignore"):
+        found = stepper.run(drive, observed) + 0.0
+        overflow = bound_overflow(found, 1.0)
+    ended = perf_counter()
+    steps = found.shape[1]
+    return Result(
+        time=step_times(scheme, steps),
+        columns=dict(zip(columns, found, strict=True)),
+        unknowns=stepper.M.rows.shape[1],
+        nonzeros=int(np.count_nonzero(stepper.S.rows)),
+        factorisations=1,
+        solves=steps,
+        notes=overflow,
+        setup_seconds=ready - began,
+        stepping_seconds=ended - ready,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Observers:
+    """Rows that observe displacement, velocity, acceleration and the drive's four parts, one row a column."""
+
+    D: Array  # (columns, unknowns)
+    V: Array
+    A: Array
+    drive: Array  # (columns, 4)
+
+
+def observers(system: Equations, columns: Sequence[str], heights: Sequence[float]) -> Observers:
+    """Return the rows of the columns."""
+    none = np.zeros((len(columns), system.size))
+    rows = Observers(none.copy(), none.copy(), none.copy(), np.zeros((len(columns), 4)))
+    for number, name in enumerate(columns):
+        if name == PRESSURE:
+            _base_pressure(system, rows, number)
+        elif name == DISPLACEMENT:
+            rows.D[number] = system.row(len(system.lower) - 1, 0.0, 1.0)
+        else:
+            rows.D[number] = _at_height(system, name, heights)
+    return rows
+
+
+def _base_pressure(system: Equations, rows: Observers, number: int) -> None:
+    """Write the row of the base's force on the column: the told base's equation, or z (2 v - V) of the half-space."""
+    if system.told:
+        first = np.eye(1, system.size)[0]
+        rows.D[number], rows.A[number] = system.K @ first, system.M @ first
+    else:
+        rows.V[number, 0], rows.drive[number, 1] = -system.dashpot, 2 * system.dashpot
+
+
+def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
+    kind, _, place = name.rpartition("_")
+    block, share = system.column.block_at(heights[int(place) - 1])
+    if kind == DISPLACEMENT:
+        return system.row(block, 1 - share, share)
+    spring = system.column.moduli[block] / system.column.heights[block]
+    return system.row(block, spring, -spring)
+
+
+def effective_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
+    """Return M + delta dt C + alpha dt^2 K by diagonals."""
+    return M + scheme.delta * scheme.step * C + scheme.alpha * scheme.step**2 * K
+
+
+def predictors(scheme: Scheme, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
+    """Return D* and V* of eq. (6) and (7)."""
+    dt = scheme.step
+    displaced = D + scheme.gg * dt * V + dt**2 * (0.5 - scheme.alpha) * A
+    return displaced, scheme.gg * V + dt * (1 - scheme.delta) * A
+
+
+class Stepper:
+    """The scheme on the equations of a column; of a base that is told only its effect on the others is left."""
+
+    def __init__(self, system: Equations, scheme: Scheme) -> None:
+        """Form the matrices of the free unknowns and factorise the one of the step."""
+        self.system, self.scheme = system, scheme
+        first = int(system.told)
+        self.first, self.M, self.K = first, Bands(system.M.rows[:, first:]), Bands(system.K.rows[:, first:])
+        self.C = Bands.zeros(system.size - first)
+        self.C.add(0, 0, system.dashpot)
+        self.S = Bands(effective_matrix(scheme, self.M.rows, self.C.rows, self.K.rows))
+        self.solve = _factorised(self.S)
+        base = np.eye(1, system.size)[0]
+        top = system.row(len(system.lower) - 1, 0.0, -1.0)
+        dashed = 2 * system.dashpot * base
+        parts = (-(system.K @ base), dashed, -(system.M @ base), top)
+        told = np.array([first, 1 - first, first, 1.0])
+        self.push = (np.array(parts).T * told)[first:]  # (unknowns, 4): load of each part of the drive
+
+    def run(self, drive: Drive, rows: Observers) -> Array:
+        """Return the observed rows at every step, (rows, steps)."""
+        s, push = self.scheme, self.push
+        parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
+        by_state = np.hstack([matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A)])
+        K, C = _product(self.K), _product(self.C)
+        D = np.zeros(len(push))
+        V, A = np.zeros_like(D), self._start(push @ parts[0])
+        found = np.empty((len(by_state), len(parts) - 1))
+        for n, part in enumerate(parts[1:]):
+            D, V = predictors(s, D, V, A)
+            A = self.solve(push @ part - C(V) - K(D))
+            D, V = D + s.alpha * s.step**2 * A, V + s.delta * s.step * A
+            found[:, n] = by_state @ np.concatenate((D, V, A))
+        return found + self.told(rows) @ parts[1:].T
+
+    def told(self, rows: Observers) -> Array:
+        """Return the rows of the drive, with what the told base adds by its displacement and acceleration."""
+        own = rows.drive.copy()
+        if self.first:
+            own[:, 0] += rows.D[:, 0]
+            own[:, 2] += rows.A[:, 0]
+        return own
+
+    def _start(self, F: Array) -> Array:
+        if self.scheme.start != "consistent":
+            return np.zeros_like(F)
+        if not self.system.told and 0 in self.system.openings:
+            raise ValueError("start: must be 'zero' where a spring lies between half-space and column")
+        return _factorised(self.M)(F)
+
+
+def _product(matrix: Bands) -> Callable[[Array], Array]:
+    """Return the product of a matrix with vectors, by one call of BLAS."""
+    from scipy.linalg.blas import dsbmv
+
+    rows = np.asfortranarray(matrix.rows)
+    return lambda x: np.asarray(dsbmv(WIDTH, 1.0, rows, x, lower=1))
+
+
+def _factorised(matrix: Bands) -> Callable[[Array], Array]:
+    """Return the solver of right-hand sides of a positive definite matrix, factorised now."""
+    from scipy.linalg import cholesky_banded
+    from scipy.linalg.lapack import dpbtrs
+
+    factor = np.asfortranarray(cholesky_banded(matrix.rows, lower=True))
+
+    def solve(right: Array) -> Array:
+        solution: Array = dpbtrs(factor, right, lower=1)[0]
+        return solution
+
+    return solve

@@ -1,0 +1,230 @@
+"""Histories of sub-blocks over a base that carries no tension."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.one_block.solution import Result, check_request, step_times
+from dda.one_block.unilateral import COMPLETED, FLOOR, OVERFLOW, UnilateralOptions, check_scheme
+from dda.one_block.unilateral_energy import ENERGIES
+from dda.one_block.unilateral_step import NEWMARK
+from dda.scheme.newmark import Scheme
+from dda.system.opening import Length, OpeningSystem, SystemState, start_state
+from dda.system.opening_energy import SystemLedger
+
+Array = NDArray[np.float64]
+_LENGTHS = 16  # step lengths whose factors are kept
+
+
+@dataclass(frozen=True, eq=False)
+class OpeningResult(Result):
+    """Histories of the steps that were reached; element 0 is step 1. Forces act on the sub-blocks.
+
+    The points of the base are in their order from M to N, two for each sub-block on it.
+    """
+
+    outcome: str  # "completed", or why the history ends early, in words
+    normal: Array  # (points, steps) N, away from the base [N]
+    shear: Array  # (points, steps) T, along the base from M to N [N]
+    gap: Array  # (points, steps) w, negative when pressed [m]
+    closed: NDArray[np.bool_]  # (points, steps)
+    velocity: Array  # of the centre of mass, upwards [m/s]
+    horizontal_velocity: Array  # of the centre of mass [m/s]
+    step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
+    step_cuts: NDArray[np.int_]  # times that a step was cut
+    energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
+
+    @property
+    def gap_m(self) -> Array:
+        """W at M [m]."""
+        return np.asarray(self.gap[0])
+
+    @property
+    def gap_n(self) -> Array:
+        """W at N [m]."""
+        return np.asarray(self.gap[-1])
+
+    @property
+    def normal_force_m(self) -> Array:
+        """N of the point at M alone [N]."""
+        return np.asarray(self.normal[0])
+
+    @property
+    def normal_force_n(self) -> Array:
+        """N of the point at N alone [N]."""
+        return np.asarray(self.normal[-1])
+
+    @property
+    def shear_force_m(self) -> Array:
+        """T of the point at M alone [N]."""
+        return np.asarray(self.shear[0])
+
+    @property
+    def shear_force_n(self) -> Array:
+        """T of the point at N alone [N]."""
+        return np.asarray(self.shear[-1])
+
+    @property
+    def closed_m(self) -> NDArray[np.bool_]:
+        """State of the point at M."""
+        return np.asarray(self.closed[0])
+
+    @property
+    def closed_n(self) -> NDArray[np.bool_]:
+        """State of the point at N."""
+        return np.asarray(self.closed[-1])
+
+
+class Row(NamedTuple):
+    """What is kept of a step."""
+
+    columns: Array
+    normal: Array
+    shear: Array
+    gap: Array
+    closed: NDArray[np.bool_]
+    momentum: Array  # dt times the momentum in x and y
+    solves: int
+    cuts: int
+    energies: tuple[float, ...]
+
+
+def solve_opening_system(
+    opening: OpeningSystem,
+    scheme: Scheme,
+    steps: int,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    options: UnilateralOptions | None = None,
+) -> OpeningResult:
+    """Step sub-blocks on points that open, from rest or from their starting velocity.
+
+    Parameters and outcomes are those of `dda.solve_unilateral`; the rule is "newmark", and all unknowns are kept.
+
+    Raises
+    ------
+    ValueError
+        If the number of steps is not positive, a column is unknown, or rule, scheme and contact exclude each other.
+    """
+    import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
+
+    check_request(steps, columns)
+    options = options or UnilateralOptions()
+    if options.rule != NEWMARK:
+        raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    check_scheme(opening.law, scheme)
+    began = perf_counter()
+    stepping = SystemStepping(opening, scheme, options, columns)
+    stepping.length(1.0)
+    ready = perf_counter()
+    with np.errstate(all="ignore"):
+        rows = list(stepping.run(steps))
+    return _result(stepping, rows, (ready - began, perf_counter() - ready))
+
+
+class SystemStepping:
+    """The history of the sub-blocks, step by step."""
+
+    def __init__(
+        self, opening: OpeningSystem, scheme: Scheme, options: UnilateralOptions, columns: Sequence[str]
+    ) -> None:
+        self.opening, self.scheme, self.options, self.names = opening, scheme, options, tuple(columns)
+        self.outcome, self.factorisations = COMPLETED, 0
+        self.lengths: dict[float, Length] = {}
+        self.observers = opening.equations.rows(columns)[0]
+        self.pressed = (
+            np.array([name == "contact_pressure" for name in columns], dtype=float)[:, None]
+            / opening.system.base_length
+        )
+        self.ledger = SystemLedger(opening, scheme.step) if options.energies else None
+
+    def run(self, steps: int) -> Iterator[Row]:
+        """Yield the steps that are reached; `outcome` says how it ended."""
+        state = start_state(self.opening, self.scheme)
+        for _ in range(steps):
+            reached, solves, cuts = self._interval(state)
+            if reached is None:
+                return
+            if not np.isfinite(reached.D).all():
+                self.outcome = OVERFLOW
+                return
+            state = reached
+            yield self._row(state, solves, cuts)
+
+    def _row(self, state: SystemState, solves: int, cuts: int) -> Row:
+        p = state.points
+        seen = self.observers @ state.D + self.pressed @ np.array([np.sum(p.normal)])
+        momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
+        kept = self.ledger.row(state) if self.ledger else ()
+        return Row(seen, p.normal, p.shear, p.gap, p.closed, momentum, solves, cuts, kept)
+
+    def _interval(self, state: SystemState) -> tuple[SystemState | None, int, int]:
+        """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
+        left = ratio = 1.0
+        solves = cuts = 0
+        while True:
+            length = self.length(ratio)
+            after, found = length.advance(state, self.options.solve_limit)
+            solves += found.solves
+            if after is None:
+                if ratio <= FLOOR:
+                    self.outcome = str(found.failure)
+                    return None, solves, cuts
+                ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
+                continue
+            if self.ledger:
+                self.ledger.add(length, state, after)
+            state = after
+            if ratio == left:
+                return state, solves, cuts
+            left -= ratio
+            ratio = left
+
+    def length(self, ratio: float) -> Length:
+        """Return what depends on the step's length, factorised once for each."""
+        if ratio not in self.lengths:
+            if len(self.lengths) >= _LENGTHS:
+                self.lengths = {1.0: self.lengths[1.0]}
+            self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
+            self.factorisations += 1
+        return self.lengths[ratio]
+
+
+def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float, float]) -> OpeningResult:
+    opening, steps = stepping.opening, len(rows)
+    points, blocks = len(opening.normals), opening.system.blocks
+    mass = math.fsum(block.material.density * block.section.area for block in blocks)
+
+    def history(name: str, width: int) -> Array:
+        return np.array([getattr(row, name) for row in rows], dtype=float).reshape(steps, width).T
+
+    velocity = history("momentum", 2) / (mass * stepping.scheme.step)
+    kept = history("energies", len(ENERGIES)) if stepping.ledger else None
+    ended = () if stepping.outcome == COMPLETED else (f"{stepping.outcome} at step {steps + 1}",)
+    return OpeningResult(
+        time=step_times(stepping.scheme, steps),
+        columns=dict(zip(stepping.names, history("columns", len(stepping.names)) + 0.0, strict=True)),
+        unknowns=len(opening.equations.F),
+        nonzeros=stepping.length(1.0).stepper.factor.nonzeros,
+        factorisations=stepping.factorisations,
+        solves=sum(row.solves for row in rows),
+        notes=("stepped: contact opens and closes", *ended),
+        setup_seconds=seconds[0],
+        stepping_seconds=seconds[1],
+        outcome=stepping.outcome,
+        normal=history("normal", points),
+        shear=history("shear", points),
+        gap=history("gap", points),
+        closed=history("closed", points) > 0,
+        velocity=velocity[1],
+        horizontal_velocity=velocity[0],
+        step_solves=np.array([row.solves for row in rows], dtype=int),
+        step_cuts=np.array([row.cuts for row in rows], dtype=int),
+        energies=None if kept is None else dict(zip(ENERGIES, kept, strict=True)),
+    )

@@ -1,0 +1,190 @@
+r"""Response of a system of blocks to a steady vibration, without a step.
+
+With the static response D0 to the load, (K - W2 M) D = F is (1 - W2 H) D = D0, H = K^-1 M. Lanczos' recursion on H
+from D0, orthogonal in the inertia M, makes vectors with V' M H V = T, tridiagonal, and
+
+    D = V y,      (1 - W2 T) y = |D0| e_1,      remainder  -W2 beta y_m times the next vector,
+
+for every frequency at once. K^-1 is applied to blocks and joint forces together, so that stiff joints cost no digits,
+and every vector carries what is observed of it, forces included. A few blocks, a chain of them, and frequencies that a
+space of `LARGEST` vectors does not resolve or whose wave has decayed to the rounding of its sum, are solved one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dda.one_block.solution import check_request
+from dda.scheme.harmonic import Complex, chosen
+from dda.scheme.newmark import Scheme
+from dda.system.system import BlockSystem, Equations
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+Array = NDArray[np.float64]
+
+BAND = 2e5  # unknowns times the square of their band's width up to which every frequency is solved by itself
+LARGEST = 600  # vectors
+AT_A_TIME = 16  # vectors between two looks at the remainder
+RESOLVED = 1e-13  # remainder over the static and over the actual response
+ROUNDING = 1e-8  # of a sum over the vectors, over the sum
+CLOSED = 1e-15  # share of a new vector outside the space, over the largest, below which it is rounding
+
+
+class _Space:
+    """The vectors of the recursion, with what is observed of them."""
+
+    def __init__(self, equations: Equations, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
+        """Begin with the static response (D, joint forces)."""
+        self.equations, self.rows = equations, rows
+        self.M: csr_array = equations.blockwise(equations.mass)
+        D, force = static
+        inertia = self.M @ D
+        self.size = float(np.sqrt(D @ inertia))
+        scale = 1 / self.size if self.size > 0 else 0.0
+        capacity = min(LARGEST, len(D)) + 1
+        self.vectors, self.inertias = np.empty((capacity, len(D))), np.empty((capacity, len(D)))
+        self.observed = np.empty((capacity, len(rows[0])))
+        self.vectors[0], self.inertias[0] = scale * D, scale * inertia
+        self.observed[0] = scale * (rows[0] @ D + rows[1] @ force)
+        self.diagonal: list[float] = []
+        self.beside: list[float] = []
+        self.closed = self.size == 0
+
+    def grow(self) -> None:
+        """Add a vector."""
+        j = len(self.diagonal)
+        made = slice(0, j + 1)
+        D, force = self.equations.at_rest(self.inertias[j], np.zeros(len(self.equations.pressure)))
+        seen = self.rows[0] @ D + self.rows[1] @ force
+        inside = 0.0
+        for _ in range(2):  # twice is enough
+            part = self.inertias[made] @ D
+            D = D - part @ self.vectors[made]
+            seen = seen - part @ self.observed[made]
+            inside += float(part[j])
+        inertia = self.M @ D
+        size = float(np.sqrt(max(D @ inertia, 0.0)))
+        self.diagonal.append(inside)
+        self.beside.append(size)
+        self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(D)
+        if not self.closed:
+            self.vectors[j + 1], self.inertias[j + 1] = D / size, inertia / size
+            self.observed[j + 1] = seen / size
+
+    def grown(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+        """Grow until every frequency is resolved, or the space is closed or as large as allowed; answer."""
+        while True:
+            for _ in range(AT_A_TIME):
+                if not self.closed and len(self.diagonal) < LARGEST:
+                    self.grow()
+            found, resolved, lost = self.answer(W2)
+            if self.closed or np.all(resolved) or len(self.diagonal) >= LARGEST:
+                return found, resolved & ~lost
+
+    def answer(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_], NDArray[np.bool_]]:
+        """Return the observed amplitudes, (rows, frequencies), which are resolved, and which are rounding."""
+        from scipy.linalg import eigh_tridiagonal
+
+        m = len(self.diagonal)
+        values, turned = eigh_tridiagonal(self.diagonal, self.beside[: m - 1])
+        y = self.size * turned[0][:, None] / (1 - values[:, None] * W2)  # in the eigenvectors of T
+        last = np.abs(turned[-1] @ y)
+        left = 0.0 if self.closed else np.abs(W2) * self.beside[-1] * last
+        small = RESOLVED * np.minimum(self.size, np.sqrt(np.sum(np.abs(y) ** 2, axis=0)))
+        rows = self.observed[:m].T @ turned
+        found, terms = rows @ y, np.abs(rows) @ np.abs(y)
+        lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(found), axis=0)
+        return found, np.asarray(left <= small), np.asarray(lost)
+
+
+def system_response(
+    system: BlockSystem,
+    scheme: Scheme,
+    frequencies: ArrayLike,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    along: tuple[float, float] | None = None,
+    exact: bool = False,
+) -> dict[str, Complex]:
+    """Return the complex amplitudes of the columns, as `dda.response` does for one block.
+
+    Raises
+    ------
+    ValueError
+        If a column is unknown, or gg = 0 has no limit that is exact in time.
+    """
+    check_request(1, columns)
+    W2 = np.atleast_1d(chosen(scheme, frequencies, exact))
+    equations = system.reached
+    rows = equations.rows(columns)
+    if along is None:
+        F, push = equations.F * system.load_size, np.zeros(len(equations.pressure))
+    else:
+        F, push = 0 * equations.F, equations.G @ along
+    found, resolved = np.zeros((len(columns), len(W2)), complex), np.zeros(len(W2), bool)
+    dynamic = _Dynamic(equations, F, push)
+    if not dynamic.narrow:
+        found, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
+    for i in np.flatnonzero(~resolved):
+        found[:, i] = dynamic.observed(rows, complex(W2[i]))
+    return dict(zip(columns, found, strict=True))
+
+
+class _Dynamic:
+    """The equations at one frequency, solved by an elimination of their own, in moduli near one.
+
+    A chain of blocks is a narrow band: its elimination costs little, and keeps the digits of a wave that has decayed.
+    """
+
+    def __init__(self, equations: Equations, F: Array, push: Array) -> None:
+        from scipy.sparse import block_array, coo_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+        self.modulus = float(np.max(np.abs(equations.elastic)))
+        Ke, C = equations.blockwise(equations.elastic) / self.modulus, -self.modulus * equations.C
+        still = block_array([[Ke, equations.B.T], [equations.B, C]], format="coo")
+        M = coo_array(equations.blockwise(equations.mass) / self.modulus)
+        self.order = reverse_cuthill_mckee((abs(still) + abs(still).T).tocsr(), symmetric_mode=True)
+        place, size = np.argsort(self.order), len(self.order)
+        flat, entry = np.unique(
+            np.concatenate([place[part.row] * size + place[part.col] for part in (still, M)]), return_inverse=True
+        )
+        self.row, self.col = np.divmod(flat, size)
+        self.K = np.bincount(entry, np.concatenate([still.data, 0 * M.data]))
+        self.M = np.bincount(entry, np.concatenate([0 * still.data, M.data]))
+        self.right = np.concatenate([F / self.modulus, push])[self.order].astype(complex)
+        self.count, self.width = len(F), int(np.max(np.abs(self.row - self.col), initial=0))
+
+    @property
+    def narrow(self) -> bool:
+        """Whether eliminating the band costs less than a small space does."""
+        return len(self.right) * self.width**2 <= BAND
+
+    def observed(self, rows: tuple[Array, Array], W2: complex) -> Complex:
+        """Return the observed amplitudes, infinite at a resonance that nothing damps."""
+        try:
+            found = np.empty_like(self.right)
+            found[self.order] = self._by_band(W2) if self.narrow else self._sparse(W2)
+        except (np.linalg.LinAlgError, RuntimeError):
+            return np.full(len(rows[0]), np.inf, complex)
+        return np.asarray(rows[0] @ found[: self.count] + self.modulus * (rows[1] @ found[self.count :]))
+
+    def _by_band(self, W2: complex) -> Complex:
+        from scipy.linalg import solve_banded
+
+        band = np.zeros((2 * self.width + 1, len(self.right)), complex)
+        band[self.width + self.row - self.col, self.col] = self.K - W2 * self.M
+        return np.asarray(solve_banded((self.width, self.width), band, self.right, check_finite=False))
+
+    def _sparse(self, W2: complex) -> Complex:
+        from scipy.sparse import coo_array
+        from scipy.sparse.linalg import splu
+
+        size = len(self.right)
+        matrix = coo_array((self.K - W2 * self.M, (self.row, self.col)), shape=(size, size))
+        return np.asarray(splu(matrix.tocsc()).solve(self.right))

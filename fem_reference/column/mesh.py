@@ -1,0 +1,166 @@
+"""Line elements of a layered column: mass and stiffness by scikit-fem, springs where the column is jointed.
+
+Between two joints the displacement is continuous: each such part is a mesh of its own, and the springs join the nodes
+that face each other.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_diag, coo_array, csr_array
+from skfem import Basis, BilinearForm, ElementLineP1, ElementLineP2, MeshLine
+from skfem.helpers import grad
+
+from fem_reference.column.problem import NEAR, Ground
+from fem_reference.problem.problem import Array
+
+ELEMENTS = {1: ElementLineP1, 2: ElementLineP2}
+
+
+@BilinearForm
+def inertia(u, v, w):  # type: ignore[no-untyped-def]
+    """Mass: rho u v."""
+    return w["density"] * u * v
+
+
+@BilinearForm
+def elasticity(u, v, w):  # type: ignore[no-untyped-def]
+    """Stiffness: E* u' v'."""
+    return w["modulus"] * grad(u)[0] * grad(v)[0]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A piece of the column without joints, meshed: its unknowns are numbered from `first` on."""
+
+    basis: Basis
+    moduli: Array  # of its elements [Pa]
+    densities: Array  # of its elements [kg/m3]
+    first: int
+
+    def matrix(self, form: BilinearForm) -> csr_array:
+        """Assemble a form with the material of the elements."""
+        spread = np.ones((1, self.basis.dx.shape[1]))
+        return csr_array(
+            form.assemble(self.basis, modulus=self.moduli[:, None] * spread, density=self.densities[:, None] * spread)
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return int(self.basis.N)
+
+    def end(self, top: bool) -> int:
+        """Number of the unknown at the lower or upper end."""
+        places = self.basis.doflocs[0]
+        return self.first + int(np.argmax(places) if top else np.argmin(places))
+
+    def observe(self, height: float, stress: bool) -> tuple[Array, Array]:
+        """Unknowns and values of the row that gives displacement, or minus the stress E* u', at a height."""
+        nodes = self.basis.mesh.p[0]
+        ends = nodes[self.basis.mesh.t]
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        near = NEAR * float(nodes.max())
+        inside = np.flatnonzero((low < height - near) & (height <= high + near))  # of two that meet there, the lower
+        element = int(inside[0]) if inside.size else int(np.argmin(low))
+        start, end = nodes[self.basis.mesh.t[:, element]]
+        local = np.array([[(height - start) / (end - start)]])
+        unknowns = self.basis.element_dofs[:, element]
+        found = [self.basis.elem.lbasis(local, i) for i in range(len(unknowns))]
+        if stress:
+            factor = -self.moduli[element] / (end - start)
+            return self.first + unknowns, np.array([factor * slope[0, 0] for _, slope in found])
+        return self.first + unknowns, np.array([float(value[0]) for value, _ in found])
+
+
+@dataclass(frozen=True)
+class LineMesh:
+    """Matrices of a meshed column; the last unknown is the base where `base_node` is not that of the lowest part."""
+
+    parts: tuple[Part, ...]  # upwards
+    M: csr_array
+    K: csr_array
+    base_node: int
+    size: int
+
+    def row(self, height: float, stress: bool = False) -> Array:
+        """Row that observes displacement or stress at a height; at a joint the part below it."""
+        tops = np.array([part.basis.mesh.p[0].max() for part in self.parts])
+        part = self.parts[min(int(np.searchsorted(tops + NEAR * tops[-1], height)), len(self.parts) - 1)]
+        found = np.zeros(self.size)
+        unknowns, values = part.observe(min(height, float(tops[-1])), stress)
+        found[unknowns] = values
+        return found
+
+    @property
+    def top(self) -> int:
+        """Number of the unknown at the surface."""
+        return self.parts[-1].end(top=True)
+
+
+def line_mesh(ground: Ground, elements: Sequence[int], degree: int) -> LineMesh:
+    """Mesh a column.
+
+    Parameters
+    ----------
+    elements
+        Number of elements of each stratum.
+    degree
+        Of the elements, 1 or 2.
+
+    Raises
+    ------
+    ValueError
+        For another degree.
+    """
+    if degree not in ELEMENTS:
+        raise ValueError(f"degree: must be 1 or 2, got {degree!r}")
+    nodes, moduli, densities = _elements(ground, elements)
+    cuts = sorted(height for height, _ in ground.joints if height > NEAR * ground.height)
+    parts: list[Part] = []
+    for low, high in zip([0.0, *cuts], [*cuts, ground.height], strict=True):
+        inside = (nodes > low - NEAR * ground.height) & (nodes < high + NEAR * ground.height)
+        own = nodes[inside]
+        middles = (own[:-1] + own[1:]) / 2
+        stratum = np.searchsorted(ground.tops, middles)
+        basis = Basis(MeshLine(own), ELEMENTS[degree]())
+        first = parts[-1].first + parts[-1].size if parts else 0
+        parts.append(Part(basis, moduli[stratum], densities[stratum], first))
+    return _joined(ground, parts)
+
+
+def _elements(ground: Ground, elements: Sequence[int]) -> tuple[Array, Array, Array]:
+    """Nodes of the mesh with those that the joints ask for, moduli and densities of the strata."""
+    bottoms = ground.tops - [stratum.thickness for stratum in ground.strata]
+    lines = [np.linspace(a, b, n + 1) for a, b, n in zip(bottoms, ground.tops, elements, strict=True)]
+    nodes = np.unique(np.concatenate([*lines, np.array([height for height, _ in ground.joints])]))
+    apart = np.concatenate([[True], np.diff(nodes) > NEAR * ground.height])
+    moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])
+    return nodes[apart], moduli, np.array([stratum.density for stratum in ground.strata])
+
+
+def _joined(ground: Ground, parts: list[Part]) -> LineMesh:
+    """Put the parts together with the springs between them."""
+    size, base = parts[-1].first + parts[-1].size, parts[0].end(top=False)
+    ordered = [stiffness for _, stiffness in sorted(ground.joints)]
+    inner = ordered[len(ordered) - len(parts) + 1 :]
+    faces = [(below.end(top=True), above.end(top=False)) for below, above in itertools.pairwise(parts)]
+    if len(ordered) > len(inner):  # a joint below the column: a node of its own below the spring
+        inner, faces = ordered, [(size, base), *faces]
+        base, size = size, size + 1
+    M, K = (csr_array(block_diag([part.matrix(form) for part in parts])) for form in (inertia, elasticity))
+    M.resize((size, size))
+    K.resize((size, size))
+    return LineMesh(tuple(parts), M, K + _springs(faces, inner, size), base, size)
+
+
+def _springs(faces: Sequence[tuple[int, int]], stiffness: Sequence[float], size: int) -> csr_array:
+    """Matrix of springs between pairs of unknowns."""
+    i, j = np.array(faces, dtype=int).reshape(-1, 2).T
+    k = np.asarray(stiffness, float)
+    rows, columns = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])
+    return csr_array(coo_array((np.concatenate([k, k, -k, -k]), (rows, columns)), shape=(size, size)))

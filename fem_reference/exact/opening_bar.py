@@ -1,0 +1,271 @@
+r"""The bar on a spring that carries no tension: exact in space, Newmark in time.
+
+Without its spring the bar is free at both ends, and its motion is one rigid mode and what it stretches besides. For
+the generating function D(z) = sum of D_n z^n of a history the scheme says s^2 D = A - r A_0, with
+
+    s^2 = (1 - z) (1 - gg z) / (dt^2 b),   b = ((1/2 - alpha) z + alpha) (1 - gg z) + gg z ((1 - delta) z + delta)
+    r   = (alpha (1 - gg z) + gg z delta) / b
+
+in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond
+the rigid mode and in units of H / E,
+
+    that end by (x coth x - 1) / x^2,  the other by (x / sinh x - 1) / x^2,  mid-height by (x / (2 sinh(x/2)) - 1) / x^2
+
+Their series in z are the weights of a convolution with the history of that pressure: nothing is cut off, in space
+or in modes. The weights come from one transform on a circle in the unit disk, and the contact force at the end of a
+step is the one unknown of the step: w = w_f + C N with C = alpha dt^2 coth(H / l) / (rho l), l = c dt sqrt(alpha).
+
+Lubich, Convolution quadrature and discretized operational calculus, Numer. Math. 52 (1988), is the theory.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import next_fast_len
+from scipy.special import zeta
+
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.scheme import modal
+
+OVERSAMPLED = 16
+"""Points of the circle for each step: its radius loses one digit to rounding and sixteen to aliasing."""
+SMALL = 1.5
+"""Modulus of x below which the closed forms are summed as series."""
+TERMS = 26
+"""Terms of the series in x^2, whose radius of convergence is pi^2: (1.5 / pi)^52 is below rounding."""
+NOTHING = 1e-13
+"""Gap over the motions of which it is the sum, below which it is their rounding."""
+
+
+@dataclass(frozen=True)
+class OpeningBar:
+    """An elastic bar that is dropped on or pressed against a base spring that carries no tension.
+
+    At t = 0 the bar is unstrained, its base a gap above the spring, and all loads are switched on.
+
+    Raises
+    ------
+    ValueError
+        For a gap or velocity out of its range, naming field, rule and value.
+    """
+
+    height: float  # length H of the bar [m]
+    width: float  # width W [m], unit thickness
+    density: float  # mass density rho [kg/m3]
+    young: float  # Young's modulus E [Pa]
+    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
+    pressure: float = 0.0  # pressure q on the top [Pa], downwards
+    gravity: float = 0.0  # acceleration of gravity [m/s2], downwards
+    gap: float = 0.0  # gap under the base at t = 0 [m], at least 0
+    velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.gap) and self.gap >= 0):
+            raise ValueError(f"gap: must be finite and not negative, got {self.gap!r}")
+        if not math.isfinite(self.velocity):
+            raise ValueError(f"velocity: must be a finite number, got {self.velocity!r}")
+
+    @classmethod
+    def of(cls, problem: Problem, gap: float = 0.0, velocity: float = 0.0) -> OpeningBar:
+        """The bar that a problem reduces to, a gap [m] above its springs and with a velocity [m/s].
+
+        Raises
+        ------
+        ValueError
+            If the bar is not exact for the problem, or `gap` or `velocity` are out of their range.
+        """
+        reason = applicable(problem)
+        if reason is not None or problem.rectangle is None:
+            raise ValueError(f"problem: must reduce to a bar, but {reason}")
+        width, height = problem.rectangle
+        loads = problem.pressure, problem.gravity
+        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, *loads, gap, velocity)
+
+    @property
+    def travel(self) -> float:
+        """Time H / c of a wave from top to base [s]."""
+        return self.height * math.sqrt(self.density / self.young)
+
+    def solve(self, scheme: Scheme, steps: int) -> OpeningResult:
+        """History under the Newmark scheme; row 0 is step 1.
+
+        Raises
+        ------
+        ValueError
+            If the scheme is not stable for every frequency, or `steps` is below one.
+        """
+        if steps < 1:
+            raise ValueError(f"steps: must be at least 1, got {steps!r}")
+        if reason := modal.applicable(scheme):
+            raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
+        began = time.perf_counter()
+        series = _Series.of(scheme, steps, self.travel)
+        ready = time.perf_counter()
+        unit = self.height / self.young
+        base = _stepped(self, scheme, unit * series.own, -self.pressure * unit * series.across)
+        middle = unit * (_convolved(series.half, base.pressure) - self.pressure * series.half_load)
+        ended = time.perf_counter()
+        return OpeningResult(
+            time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
+            displacement=(base.rigid + middle)[1:],
+            contact_pressure=base.pressure[1:],
+            gap=base.gap[1:],
+            closed=base.closed[1:],
+            velocity=base.velocity[1:],
+            setup_seconds=ready - began,
+            stepping_seconds=ended - ready,
+        )
+
+
+@dataclass(frozen=True)
+class OpeningResult:
+    """A history; row 0 is step 1."""
+
+    time: Array  # time of each row [s], shape (steps,)
+    displacement: Array  # displacement of the mid-height [m], shape (steps,)
+    contact_pressure: Array  # N / W [Pa], shape (steps,)
+    gap: Array  # gap w under the base [m], negative where pressed, shape (steps,)
+    closed: Array  # 1 where the base is closed, 0 where open [-], shape (steps,)
+    velocity: Array  # velocity of the centre of mass, upwards [m/s], shape (steps,)
+    setup_seconds: float  # time for the weights of the convolutions [s]
+    stepping_seconds: float  # time for the steps [s]
+
+
+def applicable(problem: Problem) -> str | None:
+    """Why the bar is not exact for a problem, in words; None if it is."""
+    if not problem.vertical or problem.motion is not None:
+        return "the bar carries a centred pressure and its weight only"
+    if problem.rectangle is None:
+        return "the block is not an upright rectangle loaded opposite its base"
+    if problem.poisson != 0:
+        return f"Poisson's ratio is {problem.poisson!r}, and the block contracts sideways unless it is 0"
+    if problem.foundation != "distributed":
+        return f"the foundation is {problem.foundation!r}, and the base moves as one only if it is 'distributed'"
+    return None
+
+
+@dataclass(frozen=True)
+class _Series:
+    """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E."""
+
+    own: Array  # weights of the end that is pressed
+    half: Array  # weights of the mid-height
+    across: Array  # history of the base under a unit pressure on the top from t = 0 on
+    half_load: Array  # history of the mid-height under that pressure, for one that acts upwards
+
+    @classmethod
+    def of(cls, scheme: Scheme, steps: int, travel: float) -> _Series:
+        """The series up to a number of steps."""
+        count = next_fast_len(OVERSAMPLED * (steps + 1), real=True)
+        radius = 10.0 ** (-1.0 / (steps + 1))
+        z = radius * np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)
+        x2, load = _image(scheme, travel, z)
+        stretch, across, half = closed_forms(x2)
+        powers = radius ** np.arange(steps + 1.0)
+
+        def series(image: Array) -> Array:
+            values: Array = np.fft.irfft(np.conj(image), count)[: steps + 1] / powers
+            return values
+
+        return cls(series(stretch), series(half), series(across * load), series(half * load))
+
+
+def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
+    """x^2 of the scheme, and the image of a load that is one from t = 0 on, less r times the A_0 that it causes."""
+    alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
+    kept = 1 - gg * z
+    b = ((0.5 - alpha) * z + alpha) * kept + gg * z * ((1 - delta) * z + delta)
+    x2 = (travel / scheme.step) ** 2 * (1 - z) * kept / b
+    if scheme.start == "consistent":
+        return x2, 1 / (1 - z) - (alpha * kept + gg * z * delta) / b
+    return x2, z / (1 - z)
+
+
+def closed_forms(x2: Array) -> tuple[Array, Array, Array]:
+    """(x coth x - 1) / x^2, (x / sinh x - 1) / x^2 and (x / (2 sinh(x/2)) - 1) / x^2 of complex x^2.
+
+    All three are even in x and regular at zero.
+    """
+    x = np.sqrt(np.asarray(x2, complex))  # Re x >= 0, so that the exponentials decay
+    with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
+        e, root = np.exp(-2 * x), np.exp(-x / 2)
+        stretch = (x * (1 + e) / (1 - e) - 1) / x2
+        across = (2 * x * np.exp(-x) / (1 - e) - 1) / x2
+        half = (x * root / (1 - root * root) - 1) / x2
+    near = np.abs(x) < SMALL
+    for values, powers in zip((stretch, across, half), _small(x2[near]), strict=True):
+        values[near] = powers
+    return stretch, across, half
+
+
+def _small(x2: Array) -> tuple[Array, Array, Array]:
+    """The same by their power series, from the partial fractions over the free modes n = 1, 2, ...
+
+    2 / (x^2 + (n pi)^2) summed for the coth, with signs (-1)^n for the 1 / sinh, and that at x / 2 for the mid-height.
+    """
+    k = np.arange(TERMS)
+    own = 2.0 * (-1.0) ** k * zeta(2 * k + 2) / np.pi ** (2 * k + 2)
+    across = own * (2.0 ** -(2.0 * k + 1) - 1)
+    found = [np.polynomial.polynomial.polyval(x2, row) for row in (own, across, across / 4.0 ** (k + 1))]
+    return found[0], found[1], found[2]
+
+
+@dataclass(frozen=True)
+class _Base:
+    """The base from step 0 on."""
+
+    rigid: Array  # rigid displacement of the bar [m]
+    pressure: Array  # contact pressure [Pa]
+    gap: Array  # gap [m]
+    closed: Array  # 1 where closed [-]
+    velocity: Array  # velocity of the centre of mass [m/s]
+
+
+def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
+    """Contact pressures step by step.
+
+    Parameters
+    ----------
+    bar, scheme
+        The bar and its scheme.
+    own
+        Weights of the base's own pressure [m/Pa], shape (steps + 1,).
+    free
+        What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).
+    """
+    count, dt, alpha, delta, gg = len(own), scheme.step, scheme.alpha, scheme.delta, scheme.gg
+    surface, compliance = bar.density * bar.height, bar.width / bar.base_stiffness
+    load = -bar.pressure / surface - bar.gravity
+    D, V, A = 0.0, bar.velocity, load if scheme.start == "consistent" else 0.0
+    C = alpha * dt**2 / surface + own[0]
+    backwards = own[::-1].copy()
+    rigid, N, gap, closed = np.zeros(count), np.zeros(count), np.full(count, bar.gap), np.zeros(count)
+    speed = np.full(count, V)
+    closed[0] = bar.gap == 0
+    for n in range(1, count):
+        ahead = D + gg * dt * V + dt**2 * ((0.5 - alpha) * A + alpha * load)
+        past = N[1:n] @ backwards[count - n : -1]
+        w = bar.gap + ahead + (free[n] + past)
+        noise = NOTHING * (abs(ahead) + abs(free[n]) + abs(past))
+        if abs(w) <= noise:  # neither pressed nor lifted
+            w, closed[n] = 0.0, closed[n - 1]
+        else:
+            closed[n] = w < 0
+        if w < 0:
+            N[n] = -w / (C + compliance)
+        gap[n] = -compliance * N[n] if closed[n] else w
+        new = load + N[n] / surface
+        D, V, A = ahead + alpha * dt**2 * (new - load), gg * V + dt * ((1 - delta) * A + delta * new), new
+        rigid[n], speed[n] = D, V
+    return _Base(rigid, N, gap, closed, speed)
+
+
+def _convolved(weights: Array, values: Array) -> Array:
+    """Sum of weights[k] values[n - k], shape (steps + 1,)."""
+    count = next_fast_len(2 * len(values), real=True)
+    found: Array = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
+    return found

@@ -1,0 +1,129 @@
+r"""Response of the block's mesh to a load that vibrates, without a step.
+
+(K - W2 M) D = F at the scheme's complex squared frequencies W2. A mesh that is one column of elements is a narrow
+band and is eliminated for every frequency. For others a `KrylovSpace` of the stiffness itself, V' K V = 1 and
+V' M V = T, holds all frequencies at once: D = V' y with (1 - W2 T) y = |F| e_1. The next vector times W2 beta y_m is
+what remains; where it is not small, the sparse matrix is factorised for the frequency.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh_tridiagonal, solve_banded
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.linalg import splu
+
+from fem_reference.history.krylov import KrylovSpace
+from fem_reference.mesh.model import Model, build
+from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import check_request
+from fem_reference.scheme.harmonic import Complex, squares
+from fem_reference.scheme.newmark import Work
+
+NARROW = 1e5
+"""Unknowns times the square of their band's width up to which every frequency is eliminated by itself."""
+LARGEST = 400
+"""Most vectors of a space."""
+ADDED = 20
+"""Vectors between two looks at what remains."""
+SMALL = 1e-13
+"""What may remain, over the static and over the actual response, in the norm of the strain energy."""
+CANCELLED = 1e-9
+"""Rounding of an observed sum over the sum, beyond which the frequency is solved by itself."""
+
+
+def response(
+    problem: Problem,
+    scheme: Scheme,
+    frequencies: Array,
+    columns: tuple[str, ...] = ("displacement", "contact_pressure"),
+    along: tuple[float, float] | None = None,
+    exact: bool = False,
+    model: Model | None = None,
+) -> dict[str, Complex]:
+    """Complex amplitudes of the columns.
+
+    Parameters
+    ----------
+    problem, scheme
+        What vibrates and how it is integrated.
+    frequencies
+        Frequencies of the load [Hz], shape (count,).
+    columns
+        Columns of a history.
+    along
+        The fixed side of the foundation moves along this vector with its length as amplitude [m], and no load acts;
+        without it the loads of the problem vibrate in phase.
+    exact
+        As the mesh answers in continuous time.
+    model
+        The model of `problem` where it was built before.
+
+    Raises
+    ------
+    ValueError
+        If the block cannot be meshed, a column is unknown, or gg = 0 has no motion that is exact in time.
+    """
+    check_request(1, tuple(columns))
+    model = build(problem) if model is None else model
+    W2 = squares(frequencies, scheme, exact)
+    F = problem.load_size * model.F if along is None else model.base_force @ np.asarray(along, float)
+    rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(F))
+    found = dict(zip(columns, observed(model, F, rows, W2), strict=True))
+    if along is not None and "contact_pressure" in found:
+        found["contact_pressure"] = found["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
+    return found
+
+
+def observed(model: Model, F: Array, rows: Array, W2: Complex) -> Complex:
+    """Rows of D, shape (rows, frequencies)."""
+    if not np.any(F):
+        return np.zeros((len(rows), len(W2)), complex)
+    K, M = coo_array(model.K), coo_array(model.M)
+    width = int(max(np.max(np.abs(K.row - K.col)), np.max(np.abs(M.row - M.col))))
+    if len(F) * width**2 <= NARROW:
+        return np.stack([rows @ _eliminated(K, M, F, complex(w2), width) for w2 in W2], axis=1)
+    found, settled = _in_space(model, F, rows, W2)
+    for i in np.flatnonzero(~settled):
+        found[:, i] = rows @ splu(csc_array(model.K - W2[i] * model.M)).solve(F.astype(complex))
+    return found
+
+
+def _eliminated(K: coo_array, M: coo_array, F: Array, w2: complex, width: int) -> Complex:
+    """D at one frequency by elimination of a band, infinite at a resonance that nothing damps."""
+    band = np.zeros((2 * width + 1, len(F)), complex)
+    band[width + K.row - K.col, K.col] = K.data
+    band[width + M.row - M.col, M.col] -= w2 * M.data
+    try:
+        return np.asarray(solve_banded((width, width), band, F, check_finite=False))
+    except np.linalg.LinAlgError:
+        return np.full(len(F), np.inf, complex)
+
+
+def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+    """Observed amplitudes from the smallest sufficient space, and which of them it has settled."""
+    solve = Work().factor(model.K)
+    first = solve(F)
+    unit = float(first @ F) / float(first @ (model.M @ first))  # about w1^2: T is about one at most
+    space = KrylovSpace(model.M * unit, model.K, F, solve, min(LARGEST, len(F)))
+    while True:
+        space.grow(min(len(space) + ADDED, LARGEST))
+        found, remains, rounding = _projected(space, rows, W2 / unit)
+        if space.closed or len(space) >= LARGEST or np.all(remains <= SMALL):
+            return found, np.asarray((remains <= SMALL) & (rounding <= CANCELLED))
+
+
+def _projected(space: KrylovSpace, rows: Array, W2: Complex) -> tuple[Complex, Array, Array]:
+    """Observed amplitudes in a space, what remains over the response, and the rounding of the sums."""
+    size = len(space)
+    values, shapes = eigh_tridiagonal(space.diagonal, space.beside[: size - 1])
+    y = space.load * shapes[0][:, None] / (1 - values[:, None] * W2)
+    out = 0.0 if space.closed else space.beside[-1]
+    response = np.minimum(space.load, np.linalg.norm(y, axis=0))
+    remains = out * np.abs(W2) * np.abs(shapes[-1] @ y) / response
+    seen = rows @ space.vectors[:size].T @ shapes
+    found = seen @ y
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rounding = np.finfo(float).eps * np.max(np.abs(seen) @ np.abs(y) / np.abs(found), axis=0)
+    return found, remains, np.nan_to_num(rounding)

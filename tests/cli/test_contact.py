@@ -1,0 +1,98 @@
+"""`dda-validate contact`: one page that agrees with the runs behind it; what it does not take is answered helpfully."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, typed
+
+from validation import load_scene
+from validation.advice import contact_page
+from validation.engine.case import Case
+from validation.engine.measure import execute
+
+SHORT = ("--set", "time.step=0.001", "--set", "time.steps=40", "--set", "contact.stiffness=1e11")
+
+
+def test_the_page_states_what_json_holds() -> None:
+    done = typed("contact", "unlocked-constant", *SHORT, "--restitution-error", "0.02", "--penetration", "2e-4")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(typed("contact", "unlocked-constant", *SHORT, "--json").stdout)
+    assert len(done.stdout.splitlines()) <= 60  # a page
+    block = found["runs"]["block-events"]
+    for words in (
+        "at once",
+        f"{block['switches.first_closing']:.7g} s",
+        f"{1e-6 * block['contact.peak_force']:.4g} MN",
+        f" {100 * block['contact.open_share']:.4g} %",
+        f"{100 * found['runs']['dda']['energy.switching_gain']:.4g} %",
+        f"w_c dt = {found['omega']:.3g}",
+        "restitution within 2 % and a penetration below 0.0002 m",
+        "ALARM step too large for contact",
+    ):
+        assert words in done.stdout, words
+    assert block["switches.first_closing"] == pytest.approx(0.0032525750597312, rel=1e-12)
+    assert found["needed"]["depth"] <= 1e-4 and found["needed"]["stiffness"] >= found["needed"]["first_guess"]
+    assert "the exact block then goes" in done.stdout
+    assert f"with these  a contact returns {found['needed']['restitution']['mean']:.3g} of its speed" in (
+        typed("contact", "unlocked-constant", *SHORT).stdout
+    )
+    assert found["needed"]["step"] * found["contact_frequency"] < found["omega"]
+    assert [alarm["kind"] for alarm in found["alarms"]] == ["step too large for contact"]
+
+
+def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_stiffer_springs() -> None:
+    scene = load_scene("unlocked-constant").expand()[0].with_values({"time.steps": 400})
+    rows = {"block-events": execute(Case(scene, "block-events"), "", "")[0]}
+    now, finer, stiffer = (
+        contact_page.answer(scene, rows, *asked)["needed"] for asked in ((0.05, 1e-4), (0.01, 1e-4), (0.05, 1e-5))
+    )
+    assert finer["step"] == pytest.approx(now["step"] / 5) and finer["stiffness"] == now["stiffness"]
+    assert stiffer["stiffness"] == pytest.approx(100 * now["stiffness"])
+    assert stiffer["step_now"] == now["step_now"]
+
+
+def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:
+    path = tmp_path / "locked.toml"
+    path.write_text(SCENE)
+    done = typed("contact", path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert "--set contact.law=unilateral" in done.stderr
+    assert typed("contact", path, "--set", "contact.law=unilateral").returncode == 0
+
+
+def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:
+    scene = load_scene("unlocked-constant").expand()[0]
+    for damping in ({"time.gg": 0.9}, {"time.gg_rate": 3.0}):
+        run = contact_page.scenes(scene.with_values(damping))
+        assert run["dda"].time.discount < 1 == run["block-events"].time.discount == run["bar-events"].time.discount
+    turned = scene.with_values({"block.vertices": [[0, 0], [2, 0], [2.2, 2], [0, 2]]})
+    row, _ = execute(Case(contact_page.scenes(turned)["block-events"], "block-events"), "", "")
+    assert row.outcome == "not applicable"
+
+
+def test_the_help_has_an_example_that_runs() -> None:
+    assert "--set time.steps=50" in typed("contact", "--help").stdout
+    done = typed("contact", "unlocked-constant", "--set", "time.step=0.001", "--set", "time.steps=50")
+    assert done.returncode == 0 and "bar-events" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("gap", "velocity", "opening", "closing", "words"),
+    [
+        (0.0, 0.0, 0.016, 0.003, ("at once", "0.003 s")),
+        (0.0, 0.0, "undefined", 0.003, ("at once", "0.003 s")),
+        (0.0, 0.0, 0.016, 0.02, ("0.016 s", "0.02 s")),
+        (0.0, -1.0, 0.009, "undefined", ("0.009 s", "at once")),
+        (0.1, -1.0, 0.2, 0.1, ("0.2 s", "0.1 s")),
+        (0.1, 0.0, "undefined", "undefined", ("never", "never")),
+    ],
+)
+def test_when_a_block_first_opens_and_lands(
+    gap: float, velocity: float, opening: object, closing: object, words: tuple[str, str]
+) -> None:
+    scene = load_scene("unlocked-constant").with_values({"contact.gap": gap, "block.velocity": velocity})
+    run = {"switches.first_opening": opening, "switches.first_closing": closing}
+    assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words  # type: ignore[arg-type]

@@ -1,0 +1,76 @@
+"""The command `response`: its table, its figures, what it says and what it refuses."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import validation.cli.entry  # noqa: F401 (declares the commands)
+from validation import load_scene, response
+from validation.cli.app import app
+from validation.errors import InputError
+
+CASE = ["figures-3-4", "--set", "time.step=0.002"]
+SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
+
+
+def said(*arguments: str) -> str:
+    done = CliRunner().invoke(app, list(arguments), catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    return done.output
+
+
+@pytest.mark.parametrize(("option", "exact"), [([], False), (["--exact"], True)])
+def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option: list[str], exact: bool) -> None:
+    path = tmp_path / "r.csv"
+    said(
+        "response", *CASE, "--solver", "bar", "--from", "2", "--to", "180", "--points", "7", "--csv", str(path), *option
+    )
+    header, *_ = path.read_text().splitlines()
+    assert header == "frequency,displacement,displacement_phase,contact_pressure,contact_pressure_phase"
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    assert np.array_equal(table, response(SCENE, np.linspace(2, 180, 7), "bar", exact).table())
+
+
+def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(tmp_path: Path) -> None:
+    for ending in ("svg", "pdf", "png"):
+        path = tmp_path / f"r.{ending}"
+        text = said("response", *CASE, "--to", "300", "--points", "120", "--figure", str(path))
+        assert path.stat().st_size > 5000
+    assert (tmp_path / "r.pdf").read_bytes()[:4] == b"%PDF"
+    assert "exact in time" in text
+    assert "no step is run" in text
+    assert "above 250 Hz, 1 / (2 dt), the steps see a load as its alias" in text
+    assert "alias" not in said("response", *CASE, "--points", "5", "--log")
+
+
+@pytest.mark.parametrize(
+    ("options", "rule"),
+    [
+        (["--from", "10", "--to", "1"], "--from, --to: must be finite, not negative and in this order"),
+        (["--from", "-1"], "--from, --to"),
+        (["--from", "0", "--log"], "--from: must be greater than 0 with --log"),
+        (["--figure", "r.txt"], r"--figure: must end in .svg, .pdf, .png, got 'r.txt'"),
+        (["--solver", "fenicsx"], "no frequency response is reported"),
+    ],
+)
+def test_what_a_response_refuses(options: list[str], rule: str) -> None:
+    with pytest.raises(InputError, match=rule):
+        CliRunner().invoke(app, ["response", *CASE, *options], catch_exceptions=False)
+
+
+def test_rayleigh_translates_a_step_and_back(tmp_path: Path) -> None:
+    text = said("rayleigh", "--dt", "0.01", "--from", "5", "--to", "20")
+    words = [line.split() for line in text.splitlines()]
+    assert "dt = 0.01 s, (alpha, delta) = (0.5, 1), gg = 1 hides the Rayleigh damping" in text
+    assert ["leading", "order", "0", "0.005", "-", "-"] in words
+    assert ["5", "7.8459", "7.854"] in words
+    assert "gg = 0.98 hides" in said("rayleigh", *CASE, "--gg", "0.98")
+    path = tmp_path / "xi.svg"
+    back = said("rayleigh", "--dt", "0.001", "--ratio", "5=0.05", "--ratio", "50=0.05", "--figure", str(path))
+    assert "to leading order: dt = 0.000578745 s" in back
+    assert "exactly at both frequencies: dt = 0.000578506 s" in back
+    assert path.stat().st_size > 5000
+    assert "dt = 0.004 s" in said("rayleigh", "--dt", "1", "--a1", "0.002")
+    assert "exactly: damping: no scheme" in said("rayleigh", "--dt", "1", "--ratio", "5=0.005", "--ratio", "50=0.05")

@@ -1,0 +1,240 @@
+"""Sub-blocks on a base that opens: one is the block, a base that stays closed is locked; invariants of each step."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.unilateral_checks import mirrored, random_model, sums
+
+import dda.contact.points as points
+import dda.system.opening_solution as stepping
+from dda import (
+    Block,
+    Contact,
+    Material,
+    Scheme,
+    TwoBlockModel,
+    Unilateral,
+    UnilateralModel,
+    UnilateralOptions,
+    opening_subdivided,
+    solve_opening_system,
+    solve_system,
+    solve_unilateral,
+    subdivided,
+)
+from dda.contact.iteration import NONE
+from fem_reference.events.bar_events import solve as bar_motion
+from fem_reference.events.bar_model import BarProblem
+
+MATERIAL = Material(2700.0, 1e9, 0.2)
+PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9, 1e9), 5e6)
+ENERGIES = UnilateralOptions(energies=True)
+GLUE = 1e15
+CONSTANT = Scheme(0.5, 1.0, 1.0, 3e-4)
+
+
+def run(model, counts=(3, 2), scheme=CONSTANT, steps=150, glue=GLUE, pattern="squares", options=ENERGIES):
+    return solve_opening_system(opening_subdivided(model, *counts, glue, pattern), scheme, steps, options=options)
+
+
+def off(a, b):
+    return np.max(np.abs(a - b)) / max(np.max(np.abs(a)), 1e-300)
+
+
+# Impacts multiply rounding: at delta = 1/2 by all the digits there are (seeds 1 and 6), so few steps are compared.
+@pytest.mark.parametrize(
+    "seed", [3, 4, 5, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, 1, 2, 6, 7, 8))]
+)
+@pytest.mark.parametrize(
+    ("scheme", "steps"),
+    [(CONSTANT, 200), (Scheme(0.25, 0.5, 0.99, 3e-4, "consistent"), 40), (Scheme(0.7, 0.8, 0.98, 3e-4), 200)],
+)
+def test_one_sub_block_is_the_block(seed, scheme, steps):
+    model = random_model(seed)
+    block = solve_unilateral(model, scheme, steps, options=UnilateralOptions(energies=True, full=True))
+    one = run(model, (1, 1), scheme, steps)
+    assert one.outcome == block.outcome == "completed"
+    for name in ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "gap_m", "gap_n", "velocity"):
+        assert off(getattr(block, name), getattr(one, name)) < 1e-9, name
+    for name, values in block.columns.items():
+        assert off(values, one.columns[name]) < 1e-9, name
+    largest = max(np.max(np.abs(values)) for values in block.energies.values())
+    for name, values in block.energies.items():
+        assert np.max(np.abs(values - one.energies[name])) < 1e-9 * largest, name
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.2])
+@pytest.mark.parametrize("pattern", ["squares", "triangles"])
+def test_a_base_that_never_opens_is_the_locked_one(eccentricity, pattern):
+    scheme, columns = Scheme(0.5, 1.0, 0.98, 1e-2), ("displacement", "contact_pressure", "rotation")
+    locked = TwoBlockModel(PAPER.block, Contact(1e9, 0.4e9), 3.1e6, eccentricity=eccentricity)
+    opens = replace(PAPER, contact=Unilateral(1e9, 0.4e9), pressure=3.1e6, eccentricity=eccentricity)
+    one = solve_system(subdivided(locked, 3, 2, 1e12, pattern), scheme, 40, columns)
+    other = solve_opening_system(opening_subdivided(opens, 3, 2, 1e12, pattern), scheme, 40, columns)
+    assert np.all(other.closed) and np.all(other.step_solves == 1)
+    for name in columns:
+        assert np.max(np.abs(one.columns[name] - other.columns[name])) <= 1e-10 * np.max(
+            np.abs(one.columns[name]), initial=1e-4
+        ), name
+
+
+def checked(model, result, scheme):
+    """Complementarity, momentum, energy."""
+    law = model.contact
+    share = len(result.normal) / 2
+    N, T, w, shut = result.normal, result.shear, result.gap, result.closed
+    assert np.all(N >= 0) and np.all(N[~shut] == 0) and np.all(T[~shut] == 0) and np.all(w[~shut] >= 0)
+    assert np.allclose(w[shut], -N[shut] * share / law.stiffness, rtol=1e-14, atol=0)
+    mass = model.block.material.density * model.block.section.area
+    x = model.block.corners[[2, 3], 0]
+    load = -model.pressure * (abs(x[0] - x[1]) - 2 * abs(model.eccentricity)) - mass * model.gravity
+    R = load + np.concatenate([[0.0], N.sum(axis=0)])
+    before = R[:-1].copy()
+    before[0] = load if scheme.start == "consistent" else 0.0
+    V = np.concatenate([[model.velocity], result.velocity])
+    impulse = scheme.step * ((1 - scheme.delta) * before + scheme.delta * R[1:])
+    if not np.any(result.step_cuts):
+        size = mass * np.max(np.abs(V)) + scheme.step * np.max(np.abs(R))
+        assert np.max(np.abs(mass * (V[1:] - scheme.gg * V[:-1]) - impulse)) < 1e-11 * size
+    total, lost = sums(result)
+    size = max(np.max(np.abs(values)) for values in result.energies.values())
+    assert np.max(np.abs(total + lost - mass * model.velocity**2 / 2)) < 1e-10 * size
+    return total, size
+
+
+SCHEMES = [CONSTANT, Scheme(0.25, 0.5, 1.0, 1e-4, "consistent"), Scheme(0.7, 0.8, 0.99, 3e-4)]
+
+
+@pytest.mark.parametrize("scheme", SCHEMES, ids=lambda scheme: f"{scheme.delta}")
+@pytest.mark.parametrize(
+    "seed", [1, 2, pytest.param(5, marks=pytest.mark.long), pytest.param(8, marks=pytest.mark.long)]
+)
+def test_random_blocks_keep_the_invariants(seed, scheme):
+    model = random_model(seed)
+    young = model.block.material.young
+    result = run(model, (3, 2), scheme, 100, 1e4 * young)
+    assert result.outcome == "completed" and np.count_nonzero(np.diff(result.closed)) > 1
+    total, size = checked(model, result, scheme)
+    if scheme.delta == 1:
+        assert np.max(np.diff(total)) < 1e-12 * size
+
+
+@pytest.mark.parametrize("shear", [pytest.param(0.0, marks=pytest.mark.long), 1e9])
+def test_the_mirror_image_exchanges_the_points(shear):
+    model = replace(PAPER, contact=Unilateral(1e9, shear), eccentricity=0.3, traction=1e5)
+    left, right = run(model, (3, 1)), run(mirrored(model), (3, 1))
+    assert np.count_nonzero(np.diff(left.closed)) > 1
+    assert off(left.normal, right.normal[::-1]) < 1e-8 and off(left.gap, right.gap[::-1]) < 1e-8
+    assert off(left.columns["displacement"], right.columns["displacement"]) < 1e-9
+    assert np.max(np.abs(left.shear + right.shear[::-1])) <= 1e-8 * np.max(left.normal)
+
+
+@pytest.mark.long
+def test_a_column_of_sub_blocks_tends_to_the_bar():
+    """Poisson's ratio 0: first opening of 1 x n sub-blocks, glued stiffly, against the exact bar."""
+    opens = bar_motion(BarProblem(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6), 0.02).switches[0].time
+    model = replace(PAPER, block=Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)))
+    errors = []
+    for rows in (4, 8, 16):
+        scheme = Scheme(0.25, 0.5, 1.0, 2e-4 / rows, "consistent")
+        result = run(model, (1, rows), scheme, round(0.0195 / scheme.step), 1e12, options=None)
+        closed = result.closed[0]
+        late = np.flatnonzero(closed[:-1] & ~closed[1:] & (result.time[:-1] > 0.01))
+        errors.append(abs(result.time[late[0]] / opens - 1))
+    assert errors[-1] < 0.01 and errors[-1] < errors[0] / 2, errors
+
+
+# ---- the iteration --------------------------------------------------------------------------------------------------
+
+
+def problem(rng, n):
+    A = rng.standard_normal((n, n))
+    C = A @ A.T + 0.02 * np.eye(n)
+    law, free = Unilateral(rng.uniform(0.5, 50.0)), rng.standard_normal(n)
+    return law, points.FreePoints(free, np.zeros(0), C)
+
+
+@pytest.mark.parametrize("limit", [1, 6])
+def test_frictionless_points_always_find_the_one_solution(limit):
+    """Random problems of seven points, set all at once or one at a time: 0 <= N, w = w_f + C N = -N/p where N > 0."""
+    rng, more = np.random.default_rng(1), 0
+    for _ in range(60):
+        law, free = problem(rng, 7)
+        found = points.open_close_points(law, points.Points.at_rest(law, 7), free, limit)
+        after = found.points
+        assert np.all(after.normal >= 0) and np.all(after.gap[~after.closed] >= 0)
+        assert np.all(after.normal[~after.closed] == 0)
+        assert np.allclose(free.gap + free.C @ after.normal, after.gap, atol=1e-10)
+        assert np.allclose(after.gap[after.closed], -after.normal[after.closed] / law.stiffness, rtol=1e-14)
+        more += found.solves > limit
+    assert more > 30 or limit == 6
+
+
+CYCLES = [
+    ([[14.0, -14.0, 13.0], [-14.0, 17.0, -12.0], [13.0, -12.0, 13.0]], [-4.0, 5.0, -2.0]),
+    ([[12.0, -10.0, -8.0], [-10.0, 13.0, 13.0], [-8.0, 13.0, 14.0]], [-5.0, 4.0, 1.0]),
+]
+
+
+@pytest.mark.parametrize(("C", "w"), CYCLES)
+def test_points_that_cycle_when_set_at_once_are_set_one_at_a_time(C, w):
+    law, free = Unilateral(20.0), points.FreePoints(np.array(w), np.zeros(0), np.array(C))
+    seen, closed = [], points.Points.at_rest(law, 3).closed
+    for _ in range(20):
+        seen.append(tuple(closed))
+        closed = points.agreeing(law, points.trial(law, points.Points.at_rest(law, 3), free, closed))
+    assert len(set(seen[-8:])) > 1  # for ever
+    found = points.open_close_points(law, points.Points.at_rest(law, 3), free, 6)
+    N, gap = found.points.normal, found.points.gap
+    assert found.solves > 6 and np.all(N >= 0) and np.all(gap >= -N / 20.0 * (1 + 1e-14))
+    assert free.gap + free.C @ N == pytest.approx(gap, rel=1e-12)
+
+
+def test_long_glued_steps_are_cut_as_those_of_one_block():
+    """No single state, or several: long steps of stiff glued corners."""
+    cuts, scheme = 0, Scheme(0.5, 1.0, 1.0, 8e-3)
+    for seed in range(10):
+        model = random_model(seed, glued=True)
+        one, block = run(model, (1, 1), scheme, 12, options=None), solve_unilateral(model, scheme, 12)
+        assert np.array_equal(one.step_cuts, block.step_cuts) and np.array_equal(one.step_solves, block.step_solves)
+        cuts += int(np.sum(one.step_cuts))
+    assert cuts > 0
+
+
+def test_of_many_glued_points_not_all_states_are_tried():
+    law, n = Unilateral(1.0, shear=1.0), points.TRIED + 1
+    free = points.FreePoints(np.zeros(n), np.zeros(n), np.eye(2 * n))
+    found = points._all_states(law, points.Points.at_rest(law, n), free, 6)
+    assert (found.points, found.solves, found.failure) == (None, 6, NONE)
+
+
+def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
+    real, given = stepping.Length.advance, []
+
+    def stubborn(length, state, limit):
+        given.append((length.ratio, state, [np.copy(part) for part in state[:4]]))
+        after, found = real(length, state, limit)
+        return (None, points.Found(None, limit, NONE)) if len(given) <= 2 else (after, found)
+
+    monkeypatch.setattr(stepping.Length, "advance", stubborn)
+    model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
+    result = run(model, (2, 1), replace(CONSTANT, gg=0.9), 3)
+    assert [ratio for ratio, *_ in given[:4]] == pytest.approx([1.0, 0.3, 0.09, 0.91])
+    for _, state, copy in given[:3]:
+        assert state is given[0][1]
+        assert all(np.array_equal(one, other) for one, other in zip(state[:4], copy, strict=True))
+    assert result.step_cuts.tolist() == [2, 0, 0]
+    assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 4), rel=1e-12)
+
+
+def test_a_repeated_history_is_bitwise_the_same():
+    first, second = (run(replace(PAPER, eccentricity=0.3), (2, 2), steps=60) for _ in range(2))
+    assert np.array_equal(first.normal, second.normal) and np.array_equal(first.gap, second.gap)
+
+
+def test_rules_of_one_block_alone_are_refused():
+    with pytest.raises(ValueError, match=r"^rule: sub-blocks take newmark alone, got 'implicit'"):
+        run(PAPER, options=UnilateralOptions(rule="implicit"))
+    with pytest.raises(ValueError, match=r"^stiffness: must be finite in an explicit scheme"):
+        run(replace(PAPER, contact=Unilateral(np.inf)), scheme=Scheme(0.0, 0.5, 1.0, 1e-6))

@@ -1,0 +1,190 @@
+"""Two other rules of contact: the force of the end of the step alone, and the force that keeps the energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.unilateral_checks import random_model, sums
+
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.contact.conserving import conserving
+from dda.contact.glued import Free
+from dda.contact.iteration import NONE
+from dda.contact.unilateral import Corners
+from fem_reference.events.block_events import solve as exact_motion
+from fem_reference.events.block_model import BlockProblem
+
+PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
+CONSERVING = UnilateralOptions(rule="energy-conserving", energies=True)
+IMPLICIT = UnilateralOptions(rule="implicit", energies=True)
+
+
+def average(dt, gg=1.0, start="zero"):
+    return Scheme(0.25, 0.5, gg, dt, start)
+
+
+def size(result):
+    return max(np.max(np.abs(values)) for values in result.energies.values())
+
+
+# ---- energy ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("p", [1e9, 1e11, 1e13, 1e16])
+@pytest.mark.parametrize("dt", [2e-3, 3e-4, 2e-5])
+def test_the_papers_block_keeps_its_energy_at_every_stiffness_and_step(p, dt):
+    result = solve_unilateral(replace(PAPER, contact=Unilateral(p)), average(dt), 250, options=CONSERVING)
+    total, lost = sums(result)
+    assert np.max(np.abs(total)) < 1e-12 * size(result) and np.all(lost == 0)
+    assert np.count_nonzero(np.diff(result.closed_m)) > 1 or dt < 1e-4
+    assert np.all(result.step_solves == 1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_blocks_keep_their_energy_but_for_gg(seed):
+    model, dt, gg = random_model(seed, glued=False), 1e-4 * 4.0 ** (seed % 3), 1.0 if seed % 2 else 0.97
+    result = solve_unilateral(model, average(dt, gg), 250, options=CONSERVING)
+    first = model.block.material.density * model.block.section.area * model.velocity**2 / 2
+    total, lost = sums(result)
+    assert result.outcome == "completed" and np.max(result.step_solves) <= 8
+    assert np.max(np.abs(total + lost - first)) < 1e-11 * size(result)
+    assert np.max(np.abs(lost)) < 1e-12 * size(result) or gg < 1
+    p = model.contact.stiffness
+    for N, w in ((result.normal_force_m, result.gap_m), (result.normal_force_n, result.gap_n)):
+        assert np.allclose(N, p * np.maximum(0, -w), rtol=1e-14, atol=0)
+
+
+def test_it_does_not_matter_how_the_acceleration_starts_but_to_newmarks_rule():
+    zero, consistent = (
+        solve_unilateral(PAPER, average(3e-4, start=start), 200, options=CONSERVING) for start in ("zero", "consistent")
+    )
+    assert np.array_equal(zero.gap_m, consistent.gap_m)
+
+
+# ---- rebound ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("p", [1e5, 3e8, 1e13])
+@pytest.mark.parametrize("share", [0.05, 0.37, 0.8])
+def test_a_rigid_block_rebounds_with_the_speed_of_its_fall(p, share):
+    """The coefficient of restitution is 1 whatever the step and the phase; Newmark's: 1/3..3 where p is stiff."""
+    block, V, dt = Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0)), 0.7, 1e-3
+    model = UnilateralModel(block, Unilateral(p, gap=(3 - share) * V * dt), velocity=-V)
+    result = solve_unilateral(model, average(dt), 700 if p < 1e6 else 60, options=CONSERVING)
+    assert result.velocity[-1] == pytest.approx(V, rel=1e-9)
+    assert result.closed_m.any() and not result.closed_m[-1]
+
+
+@pytest.mark.parametrize("share", [0.05, 0.37, 0.8])
+def test_stiff_implicit_contact_takes_the_speed_of_the_base_away(share):
+    """Rigid block, p -> inf: the closed step brings the base to w = 0, the next one leaves, v1 = v0 (1 - 2 share).
+
+    With x the way of a step, D1 = D0 + dt v0 + dt^2 lambda/(2 m), v1 = v0 + dt lambda/m, so v1 = 2 (D1 - D0)/dt - v0,
+    and D1 - D0 = -(1 - share) V dt where the step without contact overshoots by `share` of it.
+    """
+    block, V, dt = Block.rectangle(1.3, 0.9, Material(2350.0, 1e25, 0.0)), 0.7, 1e-3
+    model = UnilateralModel(block, Unilateral(1e21, gap=(3 - share) * V * dt), velocity=-V)
+    result = solve_unilateral(model, average(dt), 3, options=IMPLICIT)
+    assert result.velocity[-1] == pytest.approx(-V * (1 - 2 * share), rel=1e-6)
+
+
+# ---- order -----------------------------------------------------------------------------------------------------------
+
+TRUTH = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
+ECCENTRIC = replace(TRUTH, eccentricity=0.3, poisson=0.2)
+
+
+LONG = pytest.mark.long
+
+
+@pytest.mark.parametrize(
+    "problem", [pytest.param(TRUTH, id="centred"), pytest.param(ECCENTRIC, id="eccentric", marks=LONG)]
+)
+@pytest.mark.parametrize(("options", "order", "scatter"), [(CONSERVING, 2.0, 0.15), (IMPLICIT, 1.0, 0.1)])
+def test_the_order_in_dt_through_switches(problem, options, order, scatter):
+    end, errors, counts = 0.03, [], [300, 600, 1200, 2400]
+    motion = exact_motion(problem, end)
+    block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, problem.poisson))
+    model = UnilateralModel(block, Unilateral(1e9), 5e6, eccentricity=problem.eccentricity)
+    for n in counts:
+        scheme = average(end / n, start="consistent")
+        result = solve_unilateral(model, scheme, n, options=replace(options, energies=False))
+        v = motion.at(np.minimum(result.time, end)).displacement[1]
+        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
+    assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - order) < scatter, errors
+    assert errors[-1] < (2e-4 if order == 2 else 3e-2)
+
+
+# ---- the forces ------------------------------------------------------------------------------------------------------
+
+
+def corners(*gaps):
+    none = (0.0,) * len(gaps)
+    return Corners(tuple(w < 0 for w in gaps), gaps, none, none, none, none)
+
+
+def energy(p, w):
+    return p * min(w, 0.0) ** 2 / 2
+
+
+@pytest.mark.parametrize("p", [1e-3, 1.0, 1e6, 1e20])
+@pytest.mark.parametrize("w0", [-0.7, -1e-9, 0.0, 1e-9, 0.4])
+@pytest.mark.parametrize("w_f", [-0.9, -1e-6, 1e-6, 0.4, 1.3])
+def test_one_contact_does_the_work_of_its_spring(p, w0, w_f):
+    w0 = w0 / p if w0 < 0 and p > 1 else w0
+    found = conserving(Unilateral(p), corners(w0), Free([w_f], [], [[0.8]], {}))
+    (w1,), (N,) = found.corners.gap, found.mean
+    assert N >= 0 and found.solves == 1 and found.corners.closed == (w1 < 0,)
+    work, given = N * (w1 - w0), energy(p, w0) - energy(p, w1)
+    assert work == pytest.approx(given, rel=1e-9, abs=1e-12 * (energy(p, w0) + energy(p, w1)))
+    assert w1 == pytest.approx(w_f + 0.8 * N, rel=1e-12, abs=1e-12 * (abs(w_f) + 0.8 * N))
+
+
+@pytest.mark.parametrize(("w0", "w_f"), [(-1e-170, 1.0), (0.0, -5e-324), (-1e-300, -1e-300), (0.0, 0.0)])
+def test_contacts_that_hardly_touch_have_a_force(w0, w_f):
+    found = conserving(Unilateral(1e9), corners(w0), Free([w_f], [], [[0.8]], {}))
+    assert 0 <= found.mean[0] <= 1e-280 and abs(found.corners.gap[0] - max(w_f, 0.0)) < 1e-280
+
+
+def test_two_contacts_do_the_work_of_their_springs_and_say_if_they_do_not_end(monkeypatch):
+    rng = np.random.default_rng(3)
+    for _ in range(300):
+        p, coupling = 10 ** rng.uniform(-2, 4), rng.uniform(-0.99, 0.99)
+        C = [[1.0, coupling], [coupling, 1.0]]
+        w0, w_f = (rng.uniform(-1, 1, 2) / max(p, 1.0)).tolist(), rng.uniform(-1, 1, 2).tolist()
+        found = conserving(Unilateral(p), corners(*w0), Free(w_f, [], C, {}))
+        w1, N = np.array(found.corners.gap), np.array(found.mean)
+        assert w1 == pytest.approx(np.array(w_f) + np.array(C) @ N, rel=1e-9, abs=1e-10)
+        for i in range(2):
+            scale = energy(p, w0[i]) + energy(p, w1[i]) + 1e-12
+            assert abs(N[i] * (w1[i] - w0[i]) - energy(p, w0[i]) + energy(p, w1[i])) < 1e-9 * scale
+    monkeypatch.setattr("dda.contact.conserving.ROUNDS", 1)
+    assert conserving(Unilateral(1.0), corners(-1.0, -1.0), Free([-1.0, -1.0], [], C, {})).failure == NONE
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "scheme", "said"),
+    [
+        ({}, CONSERVING, Scheme(0.5, 1.0, 1.0, 1e-3), "rule: energy-conserving contact needs average acceleration"),
+        ({"contact": Unilateral(np.inf)}, CONSERVING, average(1e-3), "rule: energy-conserving contact needs a finite"),
+        ({"contact": Unilateral(1e9, band=(1e-6, 0.0))}, CONSERVING, average(1e-3), "rule: energy-conserving contact"),
+        (
+            {"contact": Unilateral(1e9, 1e9), "eccentricity": 0.2},
+            CONSERVING,
+            average(1e-3),
+            "rule: energy-conserving contact needs shear = 0 where the base can slide",
+        ),
+    ],
+)
+def test_what_excludes_each_other_is_named(change, options, scheme, said):
+    with pytest.raises(ValueError, match="^" + said):
+        solve_unilateral(replace(PAPER, **change), scheme, 3, options=options)
+
+
+def test_springs_in_shear_do_not_matter_where_the_base_cannot_slide():
+    full = replace(CONSERVING, full=True)
+    bare, glued = (
+        solve_unilateral(replace(PAPER, contact=Unilateral(1e9, shear)), average(1e-3), 50, options=options)
+        for shear, options in ((0.0, CONSERVING), (1e9, full))
+    )
+    assert np.max(np.abs(bare.gap_n - glued.gap_n)) < 1e-9 * np.max(np.abs(bare.gap_n))

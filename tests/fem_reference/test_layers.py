@@ -1,0 +1,167 @@
+"""The exact layers against echoes written down by hand, and their transfer functions against closed forms."""
+
+import numpy as np
+import pytest
+from oracles.layers_by_stiffness import assembled
+
+import fem_reference
+from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.exact import layers
+
+SOIL = Stratum(12.0, 1900.0, 3.0e8, 0.25)
+SPEED = (SOIL.modulus("shear") / SOIL.density) ** 0.5
+STEPS = fem_reference.Scheme(0.25, 0.5, 1.0, 2e-3, "zero")
+
+
+def ricker(time: np.ndarray, frequency: float = 6.0) -> np.ndarray:
+    """Return the displacement of a Ricker velocity."""
+    late = time - 2 / frequency
+    return late * np.exp(-((np.pi * frequency * late) ** 2))
+
+
+def drive(time: np.ndarray) -> Excitation:
+    b = np.pi * 6.0 * (time - 2 / 6.0)
+    return Excitation(ricker(time), (1 - 2 * b * b) * np.exp(-b * b), 0 * time, 0 * time)
+
+
+@pytest.mark.parametrize("ratio", [0.3, 1.0, 4.0])
+def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
+    impedance = ratio * SOIL.density * SPEED
+    found = layers.solve_layers(Ground((SOIL,), "shear", (), impedance), STEPS, 1000, drive, ("displacement",))
+    transmitted, echo = 2 * ratio / (1 + ratio), (1 - ratio) / (1 + ratio)
+    travel = SOIL.thickness / SPEED
+    exact = sum(2 * transmitted * echo**n * ricker(found.time - (2 * n + 1) * travel) for n in range(80))
+    assert np.abs(found.columns["displacement"] - exact).max() < 1e-8 * np.abs(exact).max()
+    assert found.estimate is not None
+    assert found.estimate < 1e-6
+
+
+def test_echoes_on_a_rigid_base_never_end() -> None:
+    found = layers.solve_layers(Ground((SOIL,), "shear"), STEPS, 2000, drive, ("displacement",))
+    travel = SOIL.thickness / SPEED
+    exact = sum(2 * (-1.0) ** n * ricker(found.time - (2 * n + 1) * travel) for n in range(80))
+    assert np.abs(found.columns["displacement"] - exact).max() < 1e-7 * np.abs(exact).max()
+
+
+def test_surface_over_base_is_the_secant() -> None:
+    omega = np.array([3.0, 25.0, 40.0, 111.0])
+    moved, _ = layers.amplitudes(Ground((SOIL,), "shear"), omega, ("displacement",))
+    assert np.allclose(moved["displacement"] * 1j * omega, 1 / np.cos(omega * SOIL.thickness / SPEED), rtol=1e-12)
+
+
+def test_cutting_a_layer_changes_nothing() -> None:
+    half = Stratum(6.0, SOIL.density, SOIL.young, SOIL.poisson)
+    columns, heights = ("displacement", "contact_pressure", "displacement_1", "stress_2"), (2.0, 6.0)
+    omega = np.array([5.0, 70.0]) - 1j
+    for impedance in (None, 1e6):
+        whole, cut = (
+            layers.amplitudes(Ground(strata, "pressure", (), impedance), omega, columns, heights)
+            for strata in ((SOIL,), (half, half))
+        )
+        for one, other in zip(whole, cut, strict=True):
+            for name in columns:
+                assert np.allclose(one[name], other[name], rtol=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [0.25, 0.5, 1.0, 2.0])
+def test_a_joint_transmits_what_its_closed_form_says(ratio: float) -> None:
+    """Half-space, joint, layer of the same material: the surface shows 2 T / (1 - R e^(-2ikH)) of the wave."""
+    omega = 130.0
+    z = SOIL.density * SPEED
+    ground = Ground((SOIL,), "shear", ((0.0, ratio * z * omega),), z)
+    moved, _ = layers.amplitudes(ground, omega, ("displacement",))
+    turn = np.exp(-1j * omega * SOIL.thickness / SPEED)
+    open_share = 1j / (2 * ratio)
+    transmitted, reflected = 1 / (1 + open_share), open_share / (1 + open_share)
+    exact = 2 * transmitted * turn / (1 - reflected * turn**2)
+    assert abs(transmitted) == pytest.approx((1 + (0.5 / ratio) ** 2) ** -0.5)
+    assert abs(moved["displacement"] * 1j * omega - exact) < 1e-12 * abs(exact)
+
+
+def test_a_joint_above_the_base_of_a_rigid_column_is_a_spring_under_a_mass() -> None:
+    """At low frequency the column is a mass on the joint: stress on the base = w^2 m u."""
+    ground, omega = Ground((SOIL,), "shear", ((0.0, 1e4),)), 0.9
+    moved, _ = layers.amplitudes(ground, omega, ("displacement", "contact_pressure"))
+    mass = SOIL.thickness * SOIL.density
+    assert moved["displacement"] * 1j * omega == pytest.approx(1 / (1 - omega**2 * mass / 1e4), rel=1e-2)
+    assert moved["contact_pressure"] == pytest.approx(-(omega**2) * mass * moved["displacement"], rel=1e-3)
+
+
+def test_a_discount_is_a_rate_of_mass_damping() -> None:
+    """A pressed top settles on its springs: the static solution, after a damped motion."""
+    ground = Ground((SOIL,), "pressure", ((0.0, 1e7),))
+    scheme = fem_reference.Scheme(0.25, 0.5, 0.9, 2e-3, "zero")
+
+    def pressed(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.1, 1.0))
+
+    found = layers.solve_layers(ground, scheme, 1500, pressed, ("displacement", "contact_pressure"))
+    static = -1e5 * (SOIL.thickness / SOIL.modulus("pressure") + 1e-7)
+    assert found.columns["displacement"][-1] == pytest.approx(static, rel=1e-4)
+    assert found.columns["contact_pressure"][-1] == pytest.approx(1e5, rel=1e-4)
+
+
+def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
+    """Return a random column with joints anywhere, some where layers meet, and heights, some of them at joints."""
+    strata = tuple(
+        Stratum(round(rng.uniform(0.5, 6), 2), rng.uniform(1500, 2500), 10 ** rng.uniform(7, 9.5), rng.uniform(0, 0.45))
+        for _ in range(int(rng.integers(1, 5)))
+    )
+    tops = np.cumsum([stratum.thickness for stratum in strata])
+    places = [0.0] * (rng.random() < 0.3) + [float(top) for top in tops[:-1] if rng.random() < 0.5]
+    places += [round(rng.uniform(0.05, 0.95) * tops[-1], 3) for _ in range(int(rng.integers(0, 4)))]
+    joints = tuple((round(place, 9), 10 ** rng.uniform(6, 9)) for place in dict.fromkeys(places))
+    heights = [0.0, float(tops[-1]), float(tops[0]), rng.uniform(0, tops[-1]), *(place for place, _ in joints[:2])]
+    impedance = None if rng.random() < 0.5 else 10 ** rng.uniform(5, 7)
+    motion = "shear" if rng.random() < 0.5 else "pressure"
+    some = rng.permutation(heights)[: int(rng.integers(1, len(heights) + 1))]
+    return Ground(strata, motion, joints, impedance), [float(height) for height in some]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground, heights = drawn(rng)
+    omega = rng.uniform(1, 300)
+    names = [f"displacement_{number + 1}" for number in range(len(heights))]
+    stiffness = omega * max((x.density * x.modulus(ground.motion)) ** 0.5 for x in ground.strata)
+    both = layers.amplitudes(ground, [omega], (*names, "contact_pressure"), heights)
+    for found, base in zip(both, (True, False), strict=True):
+        displaced, pressure = assembled(ground, omega, heights, base)
+        size = max(map(abs, displaced))
+        assert max(abs(found[name][0] - x) for name, x in zip(names, displaced, strict=True)) < 1e-8 * size
+        assert abs(found["contact_pressure"][0] - pressure) < 1e-8 * (stiffness * size + abs(pressure))
+
+
+def test_a_window_that_ends_before_the_wave_arrives() -> None:
+    """Ten steps of 1e-5 s: the surface, 39 ms away, is at rest, and the base feels a half-space of the column's own."""
+    ground = Ground((SOIL,), "shear", (), SOIL.density * SPEED)
+    scheme = fem_reference.Scheme(0.25, 0.5, 1.0, 1e-5, "zero")
+
+    def sine(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, np.sin(2e4 * time) ** 4, 0 * time, 0 * time)
+
+    found = layers.solve_layers(ground, scheme, 10, sine, ("displacement", "contact_pressure"))
+    exact = SOIL.density * SPEED * np.sin(2e4 * found.time) ** 4
+    assert np.abs(found.columns["contact_pressure"] - exact).max() < 1e-5 * exact.max()
+    assert np.abs(found.columns["displacement"]).max() < 1e-12
+
+
+def test_the_surface_feels_a_pressure_at_once() -> None:
+    """A pressure p pushes the surface at p / (rho c), until the echo from the base is back."""
+    ground = Ground((SOIL,), "pressure", (), 1e7)
+    impedance = (SOIL.density * SOIL.modulus("pressure")) ** 0.5
+
+    def pressed(time: np.ndarray) -> Excitation:
+        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.01, 1.0))
+
+    found = layers.solve_layers(ground, STEPS, 20, pressed, ("displacement",))
+    early = found.time < 2 * SOIL.thickness * SOIL.density / impedance
+    ramp = np.where(found.time < 0.01, found.time**2 / 0.02, found.time - 0.005)
+    assert np.allclose(found.columns["displacement"][early], -1e5 / impedance * ramp[early], rtol=2e-4)
+
+
+def test_no_rate_without_velocity() -> None:
+    scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
+    with pytest.raises(ValueError, match="gg = 0 has no rate"):
+        layers.solve_layers(Ground((SOIL,), "shear"), scheme, 10, drive, ("displacement",))

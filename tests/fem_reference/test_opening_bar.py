@@ -1,0 +1,148 @@
+"""The bar on a spring that carries no tension under the Newmark scheme: locked bar, elements, exact motion."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.elements import make
+
+from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
+from fem_reference.events.bar_events import solve as exact
+from fem_reference.events.bar_model import BarProblem
+from fem_reference.exact.bar import Bar
+from fem_reference.exact.opening_bar import OpeningBar, applicable, closed_forms
+
+CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4)
+AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
+UPRIGHT = ((0, 0), (1.5, 0), (1.5, 2.2), (0, 2.2))
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e-2, 0.3, 1.49, 1.51, 3.0, 30.0, 500.0])
+def test_closed_forms_to_the_last_digits(size):
+    mp = pytest.importorskip("mpmath").mp
+    x = size * np.exp(1j * np.array([0.0, 0.4, 0.9, 1.3, 1.5]))
+    found = closed_forms(x * x)
+    with mp.workdps(60):
+        for i, square in enumerate(x * x):
+            root = mp.sqrt(mp.mpc(complex(square)))
+            known = (root * mp.coth(root), root / mp.sinh(root), root / (2 * mp.sinh(root / 2)))
+            for values, value in zip(found, known, strict=True):
+                expected = complex((value - 1) / root**2)
+                # near a free mode, x = i n pi, a rounding of x^2 is multiplied by the distance
+                assert abs(values[i] - expected) <= 1e-13 * abs(expected)
+
+
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        replace(CONSTANT, step=1e-3),
+        Scheme(0.5, 1.0, 0.95, 1e-2),
+        Scheme(0.5, 1.0, 0.0, 1e-3),
+        Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
+        Scheme(0.3025, 0.6, 0.98, 2e-3, "consistent"),
+    ],
+)
+def test_a_bar_that_stays_closed_is_the_locked_one(scheme):
+    problem = make(UPRIGHT, p=1e7)
+    steps = min(300, round(0.05 / scheme.step))
+    found, locked = OpeningBar.of(problem).solve(scheme, steps), Bar.of(problem).solve(scheme, steps)
+    assert found.contact_pressure.min() > 0
+    for name in ("displacement", "contact_pressure"):
+        size = np.abs(locked.columns[name]).max()
+        # of the size of the locked bar's own truncation, TARGET, where that is not below rounding
+        assert np.abs(getattr(found, name) - locked.columns[name]).max() <= (1e-12 + 2 * locked.estimate) * size
+    assert np.array_equal(found.gap, -found.contact_pressure * (1.5 / 2e7))
+
+
+def test_the_first_force_of_an_impact_is_the_closed_form():
+    problem = replace(make(UPRIGHT, p=3e9), pressure=0.0)
+    found = OpeningBar.of(problem, velocity=-0.7).solve(CONSTANT, 1)
+    wave = CONSTANT.step * math.sqrt(0.5 * problem.young / problem.density)  # m
+    C = 0.5 * CONSTANT.step**2 / (problem.density * wave * math.tanh(2.2 / wave))
+    assert found.contact_pressure[0] == pytest.approx(0.7 * CONSTANT.step / (C + 1.5 / 6e9), rel=1e-13)
+
+
+@pytest.mark.parametrize(("degree", "order"), [(1, 2.0), (2, 4.0)])
+def test_elements_tend_to_it_at_the_order_of_the_mesh(degree, order):
+    errors = []
+    for elements in (8, 16, 32):
+        problem = make(elements=elements, degree=degree)
+        bar, run = OpeningBar.of(problem).solve(CONSTANT, 400), solve_unilateral(problem, CONSTANT, 400)
+        assert bar.gap.max() > 1e-3
+        pairs = [(run.columns[name], getattr(bar, name)) for name in ("displacement", "contact_pressure")]
+        errors.append([float(np.linalg.norm(a - b) / np.linalg.norm(b)) for a, b in pairs])
+    found = -np.polyfit(np.log([8, 16, 32]), np.log(errors), 1)[0]
+    # a step that opens one instant earlier or later leaves of the next order what it leaves
+    assert found == pytest.approx([order, order], abs=0.25)
+    assert errors[-1][0] < 1e-3 / 10 ** (2 * degree - 2)
+
+
+@pytest.mark.parametrize(
+    ("change", "start", "scheme"),
+    [
+        ({"pressure": 0.0}, {"velocity": -0.7}, CONSTANT),
+        ({"pressure": 0.0, "gravity": 9.81}, {"gap": 1e-3, "velocity": -0.2}, replace(CONSTANT, gg=0.99)),
+        ({"pressure": 2e6, "gravity": 30.0}, {"gap": 5e-4}, replace(CONSTANT, alpha=0.5625, start="consistent")),
+    ],
+)
+def test_gap_velocity_weight_and_damping_are_those_of_elements(change, start, scheme):
+    problem = replace(make(UPRIGHT, p=3e9, elements=64), **change)
+    bar = OpeningBar.of(problem, **start).solve(scheme, 300)
+    run = solve_unilateral(problem, scheme, 300, Unilateral(**start))
+    assert 0 < bar.closed.mean() < 1
+    # A consistent start throws the top itself; its front is as sharp as elements allow, whatever the step.
+    limit = 1e-2 if scheme.start == "consistent" else 1e-5
+    for name in ("displacement", "contact_pressure"):
+        size = np.abs(run.columns[name]).max()
+        assert np.abs(getattr(bar, name) - run.columns[name]).max() <= 10 * limit * size, name
+    largest = run.columns["largest_gap"]
+    assert np.abs(bar.gap - largest)[bar.closed == 0].max() <= limit * largest.max()
+
+
+@pytest.mark.parametrize(
+    ("scheme", "order"),
+    # The fronts' widths, h^(1/2) and h^(2/3) for schemes of first and second order, leave d^(3/2) in the L2 norm.
+    [(CONSTANT, 0.75), (AVERAGE, 1.0)],
+)
+def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
+    errors, steps = [], [1000, 2000, 4000, 8000]
+    motion = exact(BarProblem(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6), 0.0301)
+    truth = motion.at(0.03 / 250 * np.arange(1, 251)).displacement
+    for count in steps:
+        bar = OpeningBar.of(make()).solve(replace(scheme, step=0.03 / count), count)
+        away = bar.displacement[count // 250 - 1 :: count // 250] - truth
+        errors.append(np.linalg.norm(away) / np.linalg.norm(truth))
+    found = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert found == pytest.approx(order, abs=0.1)
+
+
+def test_twice_the_load_moves_twice_as_far_with_the_same_switches():
+    problem = replace(make(UPRIGHT), gravity=5.0)
+    twice = replace(problem, pressure=2 * problem.pressure, gravity=10.0)
+    once = OpeningBar.of(problem, 1e-4, -0.1).solve(CONSTANT, 400)
+    more = OpeningBar.of(twice, 2e-4, -0.2).solve(CONSTANT, 400)
+    assert np.array_equal(once.closed, more.closed) and 0 < once.closed.mean() < 1
+    assert np.abs(more.displacement - 2 * once.displacement).max() <= 1e-12 * np.abs(more.displacement).max()
+
+
+def test_what_is_no_bar_is_refused_by_name():
+    square = make()
+    for change, words in (
+        ({"poisson": 0.1}, "Poisson's ratio is 0.1"),
+        ({"traction": 1.0}, "a centred pressure and its weight only"),
+        ({"motion": Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3))}, "a centred pressure and its weight only"),
+        ({"foundation": "corner"}, "the foundation is 'corner'"),
+        ({"vertices": ((0, 0), (2, 0), (2, 2), (0.1, 2))}, "not an upright rectangle"),
+    ):
+        assert words in applicable(replace(square, **change))
+        with pytest.raises(ValueError, match=words):
+            OpeningBar.of(replace(square, **change))
+    with pytest.raises(ValueError, match=r"^gap: "):
+        OpeningBar.of(square, gap=-1.0)
+    with pytest.raises(ValueError, match=r"^velocity: "):
+        OpeningBar.of(square, velocity=math.nan)
+    with pytest.raises(ValueError, match=r"^steps: "):
+        OpeningBar.of(square).solve(CONSTANT, 0)
+    with pytest.raises(ValueError, match="explicit"):
+        OpeningBar.of(square).solve(replace(CONSTANT, alpha=0.0), 1)

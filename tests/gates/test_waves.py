@@ -1,0 +1,126 @@
+"""The closed forms of waves: numbers of an independent computation, identities, limits."""
+
+import numpy as np
+import pytest
+
+from validation.gates import waves
+
+CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
+SQUARED = [
+    (CONSTANT, 1.0, 39866.84431751674 - 4000.0267516797j),
+    (CONSTANT, 0.98, 39455.986809826 - 8053.5365000484j),
+    (AVERAGE, 0.95, 40241.444534043 - 10394.264114958j),
+    ((1 / 3, 0.6), 0.99, 40263.785468581 - 2851.6121059063j),
+]
+WAVES = [  # blocks a wavelength, c dt/h; for each scheme the error of the phase speed and what ten wavelengths leave
+    (8, 0.25, (2.4860e-2, 0.056535), (2.1484e-2, 1)),
+    (10, 0.25, (1.6186e-2, 0.094910), (1.3976e-2, 1)),
+    (10, 0.5, (1.6724e-2, 0.008969), (7.8893e-3, 1)),
+    (10, 1, (1.8650e-2, 0.000078), (-1.6599e-2, 1)),
+    (20, 0.25, (4.1431e-3, 0.295573), (3.5718e-3, 1)),
+    (40, 0.1, (1.0288e-3, 0.781935), (1.0057e-3, 1)),
+    (100, 0.1, (1.6486e-4, 0.906062), (1.6116e-4, 1)),
+]
+GLUES = [(1, -2.8691e-1, 0.001071), (10, -3.0699e-2, 0.007117), (100, 1.1680e-2, 0.008762), (1e4, 1.6673e-2, 0.008967)]
+JOINTS = [
+    (10, 0.5, AVERAGE, 0.895981),
+    (20, 0.5, AVERAGE, 0.894800),
+    (40, 0.5, AVERAGE, 0.894519),
+    (160, 0.5, AVERAGE, 0.894433),
+    (10, 0.5, CONSTANT, 0.871194),
+    (20, 0.25, CONSTANT, 0.888266),
+    (40, 0.1, CONSTANT, 0.893212),
+]
+COLUMN = waves.Column(height=0.5, density=2000.0, modulus=1.8e9)
+SPEED = (1.8e9 / 2000.0) ** 0.5
+
+
+def wave(blocks: float, courant: float, scheme: tuple[float, float], gg: float = 1.0) -> tuple[waves.Stepping, float]:
+    """Return the stepping and w of a wave of some blocks of `COLUMN` a wavelength."""
+    return waves.Stepping(courant * 0.5 / SPEED, *scheme, gg), 2 * np.pi * SPEED / (blocks * 0.5)
+
+
+def test_squared_frequencies_are_those_of_the_independent_computation() -> None:
+    found = [waves.Stepping(1e-3, *scheme, gg).squared_frequency(200.0) for scheme, gg, _ in SQUARED]
+    assert np.allclose(found, [value for _, _, value in SQUARED], rtol=1e-13)
+
+
+@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE, (0.31, 0.83)])
+@pytest.mark.parametrize("gg", [1.0, 0.9, 0.0])
+def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float, float], gg: float) -> None:
+    alpha, delta, dt = *scheme, 3e-3
+    stepping, w = waves.Stepping(dt, alpha, delta, gg), np.array([0.3, 20.0, 700.0])
+    A, V, z = -stepping.squared_frequency(w), stepping.velocity_factor(w), np.exp(1j * w * dt)
+    assert np.allclose((z - gg) * V, dt * ((1 - delta) + delta * z) * A, rtol=1e-10)
+    assert np.allclose(z - 1, gg * dt * V + dt**2 * ((0.5 - alpha) + alpha * z) * A, rtol=1e-10)
+
+
+def test_damping_of_constant_acceleration_is_the_sine_of_a_quarter_step() -> None:
+    w = 2 * np.pi * np.array([5.0, 10.0, 20.0])
+    W = np.sqrt(waves.Stepping(0.01).squared_frequency(w))
+    assert np.allclose(-W.imag / np.abs(W), np.sin(w * 0.01 / 4), rtol=1e-12)
+    assert np.allclose(100 * np.sin(w * 0.01 / 4), [7.846, 15.643, 30.902], atol=5e-4)
+
+
+def test_hidden_damping_is_rayleighs_to_leading_order() -> None:
+    a0, a1 = waves.Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).rayleigh()
+    w = np.array([20.0, 50.0, 100.0])
+    W2 = waves.Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).squared_frequency(w)
+    assert np.allclose(-W2.imag, w * (a0 + a1 * w**2), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("blocks", "courant", "constant", "average"), WAVES)
+def test_waves_in_welded_blocks(
+    blocks: float, courant: float, constant: tuple[float, float], average: tuple[float, float]
+) -> None:
+    for scheme, (speed, left) in ((CONSTANT, constant), (AVERAGE, average)):
+        stepping, w = wave(blocks, courant, scheme)
+        kept, error = COLUMN.travelled(stepping, w, 10 * blocks * 0.5)
+        assert error == pytest.approx(speed, rel=6e-5)
+        assert kept == pytest.approx(left, abs=6e-7)
+
+
+@pytest.mark.parametrize(("ratio", "speed", "left"), GLUES)
+def test_waves_in_glued_blocks(ratio: float, speed: float, left: float) -> None:
+    column = waves.Column(0.5, 2000.0, 1.8e9, glue=ratio * 1.8e9 / 0.5)
+    stepping, w = wave(10, 0.5, CONSTANT)
+    kept, error = column.travelled(stepping, w, 50.0)
+    assert kept == pytest.approx(left, abs=6e-7)
+    assert error == pytest.approx(speed, rel=6e-5)
+
+
+def test_waves_with_kinetic_damping() -> None:
+    stepping, w = wave(20, 0.25, AVERAGE, gg=0.99)
+    assert COLUMN.travelled(stepping, w, 100.0)[0] == pytest.approx(0.018886548, rel=1e-7)
+
+
+@pytest.mark.parametrize("glue", [None, 1e9, 1e13])
+def test_wavenumber_solves_the_recurrence(glue: float | None) -> None:
+    column = waves.Column(0.5, 2000.0, 1.8e9, glue)
+    stepping, w = waves.Stepping(2e-4, 0.4, 0.9, 0.97), np.array([30.0, 900.0, 5000.0, 12000.0])
+    w2 = stepping.squared_frequency(w)
+    (A, B), k = column.ends(w2), column.wavenumber(w2)
+    target = -A / B if glue is None else (B**2 - A**2 - 2 * A * glue) / (2 * B * glue)
+    assert np.allclose(np.cos(k * 0.5), target, rtol=1e-9)
+    assert np.all(k.imag < 0)
+    assert np.all(k.real > 0)
+
+
+def test_beyond_the_cut_off_the_wave_decays() -> None:
+    k = COLUMN.wavenumber(np.array([1.1, 2.0, 50.0]) * 12 * SPEED**2 / 0.25)
+    assert np.allclose(k.real * 0.5, np.pi)
+    assert np.all(k.imag < 0)
+
+
+@pytest.mark.parametrize(("blocks", "courant", "scheme", "transmitted"), JOINTS)
+def test_joint_in_a_column(blocks: float, courant: float, scheme: tuple[float, float], transmitted: float) -> None:
+    stepping, w = wave(blocks, courant, scheme)
+    T, R = waves.joint_in_column(COLUMN, stepping.squared_frequency(w), 2000.0 * SPEED * w)
+    assert abs(T) == pytest.approx(transmitted, abs=6e-7)
+    if scheme == AVERAGE:
+        assert abs(T) ** 2 + abs(R) ** 2 == pytest.approx(1, rel=1e-12)
+
+
+def test_joint_in_a_continuum() -> None:
+    found = waves.joint_transmission([0.25, 0.5, 1.0, 2.0])
+    assert np.allclose(found, [0.4472136, 0.7071068, 0.8944272, 0.9701425], atol=5e-8)

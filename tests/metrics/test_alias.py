@@ -1,0 +1,65 @@
+"""A frequency beyond pi / dt is named an alias wherever it would be shown as the mode's own."""
+
+import cmath
+import math
+from pathlib import Path
+
+import pytest
+from conftest import typed
+
+from validation.advice.spectra import damping
+from validation.metrics.measurable import Measurable
+from validation.metrics.modes import first_axial, measured
+from validation.metrics.values import ALIAS
+from validation.report.chapters.text import cell, word_notes
+from validation.runs.modes import Mode
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver, solve
+
+
+def figure(step: float, gg: float = 1.0) -> Scene:
+    return load_scene("figures-3-4").with_values({"time.step": step, "time.gg": gg, "time.steps": 60})
+
+
+def seen(scene: Scene, solver: str) -> Measurable:
+    prepared = get_solver(solver).prepare(scene)
+    history = solve(scene, solver).history
+    assert history is not None
+    return Measurable(history, scene.time.step, prepared.static(), prepared.modes())
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.9])
+def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_not(gg: float) -> None:
+    m = seen(figure(0.01, gg), "continuum")
+    w, c = m.modes[0].frequency, -math.log(gg) / 0.01
+    assert w * m.step > math.pi
+    assert first_axial(m, "numerical_frequency") == measured(m, "frequency") == measured(m, "damping") == ALIAS
+    assert first_axial(m, "frequency") == w
+    assert first_axial(m, "damping") == pytest.approx(c / (2 * w), rel=1e-12, abs=1e-15)
+    folded = abs(complex(-c / 2, 2 * math.pi / m.step - math.sqrt(w**2 - c**2 / 4)))
+    assert m.modes[0].alias(m.step) == pytest.approx(folded, rel=1e-12)
+
+
+def test_below_nyquist_and_under_a_scheme_no_frequency_is_an_alias() -> None:
+    fine = seen(figure(0.002), "continuum")
+    assert first_axial(fine, "numerical_frequency") == pytest.approx(fine.modes[0].frequency, rel=1e-12)
+    assert isinstance(first_axial(seen(figure(0.01), "bar"), "numerical_frequency"), float)
+
+
+def test_a_motion_that_does_not_swing_has_no_alias() -> None:
+    step, w = 1.0, 4.0
+    for half in (3.9, 2.5, 5.0):  # turns of 0.9 and 3.1 a step, below pi; overdamped
+        root = cmath.sqrt(half**2 - w**2)
+        pair = cmath.exp((root - half) * step), cmath.exp((-root - half) * step)
+        assert Mode(w, 1.0, pair, None, True).alias(step) is None
+    root = cmath.sqrt(1 - w**2)
+    assert Mode(w, 1.0, (cmath.exp(root - 1), cmath.exp(-root - 1)), None, True).alias(step) is not None
+
+
+def test_damping_and_the_reports_tables_say_so(tmp_path: Path) -> None:
+    assert damping(figure(0.01)).alias is None  # nothing of references was asked for
+    shown = typed("damping", "figures-3-4", "--set", "time.step=0.01", cwd=tmp_path).stdout
+    assert "alias: the continuum's first mode, 327.682 rad/s, lies beyond pi / dt = 314.159 rad/s" in shown
+    assert "300.636 rad/s instead" in shown
+    assert "alias" not in typed("damping", "figures-3-4", "--set", "time.step=0.002", cwd=tmp_path).stdout
+    assert cell(ALIAS) == "alias" and "beyond π/Δt" in word_notes([ALIAS])[0]

@@ -1,0 +1,227 @@
+"""Metrics of a contact: closed forms on made records, identities on runs, and the horizon of two correct codes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.engine.case import Case
+from validation.engine.finished import Finished
+from validation.engine.judge import compared_until, evaluate
+from validation.engine.measure import execute
+from validation.engine.run import finish
+from validation.engine.study import Study
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import solo
+from validation.metrics.measurable import Measurable
+from validation.runs.contact import LOST, ContactRecord, rebounds_of_steps
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+from validation.solvers import opened
+from validation.solvers.registry import get_solver
+
+STEP = 0.5
+ONES = np.ones(4)
+MADE = ContactRecord(  # a mass of 2 kg that comes down with 3 m/s, touches in the second step and leaves with 1 m/s
+    time=STEP * np.arange(1.0, 5.0),
+    force=np.array([0.0, 8.0, 0.0, 0.0]),
+    impulse=np.array([0.0, 8.0, 8.0, 8.0]),
+    penetration=np.array([0.0, 0.25, 0.0, 0.0]),
+    gap=np.array([1.5, 0.0, 0.5, 1.0]),
+    open_share=np.array([1.0, 0.0, 1.0, 1.0]),
+    start_velocity=-3.0,
+    start_energy=9.0,
+    given=10.0,
+    velocity=np.array([-3.0, 2.0, 1.0, 1.0]),
+    energies={
+        "kinetic": np.array([9.0, 0.0, 1.0, 1.0]),
+        "strain": 0.0 * ONES,
+        "springs": np.array([0.0, 12.0, 0.0, 0.0]),
+        "load": 0.0 * ONES,
+        "algorithmic": np.array([0.0, 1.0, 4.0, 4.0]),
+        "kinetic damping": np.array([0.0, 0.0, 1.5, 1.5]),
+        "switching": np.array([0.0, -4.0, 2.5, 2.5]),
+    },
+    solves=np.array([1.0, 2.0, 2.0, 1.0]),
+    cuts=np.array([0.0, 1.0, 0.0, 0.0]),
+)
+EXPECTED = {
+    "contact.impulse": 8.0,
+    "contact.peak_force": 8.0,
+    "contact.penetration": 0.25,
+    "contact.gap": 1.5,
+    "contact.open_share": 0.75,
+    "contact.mean_solves": 1.5,
+    "contact.most_solves": 2.0,
+    "contact.cuts": 1.0,
+    "contact.restitution": 1 / 3,
+    "energy.rise": 0.3,
+    "energy.switching_gain": -0.25,
+    "energy.imbalance": 0.0,
+    "energy.kinetic": 1.0,
+    "energy.springs": 0.0,
+    "energy.lost_algorithmic": 4.0,
+    "energy.lost_kinetic_damping": 1.5,
+    "energy.lost_switching": 2.5,
+}
+
+
+def measured(record: ContactRecord | None) -> dict[str, Any]:
+    return solo(Measurable(History(np.zeros(0), {}), STEP, contact=record), ("switches",))
+
+
+def test_each_metric_of_a_made_contact_is_its_closed_form() -> None:
+    balanced = MADE.energies | {"springs": np.array([0.0, 12.0, 0.0, 0.0])}
+    found = measured(replace(MADE, energies=balanced))
+    assert {name: found[name] for name in EXPECTED} == pytest.approx(EXPECTED)
+
+
+FAULTS = {  # what a reader of an adapter would slip, and metrics that tell
+    "losses swapped": ({"energies": MADE.energies | {LOST[1]: MADE.energies[LOST[2]], LOST[2]: MADE.energies[LOST[1]]}},
+                       {"energy.switching_gain", "energy.lost_switching", "energy.lost_kinetic_damping"}),
+    "penetration of the other sign": ({"penetration": -MADE.penetration}, {"contact.penetration"}),
+    "peak in kN": ({"force": MADE.force / 1e3}, {"contact.peak_force"}),
+    "strain left out of the energy": ({"energies": MADE.energies | {"kinetic": MADE.energies["kinetic"] + 1}},
+                                      {"energy.rise", "energy.imbalance", "energy.kinetic"}),
+    "velocity downwards": ({"velocity": -(MADE.velocity if MADE.velocity is not None else ONES)},
+                           {"contact.restitution"}),
+    "a count from zero": ({"solves": np.array([0.0, 1.0, 1.0, 0.0])}, {"contact.mean_solves", "contact.most_solves"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_slip_in_the_record_is_seen(name: str) -> None:
+    changes, told = FAULTS[name]
+    found = measured(replace(MADE, **changes))
+    assert {key for key, value in EXPECTED.items() if found[key] != pytest.approx(value)} == told
+
+
+def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:
+    assert {measured(None)[key] for key in EXPECTED} == {"not reported"}
+    bare = replace(MADE, velocity=None, energies={}, solves=None, cuts=None)
+    assert measured(bare)["contact.restitution"] == measured(bare)["energy.rise"] == "not reported"
+    flying = replace(MADE, force=0 * MADE.force, rebounds=())
+    assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == "undefined"
+    assert measured(replace(MADE, given=0.0))["energy.rise"] == "undefined"
+
+
+def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it() -> None:
+    gap = np.array([3.0, 1.0, -0.5, -0.2, 0.1, 0.4, 0.9, 1.0, 0.5, -0.3, 0.2, -0.1])
+    (first, rebound), (_, other) = rebounds_of_steps(gap, 0.5)  # the second contact has no free step behind it
+    assert (other.closing, other.opening, other.restitution) == (1.0, None, None)
+    assert (first, rebound.closing, rebound.opening) == (2, 4.0, pytest.approx(1.0))
+    assert rebound.restitution == pytest.approx(0.25)
+
+
+RIGID = {"block.young": 1e16, "block.velocity": -1.0, "load.pressure": 0.0, "contact.stiffness": 2e9}
+
+
+def impact(**values: Any) -> Scene:
+    """Return a rigid block of 10800 kg that comes down on 4e9 N/m with Omega = 2."""
+    scene = load_scene("unlocked-constant").expand()[0].with_values(RIGID | {"time.steps": 40, **values})
+    return scene.with_values({"time.step": 2 * (opened.mass(scene) / 4e9) ** 0.5})
+
+
+@pytest.mark.parametrize(("scheme", "e"), [((0.5, 1.0), 1 / 3), ((0.25, 0.5), 1.0)])
+@pytest.mark.parametrize("gap", [0.0105, 0.0117, 0.013])
+def test_the_restitution_where_contact_lasts_two_steps(scheme: tuple[float, float], e: float, gap: float) -> None:
+    scene = impact(**{"time.alpha": scheme[0], "time.delta": scheme[1], "contact.gap": gap})
+    row, _ = execute(Case(scene, "dda"), "", "")
+    assert row.metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)  # p over E is 2e-7
+    assert row.metrics["contact.restitution_first"] == pytest.approx(e, rel=1e-6)
+    assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
+
+
+def record_of(scene: Scene, solver: str = "dda") -> ContactRecord:
+    prepared = get_solver(solver).prepare(scene)
+    prepared.run()
+    return prepared.contact_record()
+
+
+CASES = {
+    "constant, damped": {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.98},
+    "average": {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 1.0, "load.eccentricity": 0.2, "load.gravity": 9.81},
+    "other": {"time.alpha": 0.4, "time.delta": 0.7, "contact.stiffness": 7e9, "block.velocity": -0.5},
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_impulse_and_energy_close_the_balances_of_dda(name: str) -> None:
+    values = {"time.step": 4e-4, "time.steps": 100, "load.pressure": 3e6} | CASES[name]
+    scene = load_scene("unlocked-constant").expand()[0].with_values(values)
+    record, m, gg = record_of(scene), opened.mass(scene), scene.time.discount
+    assert record.velocity is not None and record.gap.max() > 0 and not record.cuts.any()
+    before = np.concatenate(([scene.block.velocity], record.velocity[:-1]))
+    late = np.concatenate(([1 - scene.time.delta if scene.time.start == "zero" else 0.0], np.zeros(99)))
+    loads = opened.pushing(scene) * scene.time.step * (1 - late)  # A0 = 0 leaves the load at t = 0 out
+    gained = m * np.sum(record.velocity - gg * before) + np.sum(loads)
+    assert record.impulse[-1] == pytest.approx(gained, rel=1e-9)
+    assert measured(record)["energy.imbalance"] < 1e-11
+    assert (
+        measured(replace(record, energies=record.energies | {LOST[2]: record.energies[LOST[1]]}))["energy.imbalance"]
+        > 1e-4
+    )
+
+
+def test_the_exact_motions_have_the_impulse_of_their_force() -> None:
+    scene = load_scene("unlocked").expand()[1].with_values({"time.step": 1e-4, "time.steps": 500})
+    for solver in ("block-events", "bar-events"):
+        record = record_of(scene, solver)
+        force, time = (np.concatenate(([0.0], values)) for values in (record.force, record.time))
+        assert record.impulse[-1] == pytest.approx(np.sum(np.diff(time) * (force[1:] + force[:-1])) / 2, rel=2e-3)
+        assert record.rebounds and all(
+            one.closing > 0 and (one.opening is None or one.opening > 0) for one in record.rebounds
+        )
+        assert record.rebounds[0].restitution
+
+
+def test_the_horizon_ends_where_switches_have_amplified_rounding() -> None:
+    """Average acceleration on a stiff contact is chaotic, constant acceleration is not."""
+    stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400}
+    scene = load_scene("unlocked-constant").expand()[0].with_values(stiff)
+    rough = scene.with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    calm, wild = (execute(Case(s, "dda"), "", "")[0].metrics for s in (scene, rough))
+    assert calm["horizon.time"] == pytest.approx(0.04)
+    assert 0.003 < wild["horizon.time"] < 0.035  # type: ignore[operator]
+    assert "horizon.time" not in execute(Case(scene, "block-events"), "", "")[0].metrics
+
+
+def test_histories_are_gated_up_to_the_horizon(tmp_path: Any) -> None:
+    rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
+            (("dda", 0.3), ("fem", 0.2), ("block-events", "not reported"))}  # fmt: skip
+    finished = Finished(rows, Results(tmp_path))
+    gate = Gate("s", ("dda", "fem"), "displacement.l2", 0.0, 1.0, "why")
+    assert compared_until(gate, [("s", "dda"), ("s", "fem")], finished) == 0.2
+    assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
+    assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
+    assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
+def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule: str) -> None:
+    scene = impact(**{"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": rule, "contact.gap": 0.0117})
+    metrics = execute(Case(scene, "dda"), "", "")[0].metrics
+    e = {"newmark": 1.0, "implicit": 1 / 3, "energy-conserving": 1.0}[rule]
+    assert metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)
+    assert metrics["contact.impulse"] == pytest.approx(10800 * (1 + e), rel=1e-6)
+
+
+def test_a_verdict_says_up_to_when_histories_were_compared(tmp_path: Path) -> None:
+    stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400, "time.alpha": 0.25, "time.delta": 0.5}
+    scene = load_scene("unlocked-constant").expand()[0].with_values(stiff)
+    pair = ("dda", "block-events")
+    gates = [Gate(scene.name, pair, "displacement.l2", 0.0, 9.0, "why", until=t) for t in (None, 0.002)]
+    study = Study("test", "", "", [scene], pair, gates=lambda: tuple(gates))
+    finished = finish(study.cases(), study, Results(tmp_path))
+    horizon = finished.rows[scene.name, "dda"].metrics["horizon.time"]
+    whole, early = (evaluate(gate, finished) for gate in gates)
+    assert whole.why.startswith(f"compared up to {horizon:.4g} s") and early.why == ""
+    assert isinstance(whole.value, float) and isinstance(early.value, float)

@@ -1,0 +1,295 @@
+"""Scenes of columns: what they may state, who runs them, who refuses them, and that the three solvers agree."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation import InputError, load_scene, response, solve
+from validation.advice.spectra import damping
+from validation.compare.diagnosis import compare
+from validation.compare.reading import Foreign
+from validation.engine.case import Case
+from validation.metrics.transform import spectrum
+from validation.scenes import drive, features
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.registry import solver_names
+
+SITE = """
+[column]
+motion = "shear"
+base = "transmitting"
+base_density = 2400.0
+base_speed = 800.0
+heights = [0.0, 7.0, 10.0, 18.0]
+
+[[column.layer]]
+thickness = 10.0
+density = 2000.0
+young = 5.0e8
+poisson = 0.3
+blocks = 12
+
+[[column.layer]]
+thickness = 8.0
+density = 1800.0
+young = 2.0e8
+poisson = 0.3
+blocks = 12
+
+[[column.joint]]
+height = 10.0
+stiffness = 1.0e8
+
+[input]
+shape = "ricker"
+velocity = 0.1
+frequency = 4.0
+
+[time]
+step = 4.0e-3
+steps = 500
+alpha = 0.25
+delta = 0.5
+
+[fem]
+elements = 1
+degree = 1
+
+[run]
+columns = ["displacement", "contact_pressure", "displacement_1", "displacement_3", "stress_2", "stress_4"]
+"""
+BASES = {
+    "half-space": {},
+    "jointed half-space": {"column.joint": [{"height": 0.0, "stiffness": 3e8}, {"height": 10.0, "stiffness": 1e8}]},
+    "rigid": {"column.base": "rigid"},
+    "springs": {"column.base": "springs", "column.base_stiffness": 4e8},
+}
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Scene:
+    path = tmp_path / "site.toml"
+    path.write_text(SITE)
+    return load_scene(path)
+
+
+def standing(site: Scene, base: str) -> Scene:
+    """Return the site on another base."""
+    data = site.definition()
+    if base in ("rigid", "springs"):
+        for key in ("base_density", "base_speed"):
+            del data["column"][key]
+    return parse_scene(data | {"column": data["column"] | {k[7:]: v for k, v in BASES[base].items()}}, base)
+
+
+@pytest.mark.parametrize("top", [False, True])
+@pytest.mark.parametrize("base", BASES)
+def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) -> None:
+    scene = standing(site, base).with_values({"time.alpha": 0.4, "time.delta": 0.7, "time.gg": 0.99})
+    if top:
+        drive = {"at": "top", "shape": "half-sine", "pressure": 1e6, "duration": 0.05}
+        scene = parse_scene(scene.definition() | {"input": drive}, "top")
+    histories = [solve(scene, solver).history for solver in ("dda", "fem")]
+    for name in scene.run.columns:
+        blocks, elements = (history.columns[name] for history in histories)
+        assert np.abs(blocks - elements).max() <= 1e-11 * np.abs(elements).max() + 1e-300, name
+
+
+@pytest.mark.parametrize("base", BASES)
+def test_blocks_converge_to_the_exact_layers(site: Scene, base: str) -> None:
+    """Average acceleration at half the size and half the step: a quarter of the error, or three tenths."""
+    errors = []
+    coarse = standing(site, base).with_values({"run.columns": ["displacement", "contact_pressure"]})
+    for halvings in (1, 2):
+        layers = [x.model_dump() | {"blocks": x.blocks * 2**halvings} for x in coarse.column.layer]
+        steps = {"time.step": coarse.time.step / 2**halvings, "time.steps": coarse.time.steps * 2**halvings}
+        scene = coarse.with_values({"column.layer": layers} | steps)
+        blocks, exact = (solve(scene, solver).history for solver in ("dda", "layers"))
+        parts = [(blocks.columns[name], exact.columns[name]) for name in scene.run.columns]
+        errors.append([np.linalg.norm(a - b) / np.linalg.norm(b) for a, b in parts])
+    assert np.all(np.array(errors[1]) < 0.3 * np.array(errors[0]))
+    assert max(errors[1]) < 0.01
+
+
+def test_a_record_drives_a_column_as_the_pulse_that_it_holds(site: Scene, tmp_path: Path) -> None:
+    time = 1e-3 * np.arange(1200)
+    pulse = drive.motion_at(site, time)
+    again = drive.motion_at(site, time[:-1] + 5e-4)
+    runs = [solve(site, "dda")]
+    for name in ("velocity", "acceleration"):
+        rows = np.column_stack([time, getattr(pulse, name)])
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=f"time,{name}", comments="")
+        given = {"record": str(tmp_path / f"{name}.csv")}
+        scene = parse_scene(site.definition() | {"input": given}, name)
+        runs.append(solve(scene, "dda"))
+        for part, values in vars(drive.motion_at(scene, time[:-1] + 5e-4)).items():
+            assert np.abs(values - getattr(again, part)).max() <= 2e-3 * np.abs(getattr(again, part)).max(), part
+    for run in runs[1:]:
+        assert np.abs(run.displacement - runs[0].displacement).max() < 2e-4 * np.abs(runs[0].displacement).max()
+
+
+@pytest.mark.parametrize("shape", ["ricker", "half-sine"])
+def test_pulses_are_derivatives_of_each_other(shape: str) -> None:
+    time = np.linspace(-0.1, 1.5, 160001)
+    parts = drive.ricker(2.0, 3.0, time) if shape == "ricker" else drive.half_sine(2.0, 0.4, time)
+    for low, high in itertools.pairwise(parts):
+        assert np.abs(np.gradient(low, time) - high)[2:-2].max() < 1e-3 * np.abs(high).max() or shape == "half-sine"
+        assert np.median(np.abs(np.gradient(low, time) - high)) < 1e-6 * np.abs(high).max()
+    assert np.abs(parts[1]).max() == pytest.approx(2.0)
+
+
+# ---- vibrations -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("base", BASES)
+def test_a_vibration_is_what_the_steps_make_of_it(site: Scene, base: str, solver: str) -> None:
+    """The spectrum of a stepped pulse that damping has taken, over that of its drive."""
+    scheme = {"time.alpha": 0.6, "time.delta": 1.1, "time.gg": 0.97, "time.step": 8e-3, "time.steps": 1500}
+    scene = standing(site, base).with_values(scheme | {"run.columns": ["displacement", "contact_pressure"]})
+    scene = scene.with_values({"column.glue": 3e9}) if solver == "dda" else scene
+    frequency, time = np.array([1.1, 3.0, 7.0]), 8e-3 * np.arange(1501)
+    moved = spectrum(time, drive.motion_at(scene, time).displacement, 2 * np.pi * frequency)
+    history = solve(scene, solver).history
+    for name, values in response(scene, frequency, solver).columns.items():
+        seen = spectrum(history.time, history.columns[name], 2 * np.pi * frequency) / moved
+        assert np.abs(seen - values).max() < 1e-10 * np.abs(values).max(), name
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_a_pressure_that_vibrates_on_the_top(site: Scene, solver: str) -> None:
+    given = {"at": "top", "shape": "ricker", "pressure": 1e5, "frequency": 4.0}
+    scene = parse_scene(site.definition() | {"input": given}, "top").with_values({"time.steps": 1500})
+    time = scene.time.step * np.arange(1501)
+    pressed = spectrum(time, drive.motion_at(scene, time).pressure, 2 * np.pi * 5.0)
+    history = solve(scene, solver).history
+    found = response(scene, 5.0, solver)
+    assert not found.base
+    for name, values in found.columns.items():
+        seen = 1e5 * spectrum(history.time, history.columns[name], 2 * np.pi * 5.0) / pressed
+        assert abs(seen - values[0]) < 1e-8 * abs(values[0]), name
+
+
+@pytest.mark.parametrize("top", [False, True])
+@pytest.mark.parametrize("base", BASES)
+def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: bool) -> None:
+    layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
+    scene = standing(site, base).with_values({"column.layer": layers, "time.gg": 0.99})
+    if top:
+        given = {"at": "top", "shape": "ricker", "pressure": 1.0, "frequency": 4.0}
+        scene = parse_scene(scene.definition() | {"input": given}, "top")
+    frequency = [0.5, 2.0, 3.1]
+    exact = response(scene, frequency, "layers").columns
+    for solver in ("dda", "fem"):
+        for name, values in response(scene, frequency, solver, exact=True).columns.items():
+            assert np.abs(values - exact[name]).max() < 2e-4 * np.abs(exact[name]).max(), (solver, name)
+
+
+# ---- what is refused ------------------------------------------------------------------------------------------------
+
+
+def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
+    assert features.of(site) == ("column",)
+    assert features.linear(site)
+    for name in set(solver_names()) - {"dda", "fem", "layers"}:
+        with pytest.raises(InputError, match="does not handle column"):
+            solve(site, name)
+    with pytest.raises(InputError, match="takes columns only"):
+        solve(load_scene("figures-3-4").expand()[0], "layers")
+
+
+def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
+    """A feature is one that columns can have, or it looks at a table that they have not."""
+    for feature in features.FEATURES:
+        if not feature.of_columns:
+            with pytest.raises(InputError, match="got a scene of a column"):
+                feature.present(site)
+
+
+def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:
+    with pytest.raises(InputError, match="site: damping takes scenes of a block only"):
+        damping(site)
+    with pytest.raises(InputError, match="site: compare takes scenes of a block only"):
+        compare(site, Foreign(np.array([0.1]), {}))
+    with pytest.raises(InputError, match="site: load: is needed for what is asked, got a scene of a column"):
+        _ = site.load
+    with pytest.raises(InputError, match="input: is needed for what is asked, got a scene of a block"):
+        _ = load_scene("figures-3-4").input
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"column": {"motion": "love"}}, "column.motion: must be"),
+        ({"column": {"base": "springs"}}, "base_density does not go with base = 'springs'"),
+        ({"column": {"base_speed": 0.0}}, "column.base_speed: must be greater than 0"),
+        ({"column": {"base_young": 1e9}}, "base_density and either base_speed or base_young are required"),
+        ({"column": {"base_poisson": 0.2}}, "base_poisson goes with base_young only"),
+        ({"column": {"heights": [30.0]}}, "heights must be at most the column's height 18"),
+        ({"column": {"joint": [{"height": 19.0, "stiffness": 1e9}]}}, "joint.height must be at most"),
+        ({"column": {"layer": []}}, "column.layer: must"),
+        ({"input": {"pressure": 1.0}}, "pressure does not go with ricker at the base"),
+        ({"input": {"record": "a.csv"}}, "one of shape and record is required, got both"),
+        ({"input": {"at": "top"}}, "pressure is required with ricker at the top"),
+        ({"fem": {"foundation": "corner"}}, "fem: foundation does not go with column"),
+        ({"load": {"pressure": 1.0}}, "load: does not go with column"),
+    ],
+)
+def test_bad_columns_are_refused(site: Scene, change: dict[str, dict[str, object]], says: str) -> None:
+    data = site.definition()
+    for table, values in change.items():
+        data[table] = data.get(table, {}) | values
+    with pytest.raises(InputError, match=says):
+        parse_scene(data, "site")
+
+
+def test_a_joint_inside_a_block_is_refused_by_the_blocks(site: Scene) -> None:
+    inside = site.with_values({"column.joint": [{"height": 9.9, "stiffness": 1e9}]})
+    with pytest.raises(InputError, match="joints: must lie where blocks meet"):
+        solve(inside, "dda")
+    assert solve(inside, "fem").displacement.size == 500
+
+
+def test_a_column_and_its_input_go_together(site: Scene) -> None:
+    data = site.definition()
+    del data["input"]
+    with pytest.raises(InputError, match="input: is required, got nothing"):
+        parse_scene(data, "site")
+    block = load_scene("figures-3-4").definition()
+    with pytest.raises(InputError, match="input: does not go without column"):
+        parse_scene(block | {"input": site.definition()["input"]}, "block")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("time,displacement\n0,0\n1,1\n", "header must be time,velocity or time,acceleration"),
+        ("time,velocity\n0,0\n", "at least two rows"),
+        ("time,velocity\n0,0\n0,1\n", "time must increase"),
+    ],
+)
+def test_bad_records_are_refused(site: Scene, tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / "record.csv").write_text(text)
+    scene = parse_scene(site.definition() | {"input": {"record": str(tmp_path / "record.csv")}}, "site")
+    with pytest.raises(InputError, match=says):
+        solve(scene, "dda")
+
+
+def test_conditional_schemes_are_held_to_their_limit(site: Scene) -> None:
+    for solver in ("dda", "fem"):
+        with pytest.raises(InputError, match=r"time\.step: must not exceed"):
+            solve(site.with_values({"time.alpha": 0.0}), solver)
+
+
+def test_key_of_a_column_reads_its_record_and_not_another_solvers_glue(site: Scene, tmp_path: Path) -> None:
+    glued = site.with_values({"column.glue": 1e10})
+    assert Case(site, "dda").key() != Case(glued, "dda").key()
+    assert Case(site, "fem").key() == Case(glued, "fem").key()
+    keys = []
+    for last in ("1", "2"):
+        (tmp_path / "record.csv").write_text(f"time,velocity\n0,0\n1,{last}\n")
+        scene = parse_scene(site.definition() | {"input": {"record": str(tmp_path / "record.csv")}}, "site")
+        keys.append(Case(scene, "dda").key())
+    assert keys[0] != keys[1]

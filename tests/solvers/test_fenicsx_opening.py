@@ -1,0 +1,148 @@
+"""Contact that opens by two finite-element codes: equal to rounding with all their counts, slips of either seen."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from faults import seams
+
+from validation import solve
+from validation.errors import InputError
+from validation.metrics.catalogue import pair
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import fenicsx as adapters_fenicsx
+from validation.solvers.processes import worker
+from validation.solvers.registry import get_solver
+from validation.studies.second_fem_code import SAME
+
+pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
+FEW = ("displacement", "contact_pressure", "horizontal_displacement")
+GLUED = {"load.eccentricity": 0.25, "block.poisson": 0.25, "contact.shear_stiffness": 4e8}
+SCENES = {  # constant acceleration: average acceleration multiplies rounding at impacts
+    "centred": {"load.gravity": 9.81, "block.velocity": -0.2, "contact.gap": 1e-4, "time.gg": 0.99},
+    "frictionless": {"load.eccentricity": -0.25, "block.poisson": 0.25, "contact.shear_stiffness": 0.0},
+    "glued": GLUED | {"time.start": "consistent", "time.alpha": 0.5625},
+    "corner": GLUED | {"fem.foundation": "corner", "load.eccentricity": 0.5},
+    "triangles": GLUED | {"fem.cells": "triangles", "fem.degree": 1, "block.hypothesis": "plane strain"},
+    "slow": {"block.velocity": -0.2, "contact.gap": 1e-5, "time.step": 2e-6},
+    "cut": GLUED | {"load.eccentricity": 0.5, "contact.stiffness": 1e11, "time.step": 1e-3, "contact.solve_limit": 2},
+    "all states": GLUED | {"fem.elements": 2, "load.eccentricity": 0.5, "contact.solve_limit": 1, "time.step": 1e-3},
+}
+
+
+@pytest.fixture
+def scene() -> Scene:
+    """The paper's block on 8 elements a side, for 32 ms."""
+    values = {"time.step": 2e-4, "time.steps": 160, "fem.elements": 8, "run.columns": adapters_fenicsx.OPENING_COLUMNS}
+    return load_scene("unlocked").expand()[1].with_values(values)
+
+
+def distance(scene: Scene, solver: str = "fenicsx") -> float:
+    """Largest difference from `fem`, over each column's size, of any column; displacements share a scale."""
+    own, other = get_solver("fem").prepare(scene, full=True), get_solver(solver).prepare(scene)
+    runs = own.run(), other.run()
+    histories = [run.history for run in runs]
+    assert histories[0] is not None and histories[1] is not None
+    if runs[0].outcome != runs[1].outcome or len(histories[0].time) != len(histories[1].time):
+        return np.inf
+    size = {name: float(np.abs(values).max()) for name, values in histories[0].columns.items()}
+    size["horizontal_displacement"] = size["displacement"]
+    size["base_shear"] = size["contact_pressure"]
+    size |= dict.fromkeys(("open_share", "solves", "cuts"), 1.0)
+    size |= dict.fromkeys(("largest_gap", "largest_penetration"), size["displacement"])
+    found = [
+        float(np.abs(values - histories[1].columns[name]).max()) / size[name]
+        for name, values in histories[0].columns.items()
+    ]
+    return max(found) if own.switches() == other.switches() else np.inf
+
+
+@pytest.mark.fenicsx
+@pytest.mark.parametrize("values", SCENES.values(), ids=SCENES)
+def test_the_two_codes_agree_on_contact_that_opens(scene: Scene, values: dict[str, object]) -> None:
+    case = scene.with_values(values)
+    assert 0 < distance(case) <= SAME
+    history = solve(case, "fem", full=True).history
+    assert history is not None and 0 < history.columns["open_share"].mean() < 1
+    if "contact.solve_limit" in values:
+        assert (history.columns["cuts"].max() > 0) == (case.fem.per_side == 8)
+
+
+@pytest.mark.fenicsx
+@pytest.mark.parametrize("name", ["quadrilateral", "pentagon"])
+def test_the_two_codes_agree_on_files_of_gmsh(name: str) -> None:
+    contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "gap": 1e-4}
+    values = {"contact": contact, "block.velocity": -0.5, "time.step": 5e-4, "time.steps": 60}
+    case = load_scene(name).expand()[0].with_values(values | {"run.columns": adapters_fenicsx.OPENING_COLUMNS})
+    assert 0 < distance(case) <= SAME
+    history = solve(case, "fem").history
+    assert history is not None and 0 < history.columns["open_share"].mean() < 1
+
+
+@pytest.mark.long
+@pytest.mark.fenicsx
+@pytest.mark.parametrize("name", ["glued", "corner", "cut"])
+def test_ranks_share_one_contact(scene: Scene, name: str) -> None:
+    assert 0 < distance(scene.with_values(SCENES[name]), "fenicsx:2") <= SAME
+
+
+@pytest.mark.fenicsx
+def test_a_step_without_a_contact_ends_the_history_by_name(scene: Scene) -> None:
+    hopeless = scene.with_values(SCENES["glued"] | {"contact.solve_limit": 1})
+    assert [solve(hopeless, name, full=True).outcome for name in ("fem", "fenicsx")] == [Outcome.NO_CONTACT_STATE] * 2
+
+
+def test_what_fenicsx_does_not_open_is_refused(scene: Scene, tmp_path: Path) -> None:
+    patches = scene.with_values({"fem": {"elements": 8, "foundation": "patch", "patch_width": 0.5}})
+    with pytest.raises(InputError, match="none on patches"):
+        solve(patches, "fenicsx")
+    record = tmp_path / "record.csv"
+    record.write_text("time,x\n0,0\n1,0.001\n")
+    for solver in ("fem", "fenicsx"):
+        with pytest.raises(InputError, match="base motion together with unilateral contact"):
+            solve(scene.with_values({"load.base_motion": str(record)}), solver)
+
+
+SLIPS = {  # a line of the worker, what a slip makes of it, and a scene that sees it
+    "reference of a node that closes at its end": ("crossing = slip +", "crossing = slip + 0 *", "glued"),
+    "gap remembers tension": ("np.where(found.closed, -found.N / self.base.k, found.w)", "found.w + 1e-6", "cut"),
+    "a pulling node stays closed": ("self.N >= 0", "self.N >= -1e3", "frictionless"),
+    "dead band of a micrometre": ("self.w < 0)", "self.w < -1e-6)", "slow"),
+    "shares of the base uneven": ("parts / self.length, 0.0)", "1 / np.count_nonzero(parts), 0.0)", "glued"),
+    "gg applied twice": ("self.V = gg * self.V", "self.V = gg * gg * self.V", "centred"),
+    "gg of the whole step in a piece": ('self.request["gg"] ** share', 'self.request["gg"]', "cut"),
+    "gap at the start forgotten": ('w + self.request["gap"]', "w", "centred"),
+    "velocity at the start forgotten": ('[0.0, request["velocity"]]', "[0.0, 0.0]", "centred"),
+    "states of the end not set": ('"closed": found.closed}', '"closed": self.contact["closed"]}', "glued"),
+}
+
+
+@pytest.mark.long
+@pytest.mark.fenicsx
+@pytest.mark.parametrize(("line", "slip", "name"), SLIPS.values(), ids=SLIPS)
+def test_a_slip_of_the_worker_is_seen(
+    scene: Scene, line: str, slip: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(adapters_fenicsx.WORKER, tmp_path / "worker")
+    module = tmp_path / "worker" / "opening.py"
+    text = module.read_text()
+    assert text.count(line) == 1
+    module.write_text(text.replace(line, slip))
+    seams.FENICSX_WORKER.put(monkeypatch, tmp_path / "worker")
+    case = scene.with_values(SCENES[name] | {"time.gg": 0.99})
+    try:
+        assert distance(case) > 100 * SAME
+    finally:
+        worker.close_all()
+
+
+@pytest.mark.fenicsx
+def test_a_bar_is_met_by_the_second_code_too(scene: Scene) -> None:
+    case = scene.with_values({"fem.elements": 16, "run.columns": FEW[:2]})
+    found, bar = solve(case, "fenicsx").history, solve(case, "bar").history
+    assert found is not None and bar is not None
+    values = [pair(name, found, bar) for name in ("displacement.l2", "pressure.l2")]
+    # quadratic elements, h = 2/16: the fourth order leaves 1e-5 to 1e-6 of the front
+    assert all(isinstance(value, float) and 0 < value < 1e-4 for value in values)

@@ -1,0 +1,122 @@
+"""Rules of contact and sub-blocks through the adapter `dda`: who takes them, what they report, refusals by name."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+from validation import solve
+from validation.errors import InputError
+from validation.metrics.catalogue import pair
+from validation.metrics.contact import imbalance
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import opened
+from validation.solvers.registry import get_solver, solver_names
+
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+
+
+@pytest.fixture
+def scene() -> Scene:
+    """A pressed block that lands, opens and lands again."""
+    case = load_scene("unlocked").expand()[1]
+    return case.with_values({"time.step": 1e-4, "time.steps": 150, "load.gravity": 9.81, "block.velocity": -0.2})
+
+
+@pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
+def test_a_rule_is_of_the_solvers_that_step_by_it(scene: Scene, rule: str) -> None:
+    case = scene.with_values(AVERAGE | {"contact.rule": rule})
+    takes = [name for name in solver_names() if not get_solver(name).unhandled(case)]
+    elements = {"fem"} if rule == "implicit" else set()
+    assert set(takes) == {"dda", "block-events", "bar-events"} | elements  # the exact motions have no time step
+    for name in {"fem", "bar", "fenicsx", "dda-textbook"} - elements:
+        with pytest.raises(InputError, match=f"does not handle .*{rule} contact"):
+            solve(case, name)
+    newmark = solve(scene.with_values(AVERAGE), "dda").history
+    exact, ours = solve(case, "block-events").history, solve(case, "dda").history
+    assert exact is not None and ours is not None and newmark is not None
+    off = pair("displacement.l2", ours, exact)
+    assert isinstance(off, float) and 1e-9 < off < 5e-2
+    assert not np.array_equal(ours.displacement, newmark.displacement)
+
+
+@pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
+def test_scheme_and_rule_that_exclude_each_other_are_refused(scene: Scene, rule: str) -> None:
+    words = f"rule = '{rule}' steps the block by average acceleration: time.alpha must be 0.25 and"
+    with pytest.raises(InputError, match=words):
+        scene.with_values({"time.alpha": 0.5, "time.delta": 0.5, "contact.rule": rule})
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('rule = "implicit"', 'rule goes with law = "unilateral" only'),
+        ('law = "unilateral"\nrule = "explicit"', "'newmark', 'implicit' or 'energy-conserving', got 'explicit'"),
+        ('law = "unilateral"\nrule = "energy-conserving"\nband = [1e-6, 0.0]', 'band goes with rule = "newmark"'),
+    ],
+)
+def test_a_wrong_rule_is_refused_by_field(tmp_path: Path, line: str, words: str) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(SCENE.replace("stiffness = 1.0e9", f"stiffness = 1.0e9\n{line}"))
+    with pytest.raises(InputError, match=r"wrong\.toml") as told:
+        load_scene(path)
+    assert words in str(told.value)
+
+
+def test_energy_conserving_contact_glued_aside_is_refused(scene: Scene) -> None:
+    values = AVERAGE | {"contact.rule": "energy-conserving", "load.eccentricity": 0.2}
+    with pytest.raises(InputError, match="needs shear = 0 where the base can slide"):
+        solve(scene.with_values(values), "dda")
+    assert solve(scene.with_values(values | {"contact.shear_stiffness": 0.0}), "dda").outcome.value == "completed"
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
+def test_impulse_and_energy_close_the_balances(scene: Scene, rule: str) -> None:
+    prepared = get_solver("dda").prepare(scene.with_values(AVERAGE | {"contact.rule": rule, "time.gg": 0.999}))
+    run, record = prepared.run(), prepared.contact_record()
+    assert run.outcome.value == "completed" and prepared.switches()
+    balance = opened.balanced(prepared.scene, record.velocity)  # type: ignore[attr-defined]
+    assert record.impulse == pytest.approx(balance, rel=1e-9, abs=1e-9 * np.max(balance))
+    assert float(imbalance(record)) < 1e-10
+    switched = np.max(np.abs(record.energies["switching"]))
+    assert switched == 0 if rule == "energy-conserving" else switched > 0
+
+
+def test_all_savings_off_gives_the_same_history(scene: Scene) -> None:
+    for values in ({}, AVERAGE | {"contact.rule": "energy-conserving"}):
+        case = scene.with_values(values)
+        one, full = (get_solver("dda").prepare(case, kept).run().history for kept in (False, True))
+        assert one is not None and full is not None
+        assert np.max(np.abs(one.displacement - full.displacement)) < 1e-9 * np.max(np.abs(full.displacement))
+
+
+# ---- sub-blocks -----------------------------------------------------------------------------------------------------
+
+COLUMNS = ["displacement", "contact_pressure", "gap_m", "gap_n", "normal_force_m", "shear_force_n", "solves", "cuts"]
+
+
+def test_one_sub_block_is_the_block_through_the_adapter(scene: Scene) -> None:
+    case = scene.with_values({"run.columns": COLUMNS, "load.eccentricity": 0.2})
+    whole, cut = (solve(case.with_values(values), "dda").history for values in ({}, {"block.subdivide": [1, 1]}))
+    assert whole is not None and cut is not None and list(cut.columns) == COLUMNS
+    for name in COLUMNS[:-2]:
+        assert cut.columns[name] == pytest.approx(
+            whole.columns[name], rel=1e-9, abs=1e-9 * np.max(np.abs(whole.columns[name]))
+        ), name
+
+
+def test_sub_blocks_report_what_their_contact_did(scene: Scene) -> None:
+    case = scene.with_values({"run.columns": COLUMNS, "block.subdivide": [2, 2], "time.steps": 120})
+    prepared = get_solver("dda").prepare(case)
+    run, record = prepared.run(), prepared.contact_record()
+    assert run.history is not None and run.history.columns["solves"].max() >= 2 and prepared.switches()
+    assert record.force == pytest.approx(2.0 * run.history.contact_pressure, rel=1e-12)
+    assert set(np.unique(record.open_share)) <= {0.0, 0.5, 1.0} and float(imbalance(record)) < 1e-9
+
+
+@pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
+def test_sub_blocks_take_no_other_rule(scene: Scene, rule: str) -> None:
+    case = scene.with_values(AVERAGE | {"contact.rule": rule, "block.subdivide": [2, 1]})
+    with pytest.raises(InputError, match=f"it does not handle {rule} contact together with sub-blocks"):
+        solve(case, "dda")

@@ -1,0 +1,99 @@
+"""Contact that opens through the adapters of elements and bar: who takes it, columns, switches, refusals."""
+
+import numpy as np
+import pytest
+
+from validation import solve
+from validation.errors import InputError
+from validation.metrics.catalogue import pair
+from validation.runs.contact import LOST, STORED
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
+
+
+@pytest.fixture
+def scene() -> Scene:
+    """A block dropped by its own weight, under a pressure; 64 quadratic elements resolve its front."""
+    case = load_scene("unlocked").expand()[1]
+    values = {"time.step": 2e-4, "time.steps": 200, "fem.elements": 64, "load.gravity": 9.81}
+    return case.with_values(values | {"block.velocity": -0.2, "contact.gap": 1e-4, "run.solvers": ["fem", "bar"]})
+
+
+def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -> None:
+    columns = ["displacement", "contact_pressure", "gap_m", "gap_n", "normal_force_m", "normal_force_n"]
+    prepared = get_solver("bar").prepare(scene.with_values({"run.columns": columns}))
+    run = prepared.run()
+    history, elements = run.history, solve(scene, "fem").history
+    assert history is not None and elements is not None and list(history.columns) == columns
+    for name in ("displacement.l2", "pressure.l2"):
+        found = pair(name, elements, history)
+        assert isinstance(found, float) and 0 < found < 1e-6
+    opens = [switch for switch in prepared.switches() if switch.opens]
+    assert opens and np.all(history.columns["gap_m"][round(opens[0].time / 2e-4)] > 0)
+    records = [prepared.contact_record(), get_solver("fem").prepare(scene).contact_record()]
+    for name in ("force", "impulse", "penetration", "gap", "open_share", "velocity"):
+        own, mesh = (getattr(record, name) for record in records)
+        assert np.abs(own - mesh).max() <= 1e-4 * np.abs(own).max() > 0, name
+    assert records[0].rebounds is not None and records[0].energies == {}
+    assert set(records[1].energies) == {*STORED, *LOST}
+    # what the records say of the momentum: m (V - V0) is the impulse less the loads'
+    pushed = (5e6 * 2.0 + 10800 * 9.81) * history.time
+    gained = 10800 * (records[0].velocity + 0.2)
+    assert gained == pytest.approx(records[0].impulse - pushed, rel=1e-9, abs=1e-9 * pushed[-1])
+    both = history.columns["normal_force_m"] + history.columns["normal_force_n"]
+    assert both == pytest.approx(2.0 * history.contact_pressure, rel=1e-15)
+
+
+def test_elements_take_implicit_contact_and_refuse_what_they_do_not_take(scene: Scene) -> None:
+    average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "contact.stiffness": 1e11}
+    energies = []
+    for rule in ("implicit", "newmark"):
+        prepared = get_solver("fem").prepare(scene.with_values(average | {"contact.rule": rule, "fem.elements": 16}))
+        record = (prepared.run(), prepared.contact_record())[1]
+        energies.append(np.sum([record.energies[name] for name in STORED], axis=0))
+        # the impulse is that of the momentum under either rule
+        push = 5e6 * 2.0 + 10800 * 9.81
+        assert record.velocity is not None
+        gained = 10800 * (record.velocity + 0.2) + push * record.time
+        assert gained == pytest.approx(record.impulse, rel=1e-9, abs=1e-9 * record.impulse[-1])
+    size = np.abs(energies[0]).max()
+    assert np.diff(energies[0]).max() <= 1e-12 * size and np.diff(energies[1]).max() > 1e-3 * size
+    other = scene.with_values(average | {"contact.rule": "energy-conserving", "contact.shear_stiffness": 0.0})
+    for name in ("fem", "fenicsx", "bar"):
+        with pytest.raises(InputError, match="does not handle energy-conserving contact"):
+            solve(other, name)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"fem": {"elements": 6, "foundation": "corner"}},
+        {"fem": {"elements": 6, "foundation": "nodes", "degree": 1, "cells": "triangles"}},
+        {"fem": {"elements": 6, "foundation": "patch", "patch_width": 0.4}},
+    ],
+    ids=["corner", "nodes", "patch"],
+)
+def test_every_foundation_opens_and_never_pulls(scene: Scene, values: dict[str, object]) -> None:
+    columns = ["displacement", "contact_pressure", "open_share", "largest_penetration"]
+    common = {"contact.shear_stiffness": 4e8, "load.eccentricity": 0.3, "block.poisson": 0.2, "run.columns": columns}
+    history = solve(scene.with_values(common | values), "fem").history
+    assert history is not None and history.contact_pressure.min() == 0 < history.contact_pressure.max()
+    assert 0 < history.columns["open_share"].mean() < 1
+    # k w / a summed over the points is at most 2 p / a of the deepest one
+    assert np.all(history.contact_pressure <= (1 + 1e-12) * 1e9 * history.columns["largest_penetration"])
+
+
+def test_the_bar_refuses_what_is_no_bar(scene: Scene) -> None:
+    for values, words in (
+        ({"block.poisson": 0.2}, "Poisson's ratio is 0.2"),
+        ({"fem.foundation": "corner"}, "the foundation is 'corner'"),
+        ({"time.alpha": 0.0, "time.delta": 0.5}, "unstable for the high frequencies"),
+        ({"contact": {"law": "locked", "stiffness": 1e9}, "block.velocity": 0.0}, "a centred pressure only"),
+    ):
+        with pytest.raises(InputError, match=words):
+            solve(scene.with_values(values), "bar")
+    with pytest.raises(InputError, match=r"run\.columns"):
+        solve(scene.with_values({"run.columns": ["rotation"]}), "bar")
+    for name in ("continuum", "bar-60", "fem-60"):
+        with pytest.raises(InputError, match="does not handle own weight, unilateral contact"):
+            solve(scene, name)

@@ -1,0 +1,359 @@
+"""A user's solver through the gates: the block at the end says what is right, what is wrong and where to look."""
+
+import cmath
+import math
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+from validation.engine.measure import completed
+from validation.gates import closed_forms
+from validation.gates.gate import Gate
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers.processes.guard import GRACE
+from validation.solvers.registry import get_solver
+from validation.solvers.user import ALLOWANCE, VARIABLE
+from validation.studies.own_solver import evidence, gates
+from validation.studies.own_solver.block import block, first, outside
+from validation.studies.own_solver.history import PENCIL, natural_frequency, rest, root
+from validation.studies.own_solver.session import Session, Told
+
+ROOT = Path(__file__).parents[2]
+ORACLES = ROOT / "tests/oracles"
+SLIPS = {  # of tests/oracles/plain_dda.py: groups that the fault lies in, groups that are right
+    "delta_missing": (["damping"], ["statics", "frequency", "start"]),
+    "half_springs": (["statics"], []),
+    "zero_start": (["start"], ["statics", "frequency", "damping"]),
+    "consistent_start": (["start"], ["statics", "frequency", "damping"]),
+    "late_pressure": (["pressure"], ["statics", "frequency", "damping", "start", "digits"]),
+    "double_density": (["frequency"], ["statics"]),
+}
+
+
+# ---- slips ----------------------------------------------------------------------------------------------------------
+
+
+def few() -> list[str]:
+    """Return gates of every group, on scenes that cost little."""
+    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start", "figure-8[time.alpha=0.25")
+    return [name for name, (_, gate) in gates.applying().items() if gate.scene.startswith(scenes)]
+
+
+SHORT = ("sound", "late_pressure", "double_density")
+
+
+@pytest.mark.parametrize(
+    "slip", [*SHORT, *(pytest.param(slip, marks=pytest.mark.long) for slip in SLIPS if slip not in SHORT)]
+)
+def test_the_first_group_that_fails_is_where_the_slip_is(
+    slip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ORACLES))
+    session = Session(f"plain_dda:{slip}", Results(tmp_path))
+    told = [session.judge(name)[1] for name in few()]
+    judged = [t for t in told if t.status != "NOT RUN"]
+    failed = [t for t in judged if t.status == "FAIL"]
+    wrong, right = SLIPS.get(slip, ([], list(gates.GROUPS)))
+    assert {t.group for t in judged} == set(gates.GROUPS)
+    assert first(judged, failed) == wrong
+    assert not {t.group for t in failed} & set(right)
+    assert {t.why for t in told if t.status == "NOT RUN"} <= {"the solver does not report modes(scene)"}
+
+
+def through_the_gates(solver: str, where: Path, *options: str) -> str:
+    """Run the gates on a solver as a user does, and return what pytest says."""
+    command = [sys.executable, "-m", "pytest", "--pyargs", "validation", "-m", "validation", "-q", "-rN"]
+    done = subprocess.run(
+        [*command, "-p", "no:cacheprovider", "--dda-solver", solver, *options],
+        capture_output=True,
+        text=True,
+        timeout=500,
+        cwd=where,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
+    return done.stdout + done.stderr
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("slip", [slip for slip in SLIPS if slip != "double_density"])  # which the page shows
+def test_the_block_names_the_group_and_what_is_right(slip: str) -> None:
+    shown = through_the_gates(f"plain_dda:{slip}", ORACLES, "-k", "core or figure")
+    wrong, right = SLIPS[slip]
+    assert re.findall(r"^wrong: +(\w+) - ", shown, re.M) == wrong
+    said = re.search(r"^right: +(.+)$", shown, re.M)
+    assert said and said[1] == (", ".join(right) or "nothing yet")
+    assert shown.count("\ncompare, ") == 1 and "FAILURES" not in shown
+
+
+def page() -> str:
+    return (ROOT / "docs/judge-your-code.md").read_text(encoding="utf-8")
+
+
+def test_the_page_lists_the_groups() -> None:
+    assert dict(re.findall(r"^\| (\w+) \| (.+) \|$", page(), re.M)) == {"group": "what it looks at"} | gates.GROUPS
+
+
+@pytest.mark.long
+def test_the_page_shows_the_block_of_twice_the_density() -> None:
+    lines = re.search(r"^```text\n(.*?)^```$", page(), re.M | re.S)
+    assert lines and lines[1] in through_the_gates("plain_dda:double_density", ORACLES)
+
+
+BUSY = """
+import time
+import my_solver
+
+def solve(scene):
+    began = time.perf_counter()
+    found = my_solver.solve(scene)
+    time.sleep(4 * (time.perf_counter() - began))
+    return found
+"""
+
+
+@pytest.mark.long
+def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slow(tmp_path: Path) -> None:
+    code = re.search(r"^```python file=my_solver.py\n(.*?)^```$", page(), re.M | re.S)
+    assert code
+    (tmp_path / "my_solver.py").write_text(code[1])
+    (tmp_path / "busy.py").write_text(BUSY)
+    shown = through_the_gates("busy:solve", tmp_path)
+    table = re.findall(r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+)   ", shown, re.M)
+    assert [row[0] for row in table] == list(gates.GROUPS)
+    assert all(int(row[1]) > 0 and row[2] == row[3] == "0" for row in table), shown
+
+
+AUTHORS = {  # of tests/oracles/plain_dda.py: what the block says once
+    "raises_in_one_scene": r"^raised: ZeroDivisionError: no step left \(plain_dda\.py:\d+, in raise_it\)\n  \d+ gates",
+    "not_a_number": r"^not a number: displacement at step 4\n  \d+ gates: ",
+    "short": r"^wrong shape: displacement has shape \(\d+,\), not \(\d+,\)\n",
+    "millimetres": r"^wrong units: displacement is 1000 times what is expected in SI, mm\?\n",
+    "prints": r"^right:  statics, frequency, damping, start, digits, pressure\n",
+    "hangs": r"^timeout: no history within 2 s, the time limit for 200 steps\n",
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("author", AUTHORS)
+def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
+    shown = through_the_gates(
+        f"plain_dda:{author}", ORACLES, "-k", "figure", *["--dda-timeout=1"] * (author == "hangs")
+    )
+    assert len(re.findall(AUTHORS[author], shown, re.M)) == 1, shown
+    assert "not tried, since 2 scenes" in shown if author == "hangs" else "not tried" not in shown
+
+
+def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    shown = through_the_gates("my_solver.py", tmp_path)
+    assert "ERROR: --dda-solver: must be module:attribute, or a name that `dda-validate list` shows" in shown
+    assert "what the gates tell" not in shown
+
+
+# ---- what a history shows -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", [(0.25, 0.5, 1.0), (0.5, 1.0, 1.0), (0.4, 0.7, 0.9), (0.3025, 0.6, 0.95)])
+def test_the_natural_frequency_follows_from_the_root_whatever_delta_was(scheme: tuple[float, float, float]) -> None:
+    alpha, delta, gg = scheme
+    scene = load_scene("figure-8").with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
+    logarithm = cmath.log(closed_forms.roots(scene, 700.0)[0])
+    size = abs(logarithm)
+    other = scene.with_values({"time.delta": 0.5})  # what is asked for; the history had `delta`
+    found = natural_frequency(other, size / scene.time.step, -logarithm.real / size)
+    assert found == pytest.approx(700.0, rel=1e-12)
+
+
+def swinging(scene: Scene, steps: int, noise: float = 0.0) -> History:
+    """Return -0.01 + sum of both modes' powers, as the step's roots in closed form make it, with noise."""
+    n, x = np.arange(1, steps + 1), np.full(steps, -0.01)
+    frequencies = closed_forms.dda_frequency(scene), closed_forms.contact_frequency(scene)
+    for share, frequency in zip((0.009, 0.001), frequencies, strict=True):
+        x = x + share * np.real(closed_forms.roots(scene, frequency)[0] ** n)
+    x = x * (1 + noise * np.sin(1e3 * n**2))
+    return History(scene.time.step * n, {"displacement": x})
+
+
+@pytest.mark.parametrize("scheme", [(0.002, 0.5, 1.0, 200), (0.0001, 0.25, 0.5, 20_000), (0.004, 0.3025, 0.6, 60)])
+@pytest.mark.parametrize("noise", [0.0, 1e-7, 1e-5])
+def test_the_strongest_root_is_known_to_the_error_that_is_stated(
+    scheme: tuple[float, float, float, int], noise: float
+) -> None:
+    step, alpha, delta, steps = scheme
+    values = {"time.step": step, "time.alpha": alpha, "time.delta": delta, "time.steps": steps}
+    scene = load_scene("figure-8").with_values(values)
+    found, wanted = root(scene, swinging(scene, steps, noise)), closed_forms.dda_frequency(scene)
+    assert found is not None and found.error <= 20 * noise + 1e-9
+    least = 1e-8 if noise else PENCIL
+    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + least)
+    w = natural_frequency(scene, found.frequency, found.ratio)
+    assert w == pytest.approx(wanted, rel=2 * found.error + least)
+
+
+def test_what_is_no_sum_of_two_modes_shows_none() -> None:
+    scene = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    assert root(scene, swinging(scene, 200, 0.01)) is None
+    for x in (np.zeros(200), np.full(200, np.inf), np.ones(9)):
+        assert root(scene, History(x, {"displacement": x})) is None
+
+
+def test_where_a_motion_rests_is_known_to_what_still_moves() -> None:
+    n = np.arange(200)
+    middle, width = rest(-0.01 + 0.001 * 0.98**n * np.cos(0.7 * n))
+    assert abs(middle + 0.01) <= width < 2e-4 and width > 1e-5
+
+
+def test_no_frequency_is_made_up_where_the_root_is_none_of_the_scheme() -> None:
+    scene = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    assert natural_frequency(scene, math.pi / scene.time.step, 0.0) == "undefined"
+
+
+def test_what_the_solver_does_not_report_is_not_run() -> None:
+    scene, gate = load_scene("figure-8").expand()[0], Gate("s", ("dda",), "energy.drift", 0, 1, "r")
+    assert gates.lacking(gate, scene, {"static"}) == "modes" and gates.lacking(gate, scene, {"modes"}) is None
+    gate = replace(gate, metric="pressure.static")
+    assert gates.lacking(gate, scene, {"modes"}) == "static" and gates.lacking(gate, scene, {"static"}) is None
+    for metric in ("mode1.damping", "mode1.frequency", "displacement.static", "pressure.max"):
+        assert gates.lacking(replace(gate, metric=metric), scene, set()) is None
+    assert gates.lacking(replace(gate, pair=("dda", "fem"), metric="mode1.damping"), scene, set()) == "modes"
+
+
+def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ORACLES))
+    session = Session("plain_dda:sound", Results(tmp_path))
+    names = [name for name in gates.applying() if name.startswith("long-run")]
+    assert names and {session.judge(name)[0].why for name in names} == {"the solver does not report modes(scene)"}
+    assert not session.finished.rows
+
+
+# ---- authors --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+    monkeypatch.syspath_prepend(str(ORACLES))
+    monkeypatch.chdir(ORACLES)
+    return load_scene(scene_file)
+
+
+def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene: Scene) -> None:
+    run = completed(get_solver("plain_dda:raises"), scene)
+    lines = (ORACLES / "plain_dda.py").read_text().splitlines()
+    number = 1 + next(n for n, line in enumerate(lines) if "np.linalg.solve" in line)  # which raises inside numpy
+    assert run.notes == (f"LinAlgError: Singular matrix (plain_dda.py:{number}, in raises)",)
+
+
+def test_a_scene_that_is_not_for_the_solver_is_not_run(scene: Scene) -> None:
+    run = completed(get_solver("plain_dda:sound"), scene.with_values({"block.poisson": 0.2}))
+    assert run.outcome is Outcome.NOT_APPLICABLE and "rectangle of Poisson's ratio 0 only" in run.notes[0]
+
+
+def test_the_time_limit_grows_with_the_steps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    code = "import time, plain_dda\ndef solve(s):\n    time.sleep(1)\n    return plain_dda.sound(s)\n"
+    (tmp_path / "sleepy.py").write_text(code)
+    monkeypatch.syspath_prepend(str(ORACLES))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setenv(VARIABLE, "0")
+    small = parse_scene(tomllib.loads(SCENE), "small")
+    assert completed(get_solver("sleepy:solve"), small.with_values({"time.steps": 20})).outcome is Outcome.TIMEOUT
+    steps = 6000
+    assert steps * ALLOWANCE == 30
+    run = completed(get_solver("sleepy:solve"), small.with_values({"time.steps": steps}))
+    assert run.outcome is Outcome.COMPLETED, run.notes
+
+
+# ---- the block ------------------------------------------------------------------------------------------------------
+
+SOUND = Told("id", "core", "s1", 200, "statics", "displacement.final", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r")
+
+
+def of(**values: object) -> Told:
+    return replace(SOUND, **values)  # type: ignore[arg-type]
+
+
+def test_an_ending_is_told_once_with_its_scenes() -> None:
+    raised = [
+        of(scene=f"s{n % 5}", status="FAIL", value=None, why="E: step 3 (f.py:7, in g)", outcome="raised")
+        for n in range(20)
+    ]
+    raised += [replace(raised[0], why="E: step 4 (f.py:7, in g)"), replace(raised[0], why="E: step 3 (f.py:9, in h)")]
+    lines = block(raised)
+    assert [line for line in lines if "f.py" in line] == [
+        "\nraised: E: step 3 (f.py:7, in g)",
+        "\nraised: E: step 3 (f.py:9, in h)",
+    ]
+    assert "  21 gates: s0, s1, s2 and 2 more scenes" in lines
+    units = [
+        of(scene=f"s{n}", status="FAIL", value=None, why="wrong units: mm?", outcome="wrong units") for n in range(65)
+    ]
+    assert "\n".join(block(units)).count("wrong units") == 1
+
+
+def test_what_is_not_run_is_neither_right_nor_wrong() -> None:
+    lines = block([SOUND, of(group="damping", status="NOT RUN", value=None, why="no modes", outcome="")])
+    assert "\nright:  statics" in lines and "  1 gate: no modes" in lines
+    assert not [line for line in lines if line.startswith("wrong")]
+
+
+def test_failing_gates_are_counted_beyond_the_first_few() -> None:
+    failed = [of(status="FAIL", value=2.0 + n, scene=f"s{n}") for n in range(5)]
+    some, every = ("\n".join(block([replace(t, results="/nowhere") for t in failed], every=e)) for e in (False, True))
+    assert some.count("is outside") == 3 and "and 2 more (-v lists them)" in some
+    assert every.count("is outside") == 5
+
+
+def test_a_value_is_seen_outside_its_band() -> None:
+    assert outside(of(value=1.1 + 1e-9)).startswith("displacement.final = 1.100000001 is outside [0.9, 1.1")
+    assert outside(of(value="undefined")) == "displacement.final is undefined; the band is [0.9, 1.1]"
+
+
+def test_the_pressure_is_named_by_itself_only_where_the_displacement_is_exact() -> None:
+    exact = of(group="digits", metric="displacement.max")
+    off = of(group="pressure", metric="pressure.max", status="FAIL")
+    start = of(scene="s2", group="start", status="FAIL")
+    assert first([exact, off], [off]) == ["pressure"]
+    assert first([exact, off, start], [off, start]) == ["start", "pressure"]
+    bad = replace(exact, status="FAIL")
+    assert first([bad, off, start], [bad, off, start]) == ["start"]
+
+
+def test_the_scene_that_tells_most_is_short_and_holds_the_fault() -> None:
+    long = [of(scene="long", steps=20_000, status="FAIL")] * 9
+    other = [of(scene="other", group="digits", status="FAIL")] * 5
+    own = [of(scene="own", status="FAIL"), of(scene="own", group="digits", status="FAIL")]
+    chosen = evidence.telling([*long, *other, *own], ["statics"])
+    assert chosen is not None and chosen.scene == "own"
+    assert evidence.telling(long, ["statics"]) is None
+
+
+def test_the_page_states_the_grace_of_exit_hooks_and_the_allowance_of_a_step() -> None:
+    assert f"exit hooks have {GRACE:g} s after" in page()
+    assert f"and {1000 * ALLOWANCE:g} ms for each of its steps" in page()
+
+
+@pytest.mark.parametrize(
+    ("causes", "said"), [(["start"], "causes: start"), (["unexplained"], "not explained: "), ([], "a sentence")]
+)
+def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = gates.starts()[0]
+    failed = of(scene=scene.name, study="own-solver", status="FAIL", value=2.0)
+    x = np.ones(scene.time.steps)
+    monkeypatch.setattr(Results, "history", lambda self, key: History(x, {"displacement": x}))
+    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
+    lines = block([failed])
+    assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-1].startswith(f"  {said}")
+    monkeypatch.setattr(evidence, "compare", lambda *given: 1 / 0)
+    assert block([failed])[-1] == "  nothing can be said: division by zero"

@@ -1,0 +1,184 @@
+"""Frequency responses: moving bases, large systems, limits, refusals, and that no step is run."""
+
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+import pytest
+import scipy.linalg
+from oracles.stepped_vibration import fit
+
+import dda.system.response
+import fem_reference.history.response
+from validation import Solver, load_scene, response, solve
+from validation.errors import InputError
+from validation.scenes.scene import Scene
+
+BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002, "run.columns": ["displacement", "contact_pressure"]})
+COLUMNS = ("displacement", "contact_pressure")
+MOVING = [
+    ("dda", {}, (0.0, 1.0)),
+    ("dda", {"block.poisson": 0.25}, (0.6, 0.8)),
+    ("dda", {"block.subdivide": [2, 3], "block.poisson": 0.2}, (-0.6, 0.8)),
+    ("dda", {"block.subdivide": [1, 2], "block.pattern": "triangles"}, (1.0, 0.0)),
+    ("fem", {"fem.elements": 3}, (0.0, 1.0)),
+    ("fem", {"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.3}, (0.8, -0.6)),
+]
+
+
+def moving(path: Path, scene: Scene, along: tuple[float, float], w: float) -> Scene:
+    """Return the scene on a base that moves along a vector as sin(wt)."""
+    times = scene.time.step * np.arange(scene.time.steps + 1.0)
+    table = np.column_stack([times, *(part * np.sin(w * times) for part in along)])
+    np.savetxt(path, table, "%.17g", ",", header="time,x,y", comments="")
+    return scene.with_values({"load.base_motion": str(path), "load.pressure": 0.0})
+
+
+@pytest.mark.parametrize(("solver", "values", "along"), MOVING)
+def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(
+    tmp_path: Path, solver: str, values: dict[str, object], along: tuple[float, float]
+) -> None:
+    w = 2 * np.pi * 43.0
+    time = {"time.step": 0.003, "time.steps": 900, "time.alpha": 0.7, "time.gg": 0.97, "contact.stiffness": 4e8}
+    scene = moving(tmp_path / "base.csv", BLOCK.with_values(values | time), along, w)
+    history = solve(scene, solver).history
+    assert history is not None
+    last = slice(-60, None)
+    seen = np.column_stack([history.columns[c][last] for c in COLUMNS])
+    stepped = 1j * fit(seen, w, history.time[last])  # the record is a sine: Re(-i e^{iwt})
+    found = response(scene, 43.0, solver)
+    assert found.base
+    for amplitude, column in zip(stepped, COLUMNS, strict=True):
+        closed = complex(found.columns[column][0])
+        assert abs(amplitude - closed) <= 1e-10 * abs(closed) + 1e-12 * {"displacement": 1.0}.get(column, 4e8)
+
+
+def test_the_direction_of_a_base_is_that_of_its_record_towards_plus(tmp_path: Path) -> None:
+    down = moving(tmp_path / "down.csv", BLOCK, (0.0, -0.01), 50.0)
+    up = moving(tmp_path / "up.csv", BLOCK, (0.0, 0.3), 20.0)
+    found = [response(scene, [1e-3, 20.0], "dda") for scene in (down, up)]
+    assert np.array_equal(found[0].displacement, found[1].displacement)
+    assert found[0].displacement[0] == pytest.approx(1.0, rel=1e-4)  # a slow base carries the block along
+    path = tmp_path / "circle.csv"
+    path.write_text("time,x,y\n0,0,0\n1,1,0\n2,1,1\n")
+    with pytest.raises(InputError, match="must run along one straight line"):
+        response(BLOCK.with_values({"load.base_motion": str(path)}), 1.0, "dda")
+    path.write_text("time,y\n0,0\n1,0\n")
+    with pytest.raises(InputError, match="must move for a response"):
+        response(BLOCK.with_values({"load.base_motion": str(path)}), 1.0, "dda")
+
+
+@pytest.mark.parametrize("damped", [{}, {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}])
+def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatch, damped: dict[str, object]) -> None:
+    size = {"block.subdivide": [4, 4], "fem.elements": 4}
+    scene = BLOCK.with_values(size | {"block.poisson": 0.3, "load.traction": 1e6} | damped)
+    f = np.linspace(0.0, 240.0, 25)
+    space, elements = response(scene, f, "dda"), response(scene, f, "fem")
+    monkeypatch.setattr(dda.system.response, "BAND", np.inf)
+    monkeypatch.setattr(fem_reference.history.response, "NARROW", np.inf)
+    for found, solver in ((space, "dda"), (elements, "fem")):
+        band = response(scene, f, solver)
+        for column in COLUMNS:
+            size = np.max(np.abs(band.columns[column]))
+            assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
+
+
+def test_what_a_space_does_not_resolve_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = BLOCK.with_values({"block.subdivide": [4, 4], "block.poisson": 0.3, "fem.elements": 8})
+    f = [5.0, 90.0, 200.0]
+    sound = {solver: response(scene, f, solver) for solver in ("dda", "fem")}
+    for module in (dda.system.response, fem_reference.history.response):
+        monkeypatch.setattr(module, "LARGEST", 3)
+    for solver, whole in sound.items():
+        found = response(scene, f, solver)
+        for column in COLUMNS:
+            assert np.allclose(found.columns[column], whole.columns[column], rtol=1e-8)
+
+
+def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> NoReturn:
+        raise AssertionError("a step was run")
+
+    for target in ("dda.system.solution._Stepper", "dda.one_block.solution.modal_histories"):
+        monkeypatch.setattr(target, refuse)
+    for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.advance"):
+        monkeypatch.setattr(target, refuse)
+    eliminations, own = [], scipy.linalg.solve_banded
+    monkeypatch.setattr(scipy.linalg, "solve_banded", lambda *a, **k: eliminations.append(1) or own(*a, **k))
+    size = {"block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 200]}
+    scene = BLOCK.with_values(size | {"fem.elements": 200})
+    found = response(scene, np.linspace(0.1, 200.0, 100), "dda")
+    assert np.all(np.isfinite(found.table()))
+    assert len(eliminations) == 100
+    for solver in ("fem", "bar", "continuum"):
+        assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 100), solver).table()))
+
+
+def test_fine_elements_answer_as_the_bar() -> None:
+    f = np.linspace(1.0, 240.0, 40)
+    bar, errors = response(BLOCK, f, "bar"), []
+    for elements in (8, 16, 32):
+        found = response(BLOCK.with_values({"fem.elements": elements}), f, "fem")
+        errors.append(np.max(np.abs(found.displacement - bar.displacement)))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.1)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.1)
+
+
+def test_small_steps_answer_as_the_limit_with_the_rate_of_the_discount() -> None:
+    f, damped = [20.0, 52.0, 80.0], {"time.gg_rate": 30.0, "time.alpha": 0.4, "time.delta": 0.6}
+    for solver in ("dda", "fem", "bar"):
+        errors = []
+        for step in (4e-5, 2e-5):
+            scene = BLOCK.with_values(damped | {"time.step": step})
+            limit = response(scene, f, solver, exact=True).displacement
+            errors.append(np.max(np.abs(response(scene, f, solver).displacement / limit - 1)))
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.05)  # delta is not 1/2
+        assert errors[1] < 2e-2
+
+
+def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
+    for solver in ("dda", "fem", "bar"):
+        found = response(BLOCK, [0.0, 250.0], solver)
+        assert found.displacement[0] == pytest.approx(-0.01, rel=1e-9)
+        assert found.contact_pressure[0] == pytest.approx(5e6, rel=1e-9)
+        assert abs(found.displacement[1]) < 1e-12  # (1/2, 1): W2 has no bound at half the sampling frequency
+
+
+def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:
+    table = response(BLOCK, np.linspace(1.0, 200.0, 50), "continuum").table()
+    assert set(np.unique(table[:, [2, 4]])) == {0.0, np.pi}
+
+
+def test_refusals_name_solver_scene_and_rule() -> None:
+    for solver in ("fenicsx", "dda-textbook", "dda-60", "bar-60"):
+        with pytest.raises(InputError, match=r"figures-3-4: solver .*no frequency response"):
+            response(BLOCK, 1.0, solver)
+    with pytest.raises(InputError, match="unilateral contact"):
+        response(load_scene("unlocked").expand()[0], 1.0, "dda")
+    with pytest.raises(InputError, match=r"frequencies: must be finite and not negative, got -1"):
+        response(BLOCK, [1.0, -1.0], "dda")
+    with pytest.raises(InputError, match="must be a list of numbers"):
+        response(BLOCK, [], "dda")
+    with pytest.raises(InputError, match=r"time.step: must not exceed"):
+        response(BLOCK.with_values({"time.alpha": 0.0, "time.delta": 0.5, "time.step": 0.1}), 1.0, "dda")
+    with pytest.raises(InputError, match="gg: must be positive for a damping rate"):
+        response(BLOCK.with_values({"time.gg": 0.0}), 1.0, "dda", exact=True)
+    with pytest.raises(InputError, match="does not apply"):
+        response(load_scene("rocking").expand()[0], 1.0, "bar")
+    assert np.all(np.isfinite(response(BLOCK.with_values({"time.gg": 0.0}), [1.0, 100.0], "dda").table()))
+
+
+class Spring(Solver):
+    """A user's solver with a response of its own."""
+
+    name = "spring"
+
+    def response(self, scene: Scene, frequencies: np.ndarray, exact: bool = False) -> dict[str, np.ndarray]:
+        return dict.fromkeys(COLUMNS, 0j + frequencies)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> NoReturn:
+        raise NotImplementedError
+
+
+def test_a_users_solver_brings_its_own_response() -> None:
+    assert response(BLOCK, 3.0, Spring()).displacement[0] == 3.0

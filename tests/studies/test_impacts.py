@@ -1,0 +1,81 @@
+"""The study of published impacts: its gates hold, and each is bitten by a fault of data or of what is found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from faults import seams
+from faults.fault import Fault
+from faults.kill_matrix import check_kill_matrix
+
+from validation.studies.bands import cases
+from validation.studies.contact import impacts
+
+
+def faulty(**factors: float) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Return a wrapper that solves for other data."""
+
+    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+        def solve(problem: Any, end: float) -> Any:
+            return sound(replace(problem, **{n: getattr(problem, n) * f for n, f in factors.items()}), end)
+
+        return solve
+
+    return wrap
+
+
+def deeper(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Return gaps a thousandth larger."""
+    return lambda *a, **k: (lambda r: replace(r, gap_m=1.001 * r.gap_m, gap_n=1.001 * r.gap_n))(sound(*a, **k))
+
+
+BLOCK, BAR = (impacts.BLOCK,), (impacts.BAR,)
+FAULTS = [
+    Fault("block: springs", BLOCK, seams.EVENTS_BLOCK, faulty(stiffness=1.01)),
+    Fault("block: speed and fall", BLOCK, seams.EVENTS_BLOCK, faulty(velocity=1 + 1e-9, gap=1 + 1e-9)),
+    Fault("block: density", BLOCK, seams.EVENTS_BLOCK, faulty(density=1 + 1e-8)),
+    Fault("block: density, coarsely", BLOCK, seams.EVENTS_BLOCK, faulty(density=1 + 1e-5)),
+    Fault("block: springs a hundredth as stiff", BLOCK, seams.EVENTS_BLOCK, faulty(stiffness=0.01)),
+    Fault("bar: springs", BAR, seams.EVENTS_BAR, faulty(base_stiffness=1.01)),
+    Fault("bar: gap", BAR, seams.EVENTS_BAR, faulty(gap=1 + 1e-9)),
+    Fault("bar: density", BAR, seams.EVENTS_BAR, faulty(density=1 + 1e-8)),
+    Fault("bar: springs a hundredth as stiff", BAR, seams.EVENTS_BAR, faulty(base_stiffness=0.01)),
+    Fault("dda: gaps", ("dda",), seams.DDA_OPENED, deeper),
+]
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    gates = impacts.gates()
+    needed = {need for gate in gates for need in impacts.STUDY.needs(gate)}
+    own = [case for case in impacts.STUDY.cases() if (case.scene.name, case.solver) in needed]
+    check_kill_matrix(impacts.STUDY, own, gates, FAULTS, tmp_path, finished_cases)
+
+
+def test_the_closed_form_of_a_release_is_that_of_the_independent_program() -> None:
+    """At p/E = 10 and 100 the impacts of the bar are stiff: e^(-2 F) is left out."""
+    for case in cases("impact"):
+        ratio = case.contact.stiffness / case.block.young
+        if ratio in (10, 100):
+            known = impacts.IMPACTS[ratio][1][0]
+            assert impacts.release(case) / impacts.transit(case) == pytest.approx(known, abs=1e-11)
+
+
+def test_the_scenes_hold_the_published_data() -> None:
+    inch, pound = 0.0254, 4.4482216152605
+    (rod,), (bar,), (mass,) = (tuple(cases(name)) for name in ("ansys-vm265", "siconos-bar", "bouncing-mass"))
+    assert rod.block.young == pytest.approx(3e7 * pound / inch**2, rel=1e-12)
+    assert rod.block.density == pytest.approx(0.73e-3 * pound / inch**4, rel=1e-12)
+    assert (rod.block.velocity, rod.contact.gap) == pytest.approx((-202.2 * inch, 0.01 * inch), rel=1e-12)
+    assert impacts.transit(rod) == pytest.approx(10 / math.sqrt(3e7 / 0.73e-3), rel=1e-12)
+    assert [bar.block.young, bar.block.density, bar.block.velocity, bar.contact.gap] == [210e9, 7800.0, -0.1, 5e-5]
+    landing, leaving, depth = impacts.bounce(mass)
+    assert landing == pytest.approx((math.sqrt(41) - 1) / 10)
+    assert leaving - landing == pytest.approx(0.2 * (math.pi - math.atan(math.sqrt(41))))
+    assert depth == pytest.approx(0.1 + math.sqrt(0.01 + 0.41))
+    assert all(impacts.stiffness_ratio(case) == pytest.approx(1e4) for case in (rod, bar))

@@ -1,0 +1,110 @@
+"""The study `rebound`: its gates hold, each is bitten by a fault, and its scenes are what they say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from faults import seams
+from faults.fault import Fault
+from faults.kill_matrix import check_kill_matrix
+
+from validation.studies.bands import cases
+from validation.studies.contact import rebound
+from validation.studies.own_solver.gates import applying
+
+Change = Callable[[Any], dict[str, Any]]
+
+
+def told(change: Change) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Change what is found, field by field."""
+    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
+
+
+def added(name: str, energy: float) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Add to one of the energies, where they are kept [J]."""
+
+    def change(found: Any) -> dict[str, Any]:
+        kept = found.energies
+        return {"energies": kept and kept | {name: kept[name] + energy}}
+
+    return told(change)
+
+
+def fewer(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Lose the last switch."""
+
+    def solve(*a: Any, **k: Any) -> Any:
+        motion = sound(*a, **k)
+        shown = SimpleNamespace(**vars(motion) | {"switches": motion.switches[:-1]})
+        shown.at = motion.at
+        return shown
+
+    return solve
+
+
+DDA = ("dda",)
+FAULTS = [
+    Fault("one more solve counted", DDA, seams.DDA_OPENED, told(lambda r: {"step_solves": r.step_solves + 2})),
+    Fault("a rebound a millionth too fast", DDA, seams.DDA_OPENED,
+          told(lambda r: {"velocity": r.velocity + 1e-6 * np.maximum(r.velocity, 0.0)})),
+    Fault("a few joules too many", DDA, seams.DDA_OPENED, added("kinetic", 9e4)),
+    Fault("a switch lost", ("block-events",), seams.EVENTS_BLOCK, fewer),
+    Fault("map a thousandth high", ("map",), seams.RESTITUTION_STATISTICS,
+          told(lambda s: {name: getattr(s, name) + 1e-3 for name in ("mean", "low", "high", "mean_square")})),
+]  # fmt: skip
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    gates = [gate for gate in rebound.gates() if gate.scene != rebound.MAP]
+    faults = [fault for fault in FAULTS if fault.solvers != ("map",)]
+    needed = {need for gate in gates for need in rebound.STUDY.needs(gate)}
+    own = [case for case in rebound.STUDY.cases() if (case.scene.name, case.solver) in needed]
+    check_kill_matrix(rebound.STUDY, own, gates, faults, tmp_path, finished_cases)
+
+
+def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+    gates = [gate for gate in rebound.gates() if gate.scene == rebound.MAP]
+    rows = {row.name: row for row in rebound.derived() if row.scene == rebound.MAP}
+
+    def failing() -> set[str]:
+        values = {gate.id: rows[gate.pair[0]].compute(None)[gate.metric] for gate in gates}  # type: ignore[arg-type]
+        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}  # type: ignore[operator]
+
+    assert len(gates) == 20 and not failing()
+    with monkeypatch.context() as patch:
+        FAULTS[-1].seam.wrap(patch, FAULTS[-1].replacement)
+        assert failing() == {gate.id for gate in gates}
+
+
+def test_the_scenes_land_where_they_say() -> None:
+    for name in rebound.IMPACTS:
+        found = list(cases(name))
+        omegas = sorted({round(rebound.omega(case), 9) for case in found})
+        phases = sorted({round(rebound.phase(case), 9) for case in found})
+        newmark = found[0].contact.rule == "newmark"
+        assert omegas == ([0.1, 0.3, 1.0, 2.0, 10.0, 1000.0] if newmark else [0.3, 2.0, 10.0, 1000.0])
+        assert phases == ([0.1, 0.3, 0.5, 0.7, 0.9] if newmark else [0.1, 0.7])
+    for name in rebound.MAPS:
+        assert all(math.isclose(case.time.duration, 0.2) for case in cases(name))
+
+
+def test_the_closed_forms_of_a_rigid_contact() -> None:
+    """(1/2, 1) returns |2 theta - 1|; (1/4, 1/2) 3 - 8 theta up to 1/3, then 4 theta - 1."""
+    for theta in (0.05, 0.25, 0.4, 0.77):
+        assert rebound.impact_restitution(0.5, 1.0, 1.0, math.inf, theta) == pytest.approx(abs(2 * theta - 1))
+        average = 3 - 8 * theta if theta < 1 / 3 else 4 * theta - 1
+        assert rebound.impact_restitution(0.25, 0.5, 1.0, math.inf, theta) == pytest.approx(average)
+
+
+def test_a_users_solver_is_not_asked_for_contact_that_opens() -> None:
+    asked = {gate.scene for _, gate in applying().values()}
+    opening = {gate.scene for gate in rebound.gates() if gate.pair == DDA}
+    assert opening and not asked & opening

@@ -1,0 +1,153 @@
+"""Alarms of contact that opens.
+
+step too large for contact
+    w_c dt > 0.3: contacts do not return the speed that they take; > 2: what they return is arbitrary.
+energy gained by switching
+    Opening and closing have put energy into the block.
+energy may be gained
+    delta < 1 with w_c dt > 1: nothing keeps opening and closing from putting energy in.
+hidden opening
+    The step is too long to see that the block leaves its springs.
+peak force of the penalty
+    The peak of the contact force is that of the springs, which grows as sqrt(p), not that of the body.
+drag in flight
+    gg < 1 brakes the block in the air as well.
+tension of a dead band
+    The band lets a contact that carries no tension pull with more than 1 % of the load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from validation.advice import contact
+from validation.advice.alarm import Alarm
+from validation.runs.row import Row
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers import opened
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
+
+LARGE_STEP, GAINED, MAY_GAIN = "step too large for contact", "energy gained by switching", "energy may be gained"
+HIDDEN, PENALTY, DRAG, PULLING = (
+    "hidden opening",
+    "peak force of the penalty",
+    "drag in flight",
+    "tension of a dead band",
+)
+KINDS = (LARGE_STEP, GAINED, MAY_GAIN, HIDDEN, PENALTY, DRAG, PULLING)
+NOTABLE = 0.01  # of the energy given, or of the load
+BEYOND = 1.5  # times the peak force of the exact bar from which on a peak is the springs'
+
+
+def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+    """Yield the alarms of the judged method's run of a scene with unilateral contact.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    rows
+        Its finished rows by solver.
+    """
+    name = next((name for name in by_role(Role.JUDGED) if name in rows), None)
+    if name is None or features.UNILATERAL not in features.of(scene):
+        return
+    seen = Seen(scene, rows[name], next((rows[n] for n in by_role(Role.TRUTH) if n in rows), None))
+    for alarm in (_large_step, _gained, _may_gain, _hidden, _penalty, _drag, _pulling):
+        yield from alarm(seen)
+
+
+class Seen:
+    """A run of the judged method, with the exact one where there is one."""
+
+    def __init__(self, scene: Scene, row: Row, truth: Row | None) -> None:
+        self.scene, self.row, self.truth = scene, row, truth
+        self.omega = contact.omega(scene)
+        lands = _number(row, "switches.first_closing") is not None or scene.block.velocity < 0
+        self.opens = (_number(row, "contact.gap") or 0.0) > 0  # and, of what lands:
+        self.returns = self.opens and lands
+
+    def alarm(self, kind: str, sentence: str, **values: float) -> Alarm:
+        """Return an alarm on this run."""
+        return Alarm(kind, self.scene.name, sentence, {k: v for k, v in values.items() if math.isfinite(v)})
+
+
+def _number(row: Row | None, metric: str) -> float | None:
+    value = None if row is None else row.metrics.get(metric)
+    return value if isinstance(value, float) else None
+
+
+def _large_step(seen: Seen) -> Iterator[Alarm]:
+    if not seen.returns or seen.omega <= contact.WRONG or seen.scene.contact.rule == "energy-conserving":
+        return
+    said = f"w_c dt = {seen.omega:.3g}, w_c = sqrt(8 p / m): "
+    found = contact.restitution(seen.scene, seen.omega)
+    if found is None:
+        yield seen.alarm(LARGE_STEP, said + "a contact lasts too few steps", omega=seen.omega)
+        return
+    range_ = f"from {found.low:.2g} to {found.high:.2g}, {found.mean:.2g} on average"
+    if seen.omega > contact.ARBITRARY:
+        said += f"the restitution of a contact is arbitrary, {range_}, by where in the step the block lands"
+    else:
+        said += f"the restitution of a contact is {range_}, where the springs' own is 1"
+    yield seen.alarm(LARGE_STEP, said, omega=seen.omega, low=found.low, mean=found.mean, high=found.high)
+
+
+def _gained(seen: Seen) -> Iterator[Alarm]:
+    gain = _number(seen.row, "energy.switching_gain")
+    if gain is not None and gain > NOTABLE:
+        said = f"opening and closing have put in {100 * gain:.3g} % of the energy that start and loads give"
+        yield seen.alarm(GAINED, said, gain=gain)
+
+
+def _may_gain(seen: Seen) -> Iterator[Alarm]:
+    t = seen.scene.time
+    if seen.returns and t.delta < 1 and seen.omega > 1 and seen.scene.contact.rule == "newmark":
+        said = (
+            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1, or a rule "
+            "of contact that cannot gain, keeps opening and closing from putting energy in"
+        )
+        yield seen.alarm(MAY_GAIN, said, omega=seen.omega, delta=t.delta)
+
+
+def _hidden(seen: Seen) -> Iterator[Alarm]:
+    limit = contact.hidden_from(seen.scene)
+    if limit is not None and seen.scene.time.step > limit:
+        said = (
+            f"dt = {seen.scene.time.step:g} s is beyond {limit:.4g} s, h / (c sqrt(6 alpha)): the block of one strain "
+            "leaves its springs at t = 0, and no step sees it"
+        )
+        yield seen.alarm(HIDDEN, said, step=seen.scene.time.step, limit=limit)
+
+
+def _penalty(seen: Seen) -> Iterator[Alarm]:
+    peak, exact = (_number(row, "contact.peak_force") for row in (seen.row, seen.truth))
+    stiff = contact.impact_force(seen.scene, 1.0) > contact.wave_force(seen.scene, 1.0)
+    if peak is not None and exact and stiff and peak > BEYOND * exact:
+        said = (
+            f"the peak contact force, {peak:.3g} N, is {peak / exact:.2g} times that of the exact bar: it is that of "
+            "the springs, V sqrt(p m / 2), and grows as sqrt(p)"
+        )
+        yield seen.alarm(PENALTY, said, peak=peak, bar=exact)
+
+
+def _drag(seen: Seen) -> Iterator[Alarm]:
+    t, share = seen.scene.time, _number(seen.row, "contact.open_share") or 0.0
+    if t.discount < 1 and share > 0:
+        said = (
+            f"gg = {t.discount:g} brakes the block in the air as well, {100 * share:.3g} % of the time: speeds fall "
+            f"with the time constant {t.step / (1 - t.discount):.3g} s"
+        )
+        yield seen.alarm(DRAG, said, gg=t.discount, share=share)
+
+
+def _pulling(seen: Seen) -> Iterator[Alarm]:
+    scene = seen.scene
+    pull = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
+    load = abs(opened.pushing(scene)) or contact.impact_force(scene, scene.block.velocity)
+    if pull > NOTABLE * load:
+        share = f", {100 * pull / load:.3g} % of the load" if load else ""
+        yield seen.alarm(PULLING, f"the band lets the contact pull with up to {pull:.3g} N{share}", pull=pull)

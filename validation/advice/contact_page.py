@@ -1,0 +1,225 @@
+"""What `dda-validate contact` says of a scene: its runs side by side, and what springs and step would do better."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict
+from typing import Any
+
+from validation.advice import contact
+from validation.advice.contact_alarms import contact_alarms
+from validation.errors import InputError
+from validation.runs.row import Row, Value
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers import opened
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
+
+Line = tuple[str, ...]
+LINES = (  # what a line is called, its metric, and how the value is scaled and written
+    ("switches", "switches.count", 1.0, ""),
+    ("share of the time open", "contact.open_share", 100.0, " %"),
+    ("largest gap", "contact.gap", 1e3, " mm"),
+    ("largest penetration", "contact.penetration", 1e3, " mm"),
+    ("peak contact force", "contact.peak_force", 1e-6, " MN"),
+    ("impulse of the contact", "contact.impulse", 1e-6, " MN s"),
+    ("fastest landing", "contact.landing_speed", 1.0, " m/s"),
+    ("restitution of the block", "contact.restitution", 1.0, ""),
+    ("restitution of the first contact", "contact.restitution_first", 1.0, ""),
+    ("restitution, mean of contacts", "contact.restitution_mean", 1.0, ""),
+    ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
+    ("energy, greatest above the start", "energy.rise", 100.0, " %"),
+)
+LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
+
+
+def of_role(role: Role) -> str:
+    """Return the solver of a role that handles unilateral contact."""
+    return next(name for name in by_role(role) if features.UNILATERAL in get_solver(name).handles)
+
+
+def own() -> str:
+    """Return the judged solver."""
+    return of_role(Role.JUDGED)
+
+
+def exact() -> str:
+    """Return the solver that is exact in time for the judged solver's block."""
+    return of_role(Role.LIMIT)
+
+
+def scenes(scene: Scene) -> dict[str, Scene]:
+    """Return the scene that each solver runs: the exact motions have no kinetic damping.
+
+    Raises
+    ------
+    InputError
+        The contact is locked, or the scene has a column.
+    """
+    features.refuse_column(scene, "contact")
+    if features.UNILATERAL not in features.of(scene):
+        raise InputError(
+            f"{scene.name}: contact.law: must be unilateral for the command contact, got locked, which neither opens "
+            "nor lands; unlock it with --set contact.law=unilateral"
+        )
+    plain = scene.with_values({"run.columns": ["displacement", "contact_pressure"]})
+    free = plain.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else plain
+    return {own(): plain, exact(): free, of_role(Role.TRUTH): free}
+
+
+def answer(
+    scene: Scene,
+    rows: Mapping[str, Row],
+    error: float,
+    penetration: float,
+    probe: Callable[[float], float | None] | None = None,
+) -> dict[str, Any]:
+    """Return everything as plain data.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    rows
+        Its rows by solver, without the solvers that do not apply.
+    error, penetration
+        The restitution error [-] and the penetration [m] that are asked for.
+    probe
+        How deep the exact block goes on springs p [m], None where there is no answer.
+    """
+    omega = contact.omega(scene)
+    speed = landing_speed(scene, rows)
+    now = contact.restitution(scene, omega)
+    return {
+        "scene": scene.name,
+        "omega": omega,
+        "contact_frequency": contact.contact_frequency(scene),
+        "restitution_now": None if now is None else asdict(now),
+        "landing_speed": speed,
+        "asked": {"restitution_error": error, "penetration": penetration},
+        "needed": contact.as_dict(contact.needed(scene, speed, error, penetration, probe)),
+        "hidden_from": contact.hidden_from(scene),
+        "runs": {name: measured(row) for name, row in rows.items()},
+        "alarms": [alarm.record() for alarm in contact_alarms(scene, rows)],
+    }
+
+
+def plain(value: Any) -> Any:
+    """Return data in which None stands for what is not finite, such as w_c of a rigid contact."""
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [plain(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def measured(row: Row) -> dict[str, Value]:
+    """Return what was measured of the contact."""
+    kept = ("switches.", "contact.", "energy.", "horizon.")
+    return {name: value for name, value in row.metrics.items() if name.startswith(kept)}
+
+
+def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
+    """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
+    for name in (exact(), own()):
+        value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
+        if isinstance(value, float):
+            return value
+    fallen = 2 * scene.load.gravity * scene.contact.gap
+    return math.sqrt(scene.block.velocity**2 + max(0.0, fallen))
+
+
+def page(scene: Scene, found: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
+    """Yield the lines of one page of text; `absent` says why a solver has no column."""
+    yield f"{scene.name}: {scene.title or 'contact that opens'}"
+    yield from _head(scene, found)
+    yield ""
+    yield from _aligned(table(scene, found["runs"]))
+    yield from (f"{name}: {why}" for name, why in absent.items())
+    yield ""
+    yield from _needed(scene, found)
+    for alarm in found["alarms"]:
+        yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
+
+
+def _head(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
+    t = scene.time
+    yield (
+        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, "
+        f"gg = {t.discount:.6g}: w_c dt = {found['omega']:.3g}"
+    )
+
+
+def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
+    """Return the runs side by side."""
+    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    for words, opens in (("first opening", True), ("first landing", False)):
+        lines.append((words, *(first(scene, run, opens) for run in runs.values())))
+    for words, metric, factor, unit in LINES:
+        lines.append((words, *(_value(run.get(metric), factor, unit) for run in runs.values())))
+    for words, name in LOSSES:
+        lines.append(
+            (f"energy lost by {words}", *(_value(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()))
+        )
+    lines.append(("solves a step, mean and most", *(_solves(run) for run in runs.values())))
+    lines.append(("histories agree up to", *(_value(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
+    return lines
+
+
+def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
+    """Return when a run first opens or lands, in words; a block that touches may do either at once."""
+    opening, closing = (run.get(f"switches.first_{name}") for name in ("opening", "closing"))
+    value, other = (opening, closing) if opens else (closing, opening)
+    before = isinstance(other, float) and not (isinstance(value, float) and value < other)
+    touching = scene.contact.gap == 0 and (opens or scene.block.velocity < 0)
+    if touching and before:
+        return "at once"
+    return f"{value:.7g} s" if isinstance(value, float) else "never"
+
+
+def _value(value: Value, factor: float, unit: str) -> str:
+    if not isinstance(value, float):
+        return "-"
+    scaled = factor * value
+    return f"{0.0 if abs(scaled) < 1e-9 else scaled:.4g}{unit}"
+
+
+def _solves(run: Mapping[str, Value]) -> str:
+    mean, most = (run.get(f"contact.{name}_solves") for name in ("mean", "most"))
+    return f"{mean:.4g}, {most:.0f}" if isinstance(mean, float) and isinstance(most, float) else "-"
+
+
+def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
+    need, asked = found["needed"], found["asked"]
+    error, depth = asked["restitution_error"], asked["penetration"]
+    yield (
+        f"Asked for: a restitution within {100 * error:g} % and a penetration below {depth:g} m, landing at "
+        f"{found['landing_speed']:.4g} m/s under {abs(opened.pushing(scene)):.4g} N."
+    )
+    yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
+    yield f"  time step   dt <= {need['step']:.3g} s at that p, {need['step_now']:.3g} s at the present one"
+    for words, map_ in (("with these", need["restitution"]), ("at present", found["restitution_now"])):
+        if map_ is None:
+            yield f"  {words}  the restitution map is not defined for this scheme"
+            continue
+        yield (
+            f"  {words}  a contact returns {map_['mean']:.3g} of its speed on average, {map_['low']:.3g} to "
+            f"{map_['high']:.3g}, and {map_['energy']:.3g} of its energy"
+        )
+    if scene.time.gg_rate is None and scene.time.discount < 1:
+        yield f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more of a landing it takes"
+
+
+def _depth(need: Mapping[str, Any], asked: float) -> str:
+    if need["depth"] is None:
+        return ", for the load at rest and one landing"
+    reached = "" if need["depth"] <= asked else ", and no stiffer ones were tried"
+    return f": the exact block then goes {need['depth']:.3g} m deep{reached}"
+
+
+def _aligned(lines: list[Line]) -> Iterator[str]:
+    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
+    for line in lines:
+        yield "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()

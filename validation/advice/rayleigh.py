@@ -1,0 +1,214 @@
+r"""The Rayleigh damping that a scheme hides, and the scheme that hides a wanted one.
+
+A step answers a vibration as the undamped system does at the complex frequency W = sqrt(W2); its damping ratio is
+xi = -Im W / |W|. To leading order in w dt that is Rayleigh's xi = a0 / (2 w) + a1 w / 2 with
+
+    a0 = (1 - gg) / dt   (kinetic damping, C = a0 M),      a1 = (delta - 1/2) dt   (algorithmic damping, C = a1 K).
+
+Codes that take a least ratio at a frequency are given xi_min = sqrt(a0 a1) at f_min = sqrt(a0 / a1) / (2 pi).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from validation.errors import InputError
+from validation.gates.waves import Stepping
+from validation.runs.history import Array
+
+Point = tuple[float, float]  # frequency [Hz] and damping ratio [1]
+
+
+@dataclass(frozen=True)
+class Rayleigh:
+    """C = a0 M + a1 K."""
+
+    a0: float  # of the mass [1/s]
+    a1: float  # of the stiffness [s]
+
+    def ratio(self, frequency: ArrayLike) -> Array:
+        """Return the damping ratio xi = a0 / (2 w) + a1 w / 2 at frequencies in Hz."""
+        w = 2 * np.pi * np.asarray(frequency, float)
+        return np.asarray(self.a0 / (2 * w) + self.a1 * w / 2)
+
+    @property
+    def least(self) -> Point | None:
+        """The frequency [Hz] of the least ratio, and that ratio; None where not both parts damp."""
+        if not (self.a0 > 0 and self.a1 > 0):
+            return None
+        return math.sqrt(self.a0 / self.a1) / (2 * math.pi), math.sqrt(self.a0 * self.a1)
+
+    @classmethod
+    def through(cls, first: Point, second: Point) -> Rayleigh:
+        """Return the damping with given ratios at two frequencies; a part may come out negative.
+
+        Raises
+        ------
+        InputError
+            The frequencies are equal, or a number is out of range.
+        """
+        _check_points(first, second)
+        (w1, x1), (w2, x2) = ((2 * math.pi * f, xi) for f, xi in (first, second))
+        apart = (w2 - w1) * (w2 + w1)
+        mass, stiffness = _difference(w2 * x1, w1 * x2), _difference(w2 * x2, w1 * x1)
+        return cls(2 * w1 * w2 * mass / apart, 2 * stiffness / apart)
+
+
+def _difference(a: float, b: float) -> float:
+    """Return a - b, exactly zero where only rounding is left of it."""
+    return 0.0 if abs(a - b) <= 1e-14 * max(abs(a), abs(b)) else a - b
+
+
+def scheme_of(values: Mapping[str, float]) -> Stepping:
+    """Return the scheme of some numbers (step, alpha, delta, gg), those of constant acceleration where they are absent.
+
+    Raises
+    ------
+    InputError
+        The step is absent, or a number is out of range.
+    """
+    if "step" not in values:
+        raise InputError("dt: is required, got none; name a scene or give --dt")
+    for name, value in values.items():
+        low_open = name == "step"
+        if not (math.isfinite(value) and value >= 0 and not (low_open and value == 0)):
+            raise InputError(f"{name}: must be finite and {'positive' if low_open else 'not negative'}, got {value:g}")
+    if values.get("gg", 1.0) > 1:
+        raise InputError(f"gg: must be from 0 to 1, got {values['gg']:g}")
+    return Stepping(**values)
+
+
+def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Point]:
+    """Return the two points of ``HZ=XI`` texts; none where a0 and a1 are given instead.
+
+    Raises
+    ------
+    InputError
+        Not two points, or points beside a0 and a1, or what is no number.
+    """
+    both = a0 is not None or a1 is not None
+    if both and texts:
+        raise InputError("--ratio and --a0, --a1 exclude each other, got both")
+    if not both and len(texts) != 2:
+        raise InputError(f"--ratio: must be given twice, got {len(texts)} of them")
+    found = []
+    for text in texts:
+        parts = text.split("=")
+        try:
+            f, xi = map(float, parts)
+        except ValueError:
+            raise InputError(f"--ratio: must be a frequency and a ratio, as in 5=0.02, got {text!r}") from None
+        found.append((f, xi))
+    return found
+
+
+def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayleigh:
+    """Return the damping that is asked for by two points, or by a0 and a1, zero where one is absent."""
+    if points:
+        return Rayleigh.through(points[0], points[1])
+    found = Rayleigh(a0 or 0.0, a1 or 0.0)
+    if not (math.isfinite(found.a0) and math.isfinite(found.a1)):
+        raise InputError(f"damping: a0 and a1 must be finite, got {found.a0:g} and {found.a1:g}")
+    return found
+
+
+def check_band(low: float, high: float) -> None:
+    """Refuse the ends of a range of frequencies that is none."""
+    if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
+        raise InputError(f"--from, --to: must be positive and in this order, got {low:g} and {high:g}")
+
+
+def hidden(stepping: Stepping) -> Rayleigh:
+    """Return the Rayleigh damping of a scheme to leading order in w dt."""
+    return Rayleigh(*stepping.rayleigh())
+
+
+def ratio(stepping: Stepping, frequency: ArrayLike) -> Array:
+    """Return the damping ratio xi = -Im W / |W| of a scheme at frequencies in Hz."""
+    W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(frequency, float)))
+    return np.asarray(-W.imag / np.abs(W))
+
+
+def matched(stepping: Stepping, first: float, second: float) -> Rayleigh:
+    """Return the Rayleigh damping with the scheme's own ratios at two frequencies in Hz."""
+    exact = ratio(stepping, [first, second])
+    return Rayleigh.through((first, float(exact[0])), (second, float(exact[1])))
+
+
+def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Stepping:
+    """Return the scheme that hides a wanted damping, to leading order.
+
+    Parameters
+    ----------
+    wanted
+        The damping.
+    scheme
+        What is kept: delta, and dt is found; or dt (`keep_step`), and delta is found, with alpha raised to delta / 2
+        where the scheme would be unstable.
+
+    Raises
+    ------
+    InputError
+        No scheme hides it: a part is negative, delta = 1/2 has no algorithmic damping, or the discount is not positive.
+    """
+    if wanted.a0 < 0 or wanted.a1 < 0:
+        part = "mass" if wanted.a0 < 0 else "stiffness"
+        raise InputError(f"damping: no scheme hides a negative {part} part, got a0 = {wanted.a0:g}, a1 = {wanted.a1:g}")
+    if keep_step:
+        delta = 0.5 + wanted.a1 / scheme.step
+        found = replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2))
+    elif wanted.a1 == 0 and scheme.delta == 0.5:
+        found = scheme  # any step does
+    elif wanted.a1 == 0 or scheme.delta <= 0.5:
+        raise InputError(f"delta: {scheme.delta:g} hides no a1 = {wanted.a1:g} s at any step; keep dt and let delta go")
+    else:
+        found = replace(scheme, step=wanted.a1 / (scheme.delta - 0.5))
+    gg = 1 - wanted.a0 * found.step
+    if gg <= 0:
+        raise InputError(f"damping: a0 = {wanted.a0:g} 1/s takes more than all velocity in a step of {found.step:g} s")
+    return replace(found, gg=gg)
+
+
+def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: bool = False) -> Stepping:
+    """Return the scheme whose own ratios at two frequencies in Hz are the wanted ones; `settings` is where it begins.
+
+    Raises
+    ------
+    InputError
+        No scheme hides them.
+    """
+    from scipy.optimize import root
+
+    start = settings(Rayleigh.through(first, second), scheme, keep_step)
+    frequencies, wanted = np.array([[first[0], second[0]], [first[1], second[1]]])
+    logs = np.log([start.delta - 0.5 if keep_step else start.step, max(1 - start.gg, 1e-9)])
+
+    def made(x: Array) -> Stepping:
+        size, loss = np.exp(np.minimum(x, [math.log(1e6), 0.0]))
+        gg = 1 - float(loss)
+        if keep_step:
+            delta = 0.5 + float(size)
+            return replace(start, delta=delta, alpha=max(scheme.alpha, delta / 2), gg=gg)
+        return replace(start, step=float(size), gg=gg)
+
+    found = root(lambda x: ratio(made(x), frequencies) - wanted, logs, tol=1e-13)
+    answer = made(found.x)
+    if not np.allclose(ratio(answer, frequencies), wanted, rtol=1e-9):
+        raise InputError("damping: no scheme of this kind hides these two ratios; ask for smaller or closer ones")
+    return answer
+
+
+def _check_points(*points: Point) -> None:
+    """Refuse frequencies and ratios out of range."""
+    for f, xi in points:
+        if not (math.isfinite(f) and f > 0):
+            raise InputError(f"damping: a frequency must be finite and positive, got {f:g}")
+        if not (math.isfinite(xi) and 0 <= xi < 1):
+            raise InputError(f"damping: a ratio must be from 0 to below 1, got {xi:g}")
+    if len({f for f, _ in points}) < len(points):
+        raise InputError(f"damping: two frequencies must differ, got {points[0][0]:g} twice")

@@ -1,0 +1,134 @@
+"""Frequency responses of scenes: what a solver answers to a load that vibrates, without running a step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from validation.advice.spectra import checked
+from validation.errors import InputError
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.contract import NotReported, Solver
+
+ROUNDING = 1e-12  # of an amplitude that is real
+HEADER = ("frequency", DISPLACEMENT, f"{DISPLACEMENT}_phase", PRESSURE, f"{PRESSURE}_phase")  # Hz, m, rad, Pa, rad
+
+
+@dataclass(frozen=True)
+class Response:
+    """What is left of a motion when transients have gone: Re(amplitude e^{2 pi i f t}).
+
+    Under the scene's loads the amplitudes are in m and Pa. Where the base moves they are those of its motion alone,
+    per metre of its displacement: 1 and Pa/m.
+    """
+
+    scene: str
+    solver: str
+    exact: bool  # exact in time, else as the scene's scheme steps it
+    base: bool  # per metre of base motion, else under the scene's loads
+    frequency: Array  # f [Hz]
+    columns: Mapping[str, Complex]  # complex amplitude of each column
+
+    @property
+    def displacement(self) -> Complex:
+        """Complex amplitude of the displacement [m, or m per m]."""
+        return self.columns[DISPLACEMENT]
+
+    @property
+    def contact_pressure(self) -> Complex:
+        """Complex amplitude of the contact pressure [Pa, or Pa per m]."""
+        return self.columns[PRESSURE]
+
+    def table(self) -> Array:
+        """Return the columns of `HEADER`: frequency, and amplitude and phase of each column, one row a frequency."""
+        parts = [part for name in (DISPLACEMENT, PRESSURE) for part in polar(self.columns[name])]
+        return np.column_stack([self.frequency, *parts])
+
+    def peaks(self, column: str) -> list[tuple[float, float]]:
+        """Return frequency and amplitude of the local maxima between the ends of the range, the highest first."""
+        size = np.abs(self.columns[column])
+        inside = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+        found = [(float(self.frequency[i]), float(size[i])) for i in inside]
+        return sorted(found, key=lambda peak: -peak[1])
+
+
+def polar(amplitude: Complex) -> tuple[Array, Array]:
+    """Return modulus, and phase before the load's in (-pi, pi] [rad], zero where nothing moves.
+
+    An imaginary part that is rounding counts as none, so that the phase of what nothing damps is 0 or pi.
+    """
+    size = np.abs(amplitude)
+    across = np.where(np.abs(amplitude.imag) <= ROUNDING * size, 0.0, amplitude.imag)
+    return size, np.arctan2(across, amplitude.real)
+
+
+def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: bool = False) -> Response:
+    """Return the frequency response of a linear scene.
+
+    A load F e^{iwt} that is taken at the steps meets the stepped system as the system that is exact in time at a
+    complex squared frequency: (K - W2 M) D = F. Nothing is stepped.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep; its loads vibrate in phase, with the amplitudes that it gives them. Where its base
+        moves, the response is that to the base alone, per metre along its direction. A column answers per metre of its
+        base, or of the wave that comes up through a transmitting base, or under the pressure on its top.
+    frequencies
+        Frequencies f [Hz], not negative. Above 1 / (2 dt), half the sampling frequency, the steps see a load's alias.
+    solver
+        A solver that reports a frequency response: dda, fem, bar, continuum, or a user's.
+    exact
+        As the solver's model answers in continuous time; a discount gg keeps its rate -ln(gg) / dt.
+
+    Raises
+    ------
+    InputError
+        The scene is not linear or has a sweep, the solver refuses it or reports no frequency response, the time step
+        is unstable, or a frequency is out of range.
+
+    Examples
+    --------
+    >>> from validation import load_scene, response
+    >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    >>> found = response(scene, [20.0, 52.0], "dda")
+    >>> [round(1e3 * abs(v), 6) for v in found.displacement]
+    [11.545937, 31.441911]
+    """
+    f = _checked(frequencies)
+    check_scene(scene)
+    chosen = checked(solver, scene) if isinstance(solver, str) else solver
+    if reason := chosen.refusal(scene):
+        raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
+    try:
+        found = chosen.prepare(scene).response(f, exact)
+    except NotReported as error:
+        raise InputError(f"{scene.name}: solver {chosen.name}: {error}") from None
+    base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
+    return Response(scene.name, chosen.name, exact, base, f, {name: found[name] for name in (DISPLACEMENT, PRESSURE)})
+
+
+def check_scene(scene: Scene) -> None:
+    """Refuse a scene with a sweep, or one that is not linear."""
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    if not features.linear(scene):
+        has = ", ".join(features.of(scene))
+        raise InputError(f"{scene.name}: a frequency response exists for linear scenes only, got one with {has}")
+
+
+def _checked(frequencies: ArrayLike) -> Array:
+    """Return frequencies as an array, or refuse them."""
+    f = np.atleast_1d(np.asarray(frequencies, float))
+    if f.ndim != 1 or f.size == 0:
+        raise InputError(f"frequencies: must be a list of numbers, got shape {f.shape}")
+    wrong = f[~(np.isfinite(f) & (f >= 0))]
+    if wrong.size:
+        raise InputError(f"frequencies: must be finite and not negative, got {wrong[0]:g}")
+    return f

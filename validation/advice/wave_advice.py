@@ -1,0 +1,323 @@
+r"""Blocks and time step for a wave: how much of it a column of blocks under the scheme lets arrive, and when.
+
+In blocks of height h the scheme carries a wave e^{iwt - ikx} with cos(kh) = (6 - 2 L)/(6 + L), L = W2 h^2 rho / M
+(`validation.gates.waves`). Over a distance X it keeps exp(-|Im k| X) and arrives (Re k - w/c) X / (2 pi) periods late.
+The blocks are made small enough for half of the phase error in exact time; then the step is the largest with which the
+loss and the whole phase error are kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from validation.advice.rayleigh import hidden, ratio
+from validation.advice.response import check_scene
+from validation.advice.spectra import percent
+from validation.errors import InputError
+from validation.gates import closed_forms
+from validation.gates.waves import Column, Stepping
+from validation.runs.history import Array, Complex
+from validation.scenes.scene import Scene
+
+MOST_BLOCKS = 10_000_000
+ROUNDING = 1e-12  # of a loss, a delay or a damping ratio that is none
+GRID = 400  # steps looked at, from 1e-6 periods to half a period
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A part of the column: what it is made of, and how it is cut."""
+
+    thickness: float  # [m]
+    density: float  # [kg/m^3]
+    modulus: float  # of the wave [Pa]
+    blocks: int
+    glue: float | None = None  # of the springs between blocks [Pa/m]; None where they are welded
+
+    @property
+    def height(self) -> float:
+        """Height of a block [m]."""
+        return self.thickness / self.blocks
+
+    @property
+    def speed(self) -> float:
+        """Speed of the wave [m/s]."""
+        return math.sqrt(self.modulus / self.density)
+
+    def wavenumber(self, w2: Complex) -> Complex:
+        """Return k [rad/m] of the blocks at squared frequencies."""
+        return Column(self.height, self.density, self.modulus, self.glue).wavenumber(w2)
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What becomes of a wave on its way with some blocks and a step."""
+
+    step: float  # dt [s]
+    gg: float  # discount of a step
+    heights: tuple[float, ...]  # of a block of each layer [m]
+    loss: float  # share of the amplitude that is lost [1]
+    delay: float  # of the arrival [periods]
+    damping: float  # damping ratio of the step at the frequency [1]
+
+
+@dataclass(frozen=True)
+class WaveAdvice:
+    """Blocks and step for a wave, what limits them, and what the present ones do."""
+
+    scene: str
+    frequency: float  # F [Hz]
+    loss: float  # L, share of the amplitude that may be lost [1]
+    phase_error: float  # of the arrival that is allowed [periods]
+    distance: float  # [m]
+    wavelengths: float  # in that distance [1]
+    present: Passage
+    advised: Passage | None  # None where nothing is good enough
+    blocks: tuple[int, ...]  # advised number for each layer, empty where none is enough
+    limits_height: str
+    limits_step: str
+    sentence: str  # what the present ones do
+    advice: str  # what is advised, or why nothing is
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Layers and how far the wave runs, over their thickness."""
+
+    layers: tuple[Layer, ...]
+    frequency: float
+    times: float
+
+    @property
+    def omega(self) -> float:
+        return 2 * math.pi * self.frequency
+
+    @property
+    def wavelengths(self) -> float:
+        return self.times * sum(layer.thickness / layer.speed for layer in self.layers) * self.frequency
+
+    def passed(self, w2: Complex) -> tuple[Array, Array]:
+        """Return loss and delay in periods at squared frequencies."""
+        exponent, turned = np.zeros(np.shape(w2)), np.zeros(np.shape(w2))
+        for layer in self.layers:
+            k = layer.wavenumber(w2)
+            exponent += np.abs(k.imag) * layer.thickness
+            turned += (k.real - self.omega / layer.speed) * layer.thickness
+        return -np.expm1(-self.times * exponent), self.times * turned / (2 * math.pi)
+
+    def passage(self, stepping: Stepping) -> Passage:
+        loss, delay = self.passed(stepping.squared_frequency([self.omega]))
+        found = loss[0], delay[0], ratio(stepping, self.frequency)
+        kept = (0.0 if abs(value) < ROUNDING else float(value) for value in found)
+        return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *kept)
+
+
+def advise_wave(
+    scene: Scene, frequency: float, loss: float, wavelengths: float | None = None, phase_error: float = 0.05
+) -> WaveAdvice:
+    """Return the height of blocks and the time step that let a wave arrive.
+
+    Parameters
+    ----------
+    scene
+        A scene without a sweep, with a column or with a block that is an upright rectangle, whose rows of sub-blocks
+        are the blocks. Its scheme and discount stay (a discount stated as `gg_rate` as a rate), and so does its glue;
+        joints and reflections between layers are left out.
+    frequency
+        Of the wave [Hz].
+    loss
+        Share of its amplitude that may be lost on the way [1].
+    wavelengths
+        Length of the way; the height of the column where it is not given.
+    phase_error
+        By how many periods the wave may arrive early or late.
+
+    Raises
+    ------
+    InputError
+        A number is out of range, or the scene is not linear or no such column.
+    """
+    _check(frequency, loss, wavelengths, phase_error)
+    check_scene(scene)
+    layers = layers_of(scene)
+    way = _Way(layers, frequency, 1.0)
+    if wavelengths is not None:
+        way = replace(way, times=wavelengths / way.wavelengths)
+    present = way.passage(Stepping.of(scene))
+    cut, limits_height = _cut(way, phase_error / 2)
+    step, limits_step = (None, "blocks") if cut is None else _largest_step(scene, cut, loss, phase_error)
+    advised = None if cut is None or step is None else cut.passage(_stepping(scene, step))
+    return WaveAdvice(
+        scene.name,
+        frequency,
+        loss,
+        phase_error,
+        way.times * sum(layer.thickness for layer in layers),
+        way.wavelengths,
+        present,
+        advised,
+        tuple(layer.blocks for layer in cut.layers) if cut is not None and advised is not None else (),
+        limits_height,
+        limits_step,
+        _sentence(scene, way, present),
+        _advised(scene, way, advised, limits_height, limits_step),
+    )
+
+
+def layers_of(scene: Scene) -> tuple[Layer, ...]:
+    """Return the layers of a scene: those of its column, or its block, cut into rows of sub-blocks.
+
+    Raises
+    ------
+    InputError
+        The block is no upright rectangle.
+    """
+    if scene.column is not None:
+        c = scene.column
+        return tuple(Layer(x.thickness, x.density, c.modulus(x), x.blocks, c.glue) for x in c.layer)
+    b = scene.block
+    points = b.outline
+    upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
+    if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
+        raise InputError(f"{scene.name}: block: must be an upright rectangle on its lower edge for a wave, got another")
+    width, height = closed_forms.size(scene)
+    modulus, rows = closed_forms.moduli(scene)[0], 1 if b.subdivide is None else b.subdivide[1]
+    glue = None if b.subdivide is None else 2 * b.glue_ratio * b.young * b.subdivide[0] / width
+    return (Layer(height, b.density, modulus, rows, glue),)
+
+
+def _stepping(scene: Scene, step: float) -> Stepping:
+    """Return the scene's scheme at another step; a rate of the discount stays."""
+    rate = scene.time.gg_rate
+    return replace(Stepping.of(scene), step=step, gg=scene.time.discount if rate is None else math.exp(-rate * step))
+
+
+def _cut(way: _Way, allowed: float) -> tuple[_Way | None, str]:
+    """Return the way with the fewest blocks that delay a wave in exact time no more than allowed, and what limits."""
+    total, layers = way.wavelengths, []
+    for layer in way.layers:
+        alone = replace(way, layers=(layer,))
+        blocks = _fewest(alone, allowed * alone.wavelengths / total)
+        if blocks is None:
+            return None, "glue"
+        layers.append(replace(layer, blocks=blocks))
+    single_block = all(layer.blocks == 1 for layer in layers)
+    return replace(way, layers=tuple(layers)), "column" if single_block else "phase error"
+
+
+def _fewest(way: _Way, allowed: float) -> int | None:
+    """Return the fewest blocks of a layer that are good enough, or None where the glue lets none be."""
+    w2 = np.array([way.omega**2 + 0j])
+
+    def good(blocks: int) -> bool:
+        loss, delay = replace(way, layers=(replace(way.layers[0], blocks=blocks),)).passed(w2)
+        return bool(abs(delay[0]) <= allowed and loss[0] < 1e-9)
+
+    blocks = 1
+    while not good(blocks):
+        if blocks >= MOST_BLOCKS:
+            return None
+        blocks = math.ceil(1.05 * blocks)
+    while blocks > 1 and good(blocks - 1):
+        blocks -= 1
+    return blocks
+
+
+def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> tuple[float | None, str]:
+    """Return the largest step with which the wave arrives, and what limits it."""
+
+    def passed(step: float) -> tuple[float, float]:
+        lost, delay = way.passed(_stepping(scene, step).squared_frequency([way.omega]))
+        return float(lost[0]), float(abs(delay[0]))
+
+    def good(step: float) -> bool:
+        lost, delay = passed(step)
+        return lost <= loss and delay <= allowed and step <= stable
+
+    stable = _stable(scene, way)
+    steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID).tolist()
+    found = next((i for i, step in enumerate(steps) if good(step)), None)
+    if found is None:
+        return None, _why_none(scene, [passed(step)[0] for step in steps], loss)
+    if found == 0:
+        return steps[0], "half a period"
+    step = _edge(good, steps[found], steps[found - 1])
+    lost, _ = passed(step * (1 + 1e-6))
+    if step * (1 + 1e-6) > stable:
+        return step, "stability"
+    return step, "loss" if lost > loss else "phase error"
+
+
+def _stable(scene: Scene, way: _Way) -> float:
+    """Return the largest stable step of welded blocks, whose highest frequency is sqrt(12) c / h [s]."""
+    critical = closed_forms.critical_omega(scene)
+    return min(critical * layer.height / (math.sqrt(12) * layer.speed) for layer in way.layers)
+
+
+def _why_none(scene: Scene, losses: list[float], allowed: float) -> str:
+    """Say what keeps every step from being good enough."""
+    return "gg" if min(losses) > allowed and scene.time.discount < 1 else "scheme"
+
+
+def _edge(good: Callable[[float], bool], inside: float, outside: float) -> float:
+    """Return the last good value between a good and a bad one."""
+    for _ in range(60):
+        middle = math.sqrt(inside * outside)
+        inside, outside = (middle, outside) if good(middle) else (inside, middle)
+    return inside
+
+
+def _sentence(scene: Scene, way: _Way, present: Passage) -> str:
+    """Say what the present blocks and step do to the wave."""
+    rayleigh = hidden(Stepping.of(scene))
+    mass, stiffness = rayleigh.a0 / (2 * way.omega), rayleigh.a1 * way.omega / 2
+    kind = "algorithmic" if mass == 0 else "kinetic" if stiffness == 0 else "algorithmic and kinetic"
+    distance = way.times * sum(layer.thickness for layer in way.layers)
+    late = "late" if present.delay >= 0 else "early"
+    size = f"{percent(present.damping)} {kind}" if present.damping else "no"
+    return (
+        f"Your dt = {present.step:g} s is {size} damping at {way.frequency:g} Hz: "
+        f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {way.wavelengths:.3g} wavelengths, "
+        f"{abs(present.delay):.3g} periods {late}."
+    )
+
+
+def _advised(scene: Scene, way: _Way, found: Passage | None, height: str, step: str) -> str:
+    """Say what is advised and what limits it, or why nothing is."""
+    if found is not None:
+        heights = ", ".join(f"{h:.4g}" for h in found.heights)
+        return (
+            f"Blocks of {heights} m and dt = {found.step:.4g} s lose {percent(found.loss)} of it and bring it "
+            f"{abs(found.delay):.3g} periods {'late' if found.delay >= 0 else 'early'}; "
+            f"the blocks are limited by the {height}, the step by the {step}."
+        )
+    if height == "glue":
+        return "No blocks do: the glue between them is too soft for the phase error; raise block.glue_ratio."
+    steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID)
+    losses = [way.passage(_stepping(scene, float(dt))).loss for dt in steps]
+    best = int(np.argmin(losses))
+    gg = "gg_rate" if scene.time.gg_rate is not None else "gg"
+    nearer = f"{gg} takes the rest, choose it nearer {0 if gg == 'gg_rate' else 1}"
+    why = nearer if step == "gg" else "choose another scheme"
+    return f"No time step does: at best {percent(losses[best])} is lost, at dt = {steps[best]:.3g} s; {why}."
+
+
+def _check(frequency: float, loss: float, wavelengths: float | None, phase_error: float) -> None:
+    """Refuse numbers out of range."""
+    if not (math.isfinite(frequency) and frequency > 0):
+        raise InputError(f"--fmax: must be finite and positive, got {frequency:g}")
+    if not 0 < loss < 1:
+        raise InputError(f"--loss: must be above 0 and below 1, got {loss:g}")
+    if wavelengths is not None and not (math.isfinite(wavelengths) and wavelengths > 0):
+        raise InputError(f"--wavelengths: must be finite and positive, got {wavelengths:g}")
+    if not 0 < phase_error < 1:
+        raise InputError(f"--phase-error: must be above 0 and below 1, got {phase_error:g}")

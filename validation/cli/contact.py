@@ -1,0 +1,87 @@
+"""The command ``contact``: when a block opens and lands, what its steps make of it, and what would do better."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.cli.app import NUMERICAL_FAILURE, PASSED, SetOption, app, one_case
+from validation.cli.damping import JsonOption, SceneArgument
+
+if TYPE_CHECKING:
+    from validation.runs.row import Row
+    from validation.scenes.scene import Scene
+
+
+@app.command()
+def contact(
+    scene: SceneArgument,
+    error: Annotated[
+        float, typer.Option("--restitution-error", help="Error of the restitution asked for, 0.05 for 5 %.", min=1e-6)
+    ] = 0.05,
+    penetration: Annotated[
+        float, typer.Option("--penetration", help="Largest penetration asked for [m].", min=1e-12)
+    ] = 1e-4,
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Show when a block opens and lands, against the exact motions, and which step and springs would do better.
+
+    Example: [bold]dda-validate contact unlocked-constant --set time.step=0.001 --set time.steps=50[/bold]
+
+    The contact must be unilateral; --set contact.law=unilateral unlocks a locked scene.
+    """
+    from validation.advice import contact_page
+
+    case = one_case(scene, assignments)
+    scenes = contact_page.scenes(case)
+    rows, absent = _rows(scenes)
+    found = contact_page.answer(case, rows, error, penetration, _probe(scenes[contact_page.exact()]))
+    if as_json:
+        typer.echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
+    else:
+        typer.echo("\n".join(contact_page.page(case, found, absent)))
+    return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
+
+
+def _probe(scene: Scene) -> Callable[[float], float | None]:
+    """Return the function of p that says how deep the exact block goes [m]."""
+    from validation.advice.contact_page import exact
+    from validation.engine.case import Case
+    from validation.engine.measure import execute
+
+    def depth(stiffness: float) -> float | None:
+        row, _ = execute(Case(scene.with_values({"contact.stiffness": stiffness}), exact()), "", "contact")
+        value = row.metrics.get("contact.penetration")
+        return value if isinstance(value, float) else None
+
+    return depth
+
+
+def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
+    """Return the rows of the runs that completed, and why the others have none.
+
+    Raises
+    ------
+    InputError
+        The judged method does not take the scene.
+    """
+    from validation.advice.contact_page import own
+    from validation.engine.case import Case
+    from validation.engine.measure import execute
+    from validation.errors import InputError
+    from validation.runs.run import Outcome
+
+    rows, absent = {}, {}
+    for name, scene in scenes.items():
+        row, _ = execute(Case(scene, name), "", "contact")
+        if name == own() and row.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+            raise InputError(f"{scene.name}: {'; '.join(row.notes)}")
+        if row.outcome is Outcome.COMPLETED:
+            rows[name] = row
+        else:
+            absent[name] = f"{row.outcome.sentence} {'; '.join(row.notes)}".strip()
+    return rows, absent

@@ -1,0 +1,244 @@
+"""The commands of frequencies: ``response`` and ``rayleigh``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.cli.app import SetOption, app, one_case
+
+if TYPE_CHECKING:
+    from validation.advice.rayleigh import Rayleigh
+    from validation.advice.response import Response
+    from validation.gates.waves import Stepping
+    from validation.runs.history import Array
+    from validation.scenes.scene import Scene
+
+SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.")]
+FigureOption = Annotated[
+    Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
+]
+FigureEndings = (".svg", ".pdf", ".png")
+PEAKS = 3  # that are printed
+
+
+@app.command()
+def response(
+    scene: SceneArgument,
+    solver: Annotated[str, typer.Option("--solver", help="Solver whose model answers.", metavar="NAME")] = "dda",
+    low: Annotated[float, typer.Option("--from", help="Lowest frequency.", metavar="HZ")] = 0.1,
+    high: Annotated[float, typer.Option("--to", help="Highest frequency.", metavar="HZ")] = 200.0,
+    points: Annotated[int, typer.Option("--points", help="Number of frequencies.", min=1)] = 1000,
+    logarithmic: Annotated[bool, typer.Option("--log", help="Space frequencies by their logarithm.")] = False,
+    exact: Annotated[bool, typer.Option("--exact", help="Write the model's answer that is exact in time.")] = False,
+    csv: Annotated[Path | None, typer.Option("--csv", help="Write the table.", metavar="FILE")] = None,
+    figure: FigureOption = None,
+    assignments: SetOption = None,
+) -> None:
+    """Give the answer to a load or a base that vibrates, over frequency; no step is run.
+
+    Example: [bold]dda-validate response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
+    """
+    from validation.advice.response import response as answer
+
+    case = one_case(scene, assignments)
+    frequencies = _frequencies(low, high, points, logarithmic)
+    check_figure(figure)
+    answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
+    if csv is not None:
+        _write(answers[EXACT if exact else solver], csv)
+    if figure is not None:
+        _draw(case, answers, logarithmic, figure)
+    _print_peaks(case, answers)
+
+
+EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a column
+
+
+def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
+    """Return the frequencies of a sweep [Hz], or refuse its ends."""
+    import math
+
+    import numpy as np
+
+    from validation.errors import InputError
+
+    if not (math.isfinite(low) and math.isfinite(high) and 0 <= low <= high):
+        raise InputError(f"--from, --to: must be finite, not negative and in this order, got {low:g} and {high:g}")
+    if logarithmic and low == 0:
+        raise InputError("--from: must be greater than 0 with --log, got 0")
+    spaced = np.geomspace if logarithmic else np.linspace
+    return np.asarray(spaced(low, high, points), dtype=np.float64)
+
+
+def check_figure(path: Path | None) -> None:
+    """Refuse a figure's file of an unknown kind before anything is computed."""
+    from validation.errors import InputError
+
+    if path is not None and path.suffix.lower() not in FigureEndings:
+        raise InputError(f"--figure: must end in {', '.join(FigureEndings)}, got {path.name!r}")
+
+
+def _write(found: Response, path: Path) -> None:
+    """Write the table with all digits."""
+    from validation.advice.response import HEADER
+    from validation.runs.files import write_atomically
+
+    lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in found.table().tolist())]
+    write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
+    typer.echo(f"wrote {path}: {len(lines) - 1} frequencies")
+
+
+def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Path) -> None:
+    """Draw the solver as stepped and exact in time, and the continuum where it applies."""
+    import numpy as np
+
+    from validation.advice.response import polar
+    from validation.advice.response import response as answer
+    from validation.report.figures.response import ResponseCurve, response_figure, save_as
+    from validation.solvers.registry import get_solver
+
+    shown = dict(answers)
+    truth = next((name for name in TRUTHS if get_solver(name).refusal(case) is None), None)
+    if truth is not None:
+        shown[truth] = answer(case, answers[EXACT].frequency, truth)
+    curves = []
+    for name, found in shown.items():
+        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == truth)
+        columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
+        label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
+        curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
+    typer.echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
+
+
+def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
+    """Say where the answers peak, and where the steps see an alias."""
+    from validation.cli.damping import print_table
+    from validation.runs.history import DISPLACEMENT, PRESSURE
+
+    found = answers[EXACT]
+    load = "per metre of base motion" if found.base else "under the scene's loads"
+    typer.echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
+    unit = "/m" if found.base else ""
+    heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
+    rows: list[tuple[str, ...]] = [heads]
+    for name, answer in answers.items():
+        label = name if name == EXACT else "as stepped"
+        columns = [answer.peaks(column)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
+        for i in range(max(map(len, columns), default=0)):
+            cells = [(f"{p[i][0]:.6g}", f"{p[i][1]:.6g}") if i < len(p) else ("", "") for p in columns]
+            rows.append((label, *cells[0], *cells[1]))
+    print_table(rows if len(rows) > 1 else [("no peak between the ends",)])
+    limit = 0.5 / case.time.step
+    if found.frequency[-1] > limit * (1 + 1e-12):
+        typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+@app.command()
+def rayleigh(
+    scene: Annotated[str | None, typer.Argument(help="Scene whose scheme is translated; or give --dt.")] = None,
+    assignments: SetOption = None,
+    dt: Annotated[float | None, typer.Option("--dt", help="Time step.", metavar="S")] = None,
+    alpha: Annotated[float | None, typer.Option("--alpha", help="The scheme's alpha.")] = None,
+    delta: Annotated[float | None, typer.Option("--delta", help="The scheme's delta.")] = None,
+    gg: Annotated[float | None, typer.Option("--gg", help="Discount of a step.")] = None,
+    a0: Annotated[float | None, typer.Option("--a0", help="Back: mass damping that is wanted.", metavar="1/S")] = None,
+    a1: Annotated[float | None, typer.Option("--a1", help="Back: stiffness damping.", metavar="S")] = None,
+    ratios: Annotated[
+        list[str] | None,
+        typer.Option("--ratio", help="Back: a ratio at a frequency, 5=0.02; give two.", metavar="HZ=XI"),
+    ] = None,
+    keep_step: Annotated[bool, typer.Option("--keep-dt", help="Back: find delta and gg at this dt.")] = False,
+    low: Annotated[float | None, typer.Option("--from", help="Lowest frequency shown.", metavar="HZ")] = None,
+    high: Annotated[float | None, typer.Option("--to", help="Highest frequency shown.", metavar="HZ")] = None,
+    figure: FigureOption = None,
+) -> None:
+    """Translate the damping that a time step hides into Rayleigh's a0 and a1, or a wanted one into dt, delta and gg.
+
+    Example: [bold]dda-validate rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
+
+    C = a0 M + a1 K, as other codes take it. Back: --ratio 2=0.05 --ratio 20=0.05, or --a0 and --a1.
+    """
+    from dataclasses import replace
+
+    from validation.advice import rayleigh as advice
+
+    check_figure(figure)
+    scheme, points = _scheme(scene, assignments, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg}), []
+    if ratios or a0 is not None or a1 is not None:
+        points = advice.points(ratios or [], a0, a1)
+        scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
+    ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
+    band = low or ends[0], high or ends[1]
+    advice.check_band(*band)
+    _print_scheme(scheme, band)
+    if figure is not None:
+        _draw_ratios(scheme, band, figure)
+
+
+def _scheme(scene: str | None, assignments: list[str] | None, given: dict[str, float | None]) -> Stepping:
+    """Return the scheme of a scene, or of the options, which go before it."""
+    from dataclasses import asdict
+
+    from validation.advice.rayleigh import scheme_of
+    from validation.gates.waves import Stepping
+
+    own = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
+    return scheme_of(own | {name: value for name, value in given.items() if value is not None})
+
+
+def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
+    """Say which scheme hides a wanted damping, and return the best one."""
+    from validation.advice.rayleigh import exact_settings, settings
+    from validation.errors import InputError
+
+    found = settings(wanted, scheme, keep_step)
+    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s\nto leading order: {found.words}")
+    if not points:
+        return found
+    try:
+        found = exact_settings(points[0], points[1], scheme, keep_step)
+    except InputError as error:
+        typer.echo(f"exactly: {error}")
+    else:
+        typer.echo(f"exactly at both frequencies: {found.words}")
+    return found
+
+
+def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
+    """Print a0 and a1 of a scheme and its damping ratio over frequency."""
+    import numpy as np
+
+    from validation.advice.rayleigh import hidden, matched, ratio
+    from validation.cli.damping import print_table
+
+    leading, fitted = hidden(scheme), matched(scheme, *band)
+    typer.echo(f"\n{scheme.words} hides the Rayleigh damping")
+    rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
+    for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
+        least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
+        rows.append((name, f"{damping.a0 + 0.0:.6g}", f"{damping.a1:.6g}", *least))
+    print_table(rows)
+    frequency = np.geomspace(*band, 8)
+    columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
+    typer.echo("")
+    heads = ("frequency [Hz]", "xi [%]", "leading order")
+    print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
+
+
+def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> None:
+    """Draw the damping ratio over frequency, exact, to leading order and matched at the ends of the band."""
+    import numpy as np
+
+    from validation.advice.rayleigh import hidden, matched, ratio
+    from validation.report.figures.response import ratio_figure, save_as
+
+    f = np.geomspace(*band, 300)
+    lines = {
+        "as stepped": ratio(scheme, f),
+        "Rayleigh, leading order": hidden(scheme).ratio(f),
+        "Rayleigh, exact at both ends": matched(scheme, *band).ratio(f),
+    }
+    typer.echo(f"wrote {save_as(ratio_figure(f, lines), path)}")

@@ -1,0 +1,27 @@
+"""The horizon of a unilateral contact: how long two correct codes agree before the switches amplify rounding.
+
+A run with p (1 + 1e-12) stands for the other code. Its distance from the run is at first that of rounding, some digits
+enlarged, and grows with every switch; where it exceeds `validation.metrics.contact.AGREED`, histories tell nothing any
+more, and only what holds for every history (momentum, energy, complementarity) is left to judge.
+"""
+
+from __future__ import annotations
+
+import math
+
+from validation.runs.history import History
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role, Solver
+
+SHIFT = 1e-12  # relative change of the springs, well above the rounding of any code
+EXACT = (Role.LIMIT, Role.TRUTH)  # computed in so many digits that nothing is amplified
+
+
+def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:
+    """Return the history of the same scene with p (1 + 1e-12), or density where p is infinite; None if it fails."""
+    field = "contact.stiffness" if math.isfinite(scene.contact.stiffness) else "block.density"
+    section, _, key = field.partition(".")
+    value = getattr(getattr(scene, section), key) * (1 + SHIFT)
+    run = solver.prepare(scene.with_values({field: value}), full).run()
+    return run.history if run.outcome is Outcome.COMPLETED else None

@@ -1,0 +1,66 @@
+"""The chapter of the study `impacts`: published benchmarks, solver by solver, in one table for each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups, varied_fields
+from validation.report.chapters.scene import gate_count
+from validation.report.chapters.text import DASH, parameters, plain
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.solvers.contract import Role
+from validation.solvers.registry import role
+
+QUANTITIES = (  # title, metric, factor
+    ("lands [ms]", "switches.first_closing", 1e3),
+    ("leaves [ms]", "switches.first_opening", 1e3),
+    ("lands again [ms]", "switches.second_closing", 1e3),
+    ("restitution", "contact.restitution", 1.0),
+    ("peak force [MN]", "contact.peak_force", 1e-6),
+    ("penetration [mm]", "contact.penetration", 1e3),
+)
+NOTE = (
+    "A step sees a switch at its end. The peak force of a rigid wall is ρ c V a; where a stepped solution gives "
+    "more, it is that of the springs under a step that is too long for them."
+)
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: a table for each benchmark."""
+    title, purpose = manifest.get("title") or manifest["study"], manifest.get("purpose") or ""
+    found = groups(results, manifest)
+    verdicts = [verdict for group in found for verdict in group.verdicts]
+    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
+    blocks: list[Block] = [Heading(title), Paragraph(f"{purpose} {NOTE}{count}")]
+    for group in found:
+        data = Paragraph(parameters(group.cases[0].scene, varied_fields(group) | UNSAID), "small")
+        blocks += [Heading(group.title, 3), data, table(group)]
+    return blocks
+
+
+UNSAID = {"fem.degree", "fem.elements", "fem.foundation", "block.poisson", "block.hypothesis", "time.gg"}
+
+
+def table(group: Group) -> Table:
+    """Return what each solver found in each case."""
+    titles = (*columns("text", "Case", "Solver"), *columns("decimal", *(title for title, _, _ in QUANTITIES)))
+    rows = []
+    for case in group.cases:
+        label = case.label
+        for solver in case.rows:
+            rows.append((label, named(solver), *cells(case, solver)))
+            label = ""
+    return Table(titles, tuple(rows))
+
+
+def named(solver: str) -> str:
+    """Return a solver's name, marked where it is exact in time."""
+    return f"{solver} (exact)" if role(solver) in (Role.LIMIT, Role.TRUTH) else solver
+
+
+def cells(case: Case, solver: str) -> tuple[str, ...]:
+    """Return the quantities of a run."""
+    values = ((case.number(solver, metric), factor) for _, metric, factor in QUANTITIES)
+    return tuple(DASH if value is None else plain(factor * value, 5) for value, factor in values)

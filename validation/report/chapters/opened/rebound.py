@@ -1,0 +1,226 @@
+"""The chapter of the study `rebound`: the restitution map, and the paper's block over time step and springs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.scene import gate_count
+from validation.report.chapters.text import DASH, plain, short
+from validation.report.figures import contact, histories
+from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.results import Results
+
+EXACT = "block-events"
+IMPACT, MAP = "rebound-", "contact-map-"
+MARKS = {0.3: "0.3", 2.0: "2"}
+WORDS = {  # the ends of the scenes' names
+    "constant": "constant acceleration (1/2, 1)",
+    "average": "average acceleration (1/4, 1/2)",
+    "implicit": "implicit contact, (1/4, 1/2) in the block",
+    "conserving": "energy-conserving contact",
+}
+SHOWN = (1e-3, 2e-4)  # time steps in the table of budgets [s]
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: restitution, then energy, switches and solves."""
+    found = groups(results, manifest)
+    impacts = [group for group in found if group.name.startswith(IMPACT)]
+    maps = [group for group in found if group.name.startswith(MAP)]
+    verdicts = [verdict for group in found for verdict in group.verdicts]
+    blocks: list[Block] = [
+        Heading(manifest.get("title") or manifest["study"]),
+        Paragraph(manifest.get("purpose") or ""),
+    ]
+    blocks += [Paragraph(conclusion(maps), "lead")] if maps else []
+    if (data := manifest.get("data")) and data.get("schemes"):
+        blocks += restitution_blocks(data, impacts, directory)
+    return blocks + map_blocks(maps, verdicts, directory)
+
+
+# ---- restitution --------------------------------------------------------------------------------------------------
+
+
+def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory: Path) -> list[Block]:
+    """Return the restitution map as a figure, and what it is on a rigid contact."""
+    omega = np.array(data["omega"])
+    curves = []
+    for name, rows in data["schemes"].items():
+        dots = tuple(dot for group in impacts if kind(group) == name for dot in impact_dots(group))
+        words = WORDS.get(name, name).partition(",")[0].removesuffix(" (1/2").removesuffix(" (1/4")
+        mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
+        curves.append(contact.Curve(words, omega, mean, low, high, dots))
+    caption = (
+        "Speed that a block keeps of the one it lands with, over ω_c dt: mean (line) and range over the phase of the "
+        "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. The springs alone "
+        "would return all of it, e = 1."
+    )
+    said = (
+        "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ 1 − π ω_c dt / 4 for (1/2, 1); at ω_c "
+        "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
+        "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
+        "average. The block of one strain lands with a quarter of its mass, ω_c = √(8 p / m)."
+    )
+    figure = contact.restitution_figure(curves, MARKS)
+    return [
+        Heading("What a landing returns", 2),
+        histories.saved(figure, directory, "rebound-restitution.svg", caption),
+        Paragraph(said),
+    ]
+
+
+def kind(group: Group) -> str:
+    """Return the kind of contact and scheme, the end of the scene's name."""
+    return group.name.rpartition("-")[2]
+
+
+def impact_dots(group: Group) -> list[tuple[float, float]]:
+    """Return Omega and restitution of the impacts that were run."""
+    dots = []
+    for case in group.cases:
+        width, height = (float(np.ptp([point[i] for point in case.scene.block.outline])) for i in (0, 1))
+        mass = case.scene.block.density * width * height
+        e = case.number("dda", "contact.restitution")
+        if e is not None:
+            dots.append((math.sqrt(2 * case.scene.contact.stiffness / mass) * case.scene.time.step, e))
+    return dots
+
+
+# ---- over step and springs ----------------------------------------------------------------------------------------
+
+
+def ratio(case: Case) -> float:
+    """Return p/E."""
+    return case.scene.contact.stiffness / case.scene.block.young
+
+
+def exact_switches(maps: Sequence[Group]) -> dict[float, float]:
+    """Return the switches of the exact block by p/E."""
+    found = {}
+    for group in maps:
+        for case in group.cases:
+            if (count := case.number(EXACT, "switches.count")) is not None:
+                found[ratio(case)] = count
+    return found
+
+
+def conclusion(maps: Sequence[Group]) -> str:
+    """Say in one or two sentences what was gained, and how many solves it took."""
+    parts = []
+    for group in maps:
+        rises = [value for case in group.cases if (value := case.number("dda", "energy.rise")) is not None]
+        solves = [value for case in group.cases if (value := case.number("dda", "contact.most_solves")) is not None]
+        if rises and solves:
+            words = WORDS.get(kind(group), group.title)
+            most = max(rises)
+            gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
+            parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
+    said = "; ".join(parts)
+    return (
+        f"{said[:1].upper()}{said[1:]}: what a step too large for the contact spoils is the motion, not the iteration."
+    )
+
+
+def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
+    """Return the maps over dt and p, and the budget of energy as a table."""
+    if not maps:
+        return []
+    ratios = sorted({ratio(case) for group in maps for case in group.cases})
+    steps = sorted({case.scene.time.step for group in maps for case in group.cases}, reverse=True)
+    exact = exact_switches(maps)
+    drawn = [number_maps_of(group, ratios, steps, exact) for group in maps]
+    names = ([f"p = {short(r)}E" for r in ratios], [short(1e3 * step) for step in steps])
+    caption = (
+        "The paper's block, unlocked, over 0.2 s, dda: solves of the open-close iteration a step (mean), greatest "
+        "energy above that given, over it, and openings and closings over those of the exact motion; from above: "
+        + ", ".join(WORDS.get(kind(group), group.title) for group in maps)
+        + "."
+    )
+    count = f"{gate_count(verdicts).capitalize()}."
+    return [
+        Heading("Energy, switches and solves", 2),
+        histories.saved(contact.number_maps(drawn, *names), directory, "rebound-maps.svg", caption),
+        budget_table(maps),
+        Paragraph(f"{HORIZON} {count}" if verdicts else HORIZON),
+    ]
+
+
+HORIZON = (
+    "Histories agree up to: the time for which a run with p (1 + 10⁻¹²) stays within 10⁻⁶; beyond, two correct "
+    "programs differ, and only balances of momentum and energy are left to compare. Energies are those lost "
+    "(negative: gained) by the end, over what start and loads give: the scheme's own damping of what keeps its "
+    "contact state, and openings and closings apart."
+)
+
+
+def number_maps_of(
+    group: Group, ratios: Sequence[float], steps: Sequence[float], exact: dict[float, float]
+) -> list[contact.NumberMap]:
+    """Return the three maps of a scheme."""
+    cells = {(ratio(case), case.scene.time.step): case for case in group.cases}
+    grid = [[cells.get((r, step)) for step in steps] for r in ratios]
+    solves = [[None if c is None else c.number("dda", "contact.mean_solves") for c in row] for row in grid]
+    rises = [[None if c is None else c.number("dda", "energy.rise") for c in row] for row in grid]
+    switches = [[_over(c, exact) for c in row] for row in grid]
+    return [
+        _map("solves a step", solves, lambda v: min(1.0, v - 1.0)),
+        _map("energy gained", rises, lambda v: 0.0 if v < 1e-3 else min(1.0, (3 + math.log10(v)) / 6)),
+        _map("switches over exact", switches, lambda v: min(1.0, abs(math.log(max(v, 1e-2))) / 4)),
+    ]
+
+
+def _over(case: Case | None, exact: dict[float, float]) -> float | None:
+    count = None if case is None else case.number("dda", "switches.count")
+    known = None if case is None else exact.get(ratio(case))
+    return None if count is None or not known else count / known
+
+
+def _map(title: str, values: list[list[float | None]], shade: Any) -> contact.NumberMap:
+    shades = [[math.nan if v is None else shade(v) for v in row] for row in values]
+    texts = tuple(tuple(DASH if v is None else _number(v) for v in row) for row in values)
+    return contact.NumberMap(title, np.array(shades), texts)
+
+
+def _number(value: float) -> str:
+    """Return a number that fits into a cell."""
+    if abs(value) < 1e-9:
+        return "0"
+    return "<0.001" if abs(value) < 1e-3 else short(value, 3) if value < 100 else f"{value:.0f}"
+
+
+def budget_table(maps: Sequence[Group]) -> Table:
+    """Return where the energy went, the peak force and the horizon of every case."""
+    titles = columns("text", "Scheme", "p", "dt [ms]")
+    titles += columns("decimal", "scheme", "switching", group="Lost by, over the energy given")
+    titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Histories agree up to [s]")
+    rows = []
+    for group in maps:
+        name = kind(group)
+        shown = [case for case in group.cases if case.scene.time.step in SHOWN]
+        for case in sorted(shown, key=lambda c: (ratio(c), -c.scene.time.step)):
+            rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
+            name = ""
+    return Table(titles, tuple(rows), "Budget of the cases of two time steps, dda.", ruled=False)
+
+
+def budget_cells(case: Case) -> tuple[str, ...]:
+    """Return losses, peak force, penetration, share open and horizon of a case."""
+    gain, given = case.number("dda", "energy.switching_gain"), case.number("dda", "energy.given")
+    lost = case.number("dda", "energy.lost_algorithmic")
+    scheme_share = None if lost is None or not given else lost / given
+    numbers = (
+        (scheme_share, 1.0),
+        (None if gain is None else -gain, 1.0),
+        (case.number("dda", "contact.peak_force"), 1e-6),
+        (case.number("dda", "contact.penetration"), 1e3),
+        (case.number("dda", "contact.open_share"), 100.0),
+        (case.number("dda", "horizon.time"), 1.0),
+    )
+    return tuple(DASH if value is None else plain(factor * value + 0.0, 3) for value, factor in numbers)

@@ -1,0 +1,202 @@
+"""The chapter of waves: what of a wave arrives, what joints and bases do to it, and a site under a record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.report.blocks import Block, Heading, PageBreak, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.scene import gate_count
+from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.figures import histories
+from validation.report.figures.waves import COLORS as BY_SCHEME
+from validation.report.figures.waves import Trace, Travel, site_figure, travel_figure
+from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.scenes.scene import Scene
+
+SCHEMES = {1.0: "(1/2, 1)", 0.5: "(1/4, 1/2)"}  # by delta
+COLORS = {delta: BY_SCHEME[scheme] for delta, scheme in SCHEMES.items()}
+Rows = dict[tuple[str, str], Mapping[str, Any]]  # (case, name) -> metrics of a derived row
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: waves in blocks, joints and base, the site."""
+    found = {group.name: group for group in groups(results, manifest)}
+    rows: Rows = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+    verdicts = [verdict for group in found.values() for verdict in group.verdicts]
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
+    measured = travels(found, rows)
+    if said := lead(measured):
+        blocks.append(Paragraph(said, "lead"))
+    blocks.append(Paragraph(f"{manifest.get('purpose', '')} {gate_count(verdicts).capitalize()}."))
+    if measured:
+        drawn = [_curve(data) for data in manifest.get("data", {}).get("curves", [])]
+        caption = (
+            "Waves in welded blocks: closed forms (lines) and what was measured on stepped histories (dots); solid "
+            "c dt/h = 1, long dashes 1/2, short dashes 1/4, dots 1/10."
+        )
+        blocks.append(histories.saved(travel_figure(drawn, measured), directory, "waves-travel.svg", caption))
+    blocks += [table for table in (_others(found, rows), _joints(found, rows), _base(found, rows)) if table.rows]
+    return [*blocks, *_site(found, directory)]
+
+
+def _curve(data: Mapping[str, Any]) -> Travel:
+    parts = (np.array(data[part]) for part in ("blocks", "speed", "left"))
+    return Travel(data["scheme"], data["courant"], *parts)
+
+
+# ---- waves in blocks ------------------------------------------------------------------------------------------------
+
+
+def _courant(scene: Scene) -> float:
+    """Return c dt/h of the lowest layer's continuum."""
+    if scene.column is None:
+        return 0.0
+    layer = scene.column.layer[0]
+    speed = math.sqrt(scene.column.modulus(layer) / layer.density)
+    return round(speed * scene.time.step * layer.blocks / layer.thickness, 6)
+
+
+def _waves(case: Case, rows: Rows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
+    """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
+    found = []
+    for (scene, name), metrics in rows.items():
+        words = name.split()
+        if scene == case.name and words[0] == "dda" and isinstance(metrics.get(metric), float):
+            found.append((int(words[2]), metrics))
+    return sorted(found, key=lambda wave: wave[0])
+
+
+def travels(found: Mapping[str, Group], rows: Rows) -> list[Travel]:
+    """Return the waves measured in welded blocks, by case."""
+    group, measured = found.get("waves-blocks"), []
+    for case in group.cases if group else ():
+        waves = _waves(case, rows, "wave.left")
+        if waves and case.scene.time.delta in SCHEMES:
+            parts = (np.array([wave[f"wave.{part}"] for _, wave in waves]) for part in ("speed_error", "left"))
+            blocks = np.array([float(count) for count, _ in waves])
+            measured.append(Travel(SCHEMES[case.scene.time.delta], _courant(case.scene), blocks, *parts))
+    return measured
+
+
+def lead(measured: Sequence[Travel]) -> str:
+    """Say what ten blocks a wavelength give, in one sentence."""
+    for travel in measured:
+        at = np.flatnonzero(travel.blocks == 10)
+        if travel.scheme == "(1/2, 1)" and travel.courant == 0.5 and at.size:
+            speed, left = travel.speed[at[0]], travel.left[at[0]]
+            return (
+                f"Ten blocks a wavelength are a rule for the speed only: at c dt/h = 1/2 the wave is {percent(speed)} "
+                f"too fast, but under (1/2, 1) {percent(left)} of its amplitude is left after ten wavelengths."
+            )
+    return ""
+
+
+def _others(found: Mapping[str, Group], rows: Rows) -> Table:
+    """Return the waves in glued blocks, under kinetic damping, and in shear."""
+    lines = []
+    for name in ("waves-glue", "waves-discount", "waves-shear"):
+        for case in found[name].cases if name in found else ():
+            column, time = case.scene.column, case.scene.time
+            if column is None:
+                continue
+            layer = column.layer[0]
+            glue = (
+                DASH
+                if column.glue is None
+                else short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
+            )
+            for count, wave in _waves(case, rows, "wave.left"):
+                scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
+                numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
+                lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
+    titles = (
+        *columns("text", "Motion"), *columns("decimal", "kg h / E"), *columns("text", "α, δ, gg"),
+        *columns("decimal", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
+    )  # fmt: skip
+    return Table(titles, tuple(lines), "Glue of finite stiffness, kinetic damping, and shear waves, as measured")
+
+
+# ---- joints and base ------------------------------------------------------------------------------------------------
+
+
+def _joints(found: Mapping[str, Group], rows: Rows) -> Table:
+    """Return what a joint of kj = rho c w lets through."""
+    lines = []
+    for group in (group for name, group in found.items() if name.startswith("waves-joint")):
+        for case in group.cases:
+            for count, wave in _waves(case, rows, "joint.transmitted"):
+                parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
+                scheme = SCHEMES.get(case.scene.time.delta, DASH)
+                lines.append((scheme, str(count), f"{_courant(case.scene):g}", *parts))
+    titles = (*columns("text", "α, δ"), *columns("decimal", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"))
+    caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
+    return Table(titles, tuple(lines), caption)
+
+
+def _base(found: Mapping[str, Group], rows: Rows) -> Table:
+    """Return what a transmitting base of the column's own impedance sends back."""
+    lines, counts = [], list[int]()
+    for case in found["waves-base"].cases if "waves-base" in found else ():
+        waves = _waves(case, rows, "base.reflected")
+        counts = [count for count, _ in waves]
+        scheme = SCHEMES.get(case.scene.time.delta, DASH)
+        shown = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
+        lines.append((scheme, f"{_courant(case.scene):g}", *shown))
+    titles = (
+        *columns("text", "α, δ"),
+        *columns("decimal", "c dt/h"),
+        *columns("decimal", *map(str, counts), group="|R| [%] by blocks a wavelength"),
+    )
+    caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
+    return Table(titles, tuple(lines), caption)
+
+
+# ---- the site -------------------------------------------------------------------------------------------------------
+
+
+def _site(found: Mapping[str, Group], directory: Path) -> list[Block]:
+    """Return the page of the layered site: surface and base under two schemes and exactly."""
+    groups_of_site = [found[name] for name in ("waves-site", "waves-site-usual") if name in found]
+    traces: dict[str, list[Trace]] = {DISPLACEMENT: [], PRESSURE: []}
+    for group in groups_of_site:
+        case = group.cases[0]
+        name = f"dda, dt = {case.scene.time.step:g} s,\n{SCHEMES.get(case.scene.time.delta, '')}"
+        shown = [("dda", name, COLORS[case.scene.time.delta], 0.6)]
+        shown = [("layers", "exact layers", "#999999", 1.6)] * (not traces[DISPLACEMENT]) + shown
+        for solver, label, color, width in shown:
+            history = case.histories.get(solver)
+            for column, own in traces.items():
+                if history is not None and column in history.columns:
+                    own.append(Trace(label, color, width, history.time, history.columns[column]))
+    if not all(traces.values()):
+        return []
+    rows = [("Surface displacement", "m", traces[DISPLACEMENT]), ("Shear stress on the base", "Pa", traces[PRESSURE])]
+    caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
+    return [
+        PageBreak(),
+        Heading("A site under a record", 2),
+        Paragraph(_said(groups_of_site)),
+        histories.saved(site_figure(rows), directory, "waves-site.svg", caption),
+    ]
+
+
+def _said(site: Sequence[Group]) -> str:
+    """Say how far DDA is from the exact layers, case by case."""
+    parts = []
+    for group in site:
+        case = group.cases[0]
+        errors = [group.number_of_pair(case, "dda", "layers", f"{name}.l2") for name in ("displacement", "pressure")]
+        if all(error is not None for error in errors):
+            surface, base = (percent(float(error or 0.0)) for error in errors)
+            scheme = f"dt = {case.scene.time.step:g} s and {SCHEMES.get(case.scene.time.delta, '')}"
+            parts.append(f"with {scheme} DDA is {surface} off at the surface and {base} off on the base")
+    text = f"{'; '.join(parts)} (relative L2 against the exact layers)."
+    return text[:1].upper() + text[1:] if parts else ""

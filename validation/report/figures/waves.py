@@ -1,0 +1,98 @@
+"""Figures of waves in columns: speed and loss over blocks a wavelength, and what a site shows of a record."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from validation.report.figures.curves import GREY, HAIR, engineering
+from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends
+from validation.runs.history import Array
+
+COLORS = {"(1/2, 1)": "#d55e00", "(1/4, 1/2)": "#0072b2"}
+STROKES = {0.1: (1.0, 1.2), 0.25: (2.5, 1.2), 0.5: (5.0, 1.5), 1.0: ()}
+TICKS = (8, 10, 20, 40, 100)
+
+
+@dataclass(frozen=True)
+class Travel:
+    """Waves of one scheme and one c dt/h: closed form, or what was measured."""
+
+    scheme: str  # "(1/2, 1)" or "(1/4, 1/2)"
+    courant: float  # c dt/h [-]
+    blocks: Array  # a wavelength [-]
+    speed: Array  # error of the phase speed [-]
+    left: Array  # share of the amplitude after ten wavelengths [-]
+
+
+def travel_figure(curves: Sequence[Travel], measured: Sequence[Travel]) -> Figure:
+    """Draw the closed forms as lines and the measured waves as dots: the error of the speed, and what is left."""
+    with house_style():
+        figure, ((speed, left),) = axes_grid([(52.0, 0.0)], 2, Margins(13.0, 34.0, 6.0, 9.5))
+        for axes, part, factor in ((speed, "speed", 100.0), (left, "left", 1.0)):
+            for line in curves:
+                dash = STROKES.get(line.courant, ())
+                style = (0, dash) if dash else "-"
+                axes.plot(line.blocks, factor * getattr(line, part), color=COLORS[line.scheme], lw=0.9, ls=style)
+            for dots in measured:
+                axes.plot(dots.blocks, factor * getattr(dots, part), "o", ms=2.6, color=COLORS[dots.scheme])
+            _blocks_axis(axes)
+        speed.axhline(0.0, color=GREY, lw=HAIR)
+        speed.set_ylim(-3.0, 4.0)
+        speed.set_title("Error of the phase speed [%]")
+        left.set_ylim(-0.02, 1.04)
+        left.set_yticks([0.2, 0.4, 0.6, 0.8, 1.0])  # a zero would meet the other panel's last tick
+        left.set_title("Amplitude left after ten wavelengths")
+        ends = {_name(line): float(line.left[-1]) for line in curves if line.scheme == "(1/2, 1)"}
+        ends["(1/4, 1/2), every dt"] = 1.0
+        colors = dict.fromkeys(ends, COLORS["(1/2, 1)"]) | {"(1/4, 1/2), every dt": COLORS["(1/4, 1/2)"]}
+        label_ends(left, ends, colors=colors)
+    return figure
+
+
+def _name(line: Travel) -> str:
+    return f"{line.scheme}, c dt/h = {line.courant:g}"
+
+
+def _blocks_axis(axes: Axes) -> None:
+    """Set the axis of blocks a wavelength."""
+    axes.set_xscale("log")
+    axes.set_xlim(7, 115)
+    axes.set_xticks(TICKS, [str(tick) for tick in TICKS])
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel("blocks a wavelength")
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A column of a history."""
+
+    name: str
+    color: str
+    width: float  # pt
+    time: Array  # [s]
+    values: Array  # [m] or [Pa]
+
+
+def site_figure(rows: Sequence[tuple[str, str, Sequence[Trace]]]) -> Figure:
+    """Draw traces on common axes, one panel for each (title, unit, traces), on one axis of time."""
+    with house_style():
+        bands = [(42.0, 9.0)] * (len(rows) - 1) + [(42.0, 0.0)]
+        figure, grid = axes_grid(bands, 1, Margins(13.0, 36.0, 6.0, 9.0))
+        for (axes,), (title, unit, traces) in zip(grid, rows, strict=True):
+            factor, unit = engineering(max(float(np.abs(trace.values).max()) for trace in traces), unit)
+            axes.set_title(f"{title} [{unit}]")
+            axes.set_xlim(0.0, float(traces[0].time[-1]))
+            for trace in traces:
+                axes.plot(trace.time, factor * trace.values, color=trace.color, lw=trace.width)
+            for number, trace in enumerate(traces):
+                said = f"{trace.name}\n{factor * float(np.abs(trace.values).max()):.3g} {unit} at most"
+                place = 0.97 - 0.3 * number
+                axes.text(1.02, place, said, transform=axes.transAxes, color=trace.color, va="top", linespacing=1.4)
+        grid[-1][0].set_xlabel("Time [s]")
+    return figure

@@ -1,0 +1,93 @@
+"""What a unilateral contact and the block above it did at each step, alike for every solver."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from validation.runs.history import Array
+
+STORED = ("kinetic", "strain", "springs", "load")  # J; of the loads -F x
+LOST = ("algorithmic", "kinetic damping", "switching")  # J, summed from t = 0 on; negative where energy was gained
+
+
+@dataclass(frozen=True)
+class Rebound:
+    """One contact of one corner: the rates of its gap before it closes and after it opens."""
+
+    closing: float  # rate at which the gap closes, positive [m/s]
+    opening: float | None  # rate at which it opens again [m/s]; None where that is not seen within the run
+
+    @property
+    def restitution(self) -> float | None:
+        """Opening over closing rate [-]; None where it does not open again."""
+        return None if self.opening is None else self.opening / self.closing
+
+
+@dataclass(frozen=True)
+class ContactRecord:
+    """A run's contact over time; element 0 is step 1. What a solver does not give is None or empty.
+
+    Attributes
+    ----------
+    time
+        Times of the steps [s], shape (steps,).
+    force, impulse
+        Sum of the normal forces on the block [N], and its integral from t = 0 on [N s], shape (steps,).
+    penetration, gap
+        Largest penetration and largest gap of any corner or point of the base [m], not negative, shape (steps,).
+    open_share
+        Share of the corners, or of the base, that carries nothing [-], shape (steps,).
+    velocity, start_velocity
+        Velocity of the centre of mass, upwards [m/s], shape (steps,), and at t = 0.
+    rebounds
+        The contacts that begin within the run, in the order of their beginning.
+    energies
+        Name among `STORED` and `LOST` to the energy at each step [J], shape (steps,).
+    start_energy, given
+        Kinetic energy at t = 0 [J]; that energy and what the loads put in statically, as the scale of changes [J].
+    solves, cuts
+        Solves of the open-close iteration and cuts of each step [-], shape (steps,).
+    """
+
+    time: Array
+    force: Array
+    impulse: Array
+    penetration: Array
+    gap: Array
+    open_share: Array
+    start_velocity: float
+    start_energy: float
+    given: float
+    velocity: Array | None = None
+    rebounds: tuple[Rebound, ...] | None = None
+    energies: Mapping[str, Array] = field(default_factory=dict)
+    solves: Array | None = None
+    cuts: Array | None = None
+
+
+def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:
+    """Return the contacts of one corner, seen from step to step, each with the index of its first closed step.
+
+    The rate before is that of the last step without contact, that after is that of the first step which begins and
+    ends without contact: no contact force has entered either. A contact without such a step before it is left out.
+
+    Parameters
+    ----------
+    gap
+        Gap of the corner at each step, negative where it is closed [m].
+    step
+        dt [s].
+    """
+    closed = gap <= 0
+    edges = [*(np.flatnonzero(np.diff(closed)) + 1), len(gap)]
+    found = []
+    for first, last in itertools.pairwise(edges):
+        if closed[first] and first >= 2 and not closed[first - 2] and gap[first - 1] < gap[first - 2]:
+            free = last + 2 < len(gap) and not closed[last : last + 3].any()
+            after = float(gap[last + 2] - gap[last + 1]) / step if free else None
+            found.append((int(first), Rebound(float(gap[first - 2] - gap[first - 1]) / step, after)))
+    return found

@@ -1,0 +1,108 @@
+"""What drives a column at given instants: pulses in closed form, records read linearly between their rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.files import read_table
+from validation.runs.history import Array
+from validation.scenes.column import InputSection
+from validation.scenes.scene import Scene
+
+ORDERS = {"velocity": 1, "acceleration": 2, "pressure": 1}  # column of a record to its derivatives of a displacement
+Parts = tuple[Array, Array, Array]  # integral, value and derivative
+Signal = Callable[[Array], Parts]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A drive at some instants, each of the shape of the instants."""
+
+    displacement: Array  # of the base, or of the incident wave [m]
+    velocity: Array  # [m/s]
+    acceleration: Array  # [m/s^2]
+    pressure: Array  # on the top [Pa]
+
+
+def motion_at(scene: Scene, instants: Array) -> Motion:
+    """Return the drive of a column's scene at some instants [s].
+
+    Raises
+    ------
+    InputError
+        The record cannot be read, or the scene has no column.
+    """
+    signal = _signal(scene.input)
+    integral, value, derivative = signal(np.asarray(instants, float))
+    still = np.zeros_like(value)
+    if scene.input.at == "top":
+        return Motion(still, still, still, value)
+    return Motion(integral, value, derivative, still)
+
+
+def _signal(section: InputSection) -> Signal:
+    if section.record is not None:
+        return read_signal(Path(section.record), section.at)
+    size = section.velocity if section.at == "base" else section.pressure
+    if section.shape == "ricker":
+        return partial(ricker, size or 0.0, section.frequency or 1.0)
+    return partial(half_sine, size or 0.0, section.duration or 1.0)
+
+
+def ricker(size: float, frequency: float, time: Array) -> Parts:
+    """Return a Ricker pulse, size (1 - 2 b^2) e^(-b^2) with b = pi f (t - 2/f), its integral and its derivative."""
+    late = time - 2 / frequency
+    b = np.pi * frequency * late
+    bell = size * np.exp(-b * b)
+    return late * bell, (1 - 2 * b * b) * bell, (4 * b**3 - 6 * b) * np.pi * frequency * bell
+
+
+def half_sine(size: float, duration: float, time: Array) -> Parts:
+    """Return half a period of a sine, size sin(pi t / T) up to t = T, its integral and its derivative."""
+    inside = np.clip(time, 0.0, duration)
+    turn = np.pi / duration
+    running = (time >= 0) & (time < duration)
+    rise = np.where(running, size * turn * np.cos(turn * inside), 0.0)
+    return size / turn * (1 - np.cos(turn * inside)), np.where(running, size * np.sin(turn * inside), 0.0), rise
+
+
+def read_signal(path: Path, at: str) -> Signal:
+    """Read a record; before its first and after its last row its column is zero.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, its header is another, or its instants do not increase.
+    """
+    names, table = read_table(path)
+    allowed = ("velocity", "acceleration") if at == "base" else ("pressure",)
+    if len(names) != 2 or names[1] not in allowed:
+        headers = " or ".join(f"time,{name}" for name in allowed)
+        raise InputError(f"{path}: header must be {headers}, got {','.join(names)!r}")
+    if len(table) < 2 or not np.all(np.isfinite(table)):
+        raise InputError(f"{path}: must hold at least two rows of finite numbers, got {len(table)} rows")
+    if np.any(np.diff(table[:, 0]) <= 0):
+        raise InputError(f"{path}: time must increase from row to row, got another order")
+    return partial(recorded, table[:, 0], table[:, 1], ORDERS[names[1]])
+
+
+def recorded(instants: Array, values: Array, order: int, time: Array) -> Parts:
+    """Return displacement, velocity and acceleration of a record of velocities (order 1) or accelerations (2)."""
+    from scipy.interpolate import PPoly
+
+    slopes = np.diff(values) / np.diff(instants)
+    curve = PPoly(np.array([slopes, values[:-1]]), instants)
+    inside = np.clip(time, instants[0], instants[-1])
+    running = (time >= instants[0]) & (time <= instants[-1])
+    if order == 1:
+        value, slope = (np.where(running, curve(inside, nu), 0.0) for nu in (0, 1))
+        return curve.antiderivative()(inside), value, slope
+    velocity = curve.antiderivative()
+    carried = velocity(inside) * (time - inside)  # after the record: at the speed that it ends with
+    return velocity.antiderivative()(inside) + carried, velocity(inside), np.where(running, curve(inside), 0.0)

@@ -1,0 +1,92 @@
+"""The exact motion of a layered column, as a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.runs.run import Run
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.columns.names import OF_COLUMN, amplitude, column_of
+from validation.solvers.contract import LineStyle, Prepared, Role, Solver
+from validation.solvers.translation import naming, no_fields, to_run
+
+if TYPE_CHECKING:
+    import fem_reference
+
+
+STILL = 1e-9  # Hz, for a frequency of zero, at which transfer matrices divide by zero
+
+
+class ExactColumn(Prepared):
+    """A column exact in space and time."""
+
+    def __init__(self, scene: Scene) -> None:
+        from validation.solvers.columns.elements import ground_of
+
+        self.scene, self.ground, self.scheme = scene, ground_of(scene), _scheme_of(scene)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        from fem_reference.exact.layers import solve_layers
+        from validation.solvers.columns.elements import excitation
+
+        no_fields("layers", self.scene, fields)
+        steps, columns, heights = self.scene.time.steps, self.scene.run.columns, column_of(self.scene).heights
+        with naming(self.scene):
+            found = solve_layers(self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights)
+        return to_run(self.scene, found)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Return the frequency response, exact in space and time; at rest it is that of next to nothing."""
+        from fem_reference.exact.layers import amplitudes
+        from fem_reference.scheme.harmonic import squares
+
+        f = np.maximum(np.atleast_1d(np.asarray(frequencies, float)), STILL)
+        with naming(self.scene):
+            W2 = squares(f, self.scheme, exact=True)
+        w, names = 2 * np.pi * f, (DISPLACEMENT, PRESSURE)
+        moved, pressed = amplitudes(self.ground, w, names, squared=W2)
+        if self.scene.input.at == "top":
+            return {name: amplitude(self.scene) * pressed[name] for name in names}
+        return {name: 1j * w * moved[name] for name in names}
+
+
+def _scheme_of(scene: Scene) -> fem_reference.Scheme:
+    import fem_reference
+
+    t = scene.time
+    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+
+
+class ExactLayers(Solver):
+    """A layered column by transfer matrices, exact in space and time."""
+
+    name = "layers"
+    handles = frozenset({features.COLUMN})
+    sections = ("column", "input", "time", "run")
+    unread = ("column.glue", "time.alpha", "time.delta", "time.start")
+    sources: tuple[str, ...] = ("fem_reference",)
+    role, rank = Role.TRUTH, 6.5
+    line = LineStyle("#999999", (), 0.7, 1)
+
+    def columns(self) -> tuple[str, ...] | None:
+        """Return the columns that this solver has."""
+        return OF_COLUMN
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or why there is no exact motion for this scene."""
+        from fem_reference.exact.layers import applicable
+
+        if scene.column is None:
+            return "it takes columns only"
+        return applicable(_scheme_of(scene))
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Build the layers."""
+        return ExactColumn(scene)

@@ -1,0 +1,57 @@
+"""What the adapters of unilateral contact share: the scales of a scene, and what its contact did at each step."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from validation.runs.contact import Rebound, rebounds_of_steps
+from validation.runs.history import Array
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+
+
+def mass(scene: Scene) -> float:
+    """Mass of the block of unit thickness [kg]."""
+    return scene.block.density * area(scene.block.outline)
+
+
+def pushing(scene: Scene) -> float:
+    """Resultant of pressure and weight, downwards [N]."""
+    (x1, y1), (x2, y2) = scene.block.edge(scene.block.top)
+    length = float(np.hypot(x2 - x1, y2 - y1)) - 2 * abs(scene.load.eccentricity)
+    return scene.load.pressure * length + mass(scene) * scene.load.gravity
+
+
+def start_energy(scene: Scene) -> float:
+    """Kinetic energy at t = 0 [J]."""
+    return mass(scene) * scene.block.velocity**2 / 2
+
+
+def given_energy(scene: Scene) -> float:
+    """Kinetic energy at t = 0, and what the loads put in until they stand still: springs, strain and gap [J].
+
+    m V^2 / 2 + F g0 + F^2 / (4 p) + F^2 h / (2 E a), with F their resultant and h the height of the block.
+    """
+    F, b = pushing(scene), scene.block
+    height = float(np.ptp([y for _, y in b.outline]))
+    soft = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
+    return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * soft
+
+
+def summed(force: Array, step: float, late: float) -> Array:
+    """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s]."""
+    before = np.concatenate(([0.0], force[:-1]))
+    return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
+
+
+def balanced(scene: Scene, velocity: Array) -> Array:
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
+    before = np.concatenate(([scene.block.velocity], velocity[:-1]))
+    gained = mass(scene) * np.cumsum(velocity - scene.time.discount * before)
+    return np.asarray(gained + pushing(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64)
+
+
+def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
+    """Return the contacts of all corners between steps, in the order of their beginning."""
+    found = [one for gap in gaps for one in rebounds_of_steps(gap, step)]
+    return tuple(rebound for _, rebound in sorted(found, key=lambda one: one[0]))

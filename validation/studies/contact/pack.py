@@ -1,0 +1,140 @@
+"""The part of the reference pack on contact that opens: exact motions with their uncertainties, for any code."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from validation.engine.case import Case
+from validation.engine.measure import execute
+from validation.errors import InputError
+from validation.runs.files import write_csv
+from validation.runs.history import History
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+from validation.solvers.events import impact_restitution
+from validation.studies.bands import cases
+from validation.studies.contact.rebound import STIFF
+from validation.studies.opening import front
+from validation.studies.pack import as_toml, make_directory, slug, write_text
+
+SCENES = ("unlocked", "unlocked-other", "impact", "drop", "bouncing-bar")
+COLUMNS = ("displacement", "contact_pressure", "gap_m", "normal_force_m")
+UNITS = {"displacement": "m", "contact_pressure": "Pa"}
+SWITCHES = ("first_opening", "first_closing", "second_opening", "second_closing")
+ROUNDED = 1e-12  # of a value: the motions are found in 50 digits, the instants and data are those of doubles
+OMEGAS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 3.0, 10.0, 100.0, math.inf)
+PHASES = tuple(round(0.05 * n, 2) for n in range(21))
+FEW = 10  # steps of which each is a number of its own
+NUMBERS, MAP = "numbers.csv", "restitution.csv"
+
+README = """\
+# Contact that opens: exact motions
+
+A part of the reference pack of dda-validation; nothing needs to be installed.
+
+| what | where |
+|---|---|
+| scenes, SI units | `scenes/NAME.toml` |
+| exact motions, one row a step | `histories/NAME.block-events.csv`, `NAME.bar-events.csv` |
+| single numbers with their uncertainties | `numbers.csv`: `scene,motion,quantity,value,unit,uncertainty` |
+| restitution of a landing under a scheme | `restitution.csv`: `alpha,delta,omega,theta,restitution` |
+
+One block stands on, or falls onto, two springs `contact.stiffness` = p that carry no tension: with w the gap of a
+corner, the force on the block is p max(0, -w). Loads act from t = 0 on; `block.velocity` is the velocity at t = 0,
+upwards positive, `contact.gap` the gap then. `block-events` is the block of one strain, which a DDA code tends to as dt
+goes to 0, through every opening and closing; `bar-events` is the continuum, which elements tend to. The scenes' time
+step says only where the motions are sampled.
+
+Quantities: `first_opening`, `first_closing`, `second_...`: instants of the switches after t = 0 [s]; `restitution`:
+greatest speed of the centre of mass upwards in flight after the landing over that before it, where no load acts; the
+others are columns at an instant. A block under a pressure that is switched on leaves its springs at t = 0 at once.
+
+`restitution.csv`: a rigid mass m lands on a spring k under Newmark's scheme (alpha, delta) with gg = 1; omega =
+sqrt(k/m) dt, `inf` for a rigid stop; theta is how far the first predictor in contact lies below the spring's end, over
+the way of that step. Your code should give these numbers to rounding.
+
+Switches of stiff springs amplify every difference: judge a history up to its first switches, or by its balances.
+"""
+
+
+def write_contact_pack(directory: Path) -> int:
+    """Write the part into `contact` of a pack's directory, and return how many numbers it holds.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+    place = directory / "contact"
+    for part in ("scenes", "histories"):
+        make_directory(place / part)
+    rows: list[dict[str, Any]] = []
+    for scene in cases(*SCENES):
+        write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+        for motion in scene.run.solvers:
+            rows += numbers(scene, motion, place / "histories")
+    write_text(place / NUMBERS, _as_csv(rows))
+    write_text(place / MAP, _as_csv(list(restitutions())))
+    write_text(place / "README.md", README)
+    return len(rows)
+
+
+def numbers(scene: Scene, motion: str, histories: Path) -> Iterator[dict[str, Any]]:
+    """Run an exact motion, write its history and yield its single numbers.
+
+    Raises
+    ------
+    InputError
+        The motion did not complete.
+    """
+    asked = scene.with_values({"run.columns": list(COLUMNS)})
+    row, history = execute(Case(asked, motion), "", "pack")
+    if row.outcome is not Outcome.COMPLETED or history is None:
+        raise InputError(f"{scene.name} {motion}: {row.outcome.sentence} {'; '.join(row.notes)}")
+    write_csv(history, histories / f"{slug(scene.name)}.{motion}.csv")
+    known = {name: row.metrics.get(f"switches.{name}") for name in SWITCHES}
+    if scene.load.pressure == 0 == scene.load.gravity:
+        known["restitution"] = row.metrics.get("contact.restitution")
+    for name, value in known.items():
+        if isinstance(value, float):
+            unit = "1" if name == "restitution" else "s"
+            yield _number(scene, motion, name, value, unit, ROUNDED * value)
+    if scene.time.steps <= FEW:
+        yield from _instants(scene, motion, history)
+
+
+def _instants(scene: Scene, motion: str, history: History) -> Iterator[dict[str, Any]]:
+    """Yield the columns at every step; a force at the front of a wave changes within the ulps of its instant."""
+    jump = front(scene)
+    for name in ("displacement", "contact_pressure"):
+        for t, value in zip(history.time, history.columns[name], strict=True):
+            least = jump if name == "contact_pressure" else 0.0
+            said = f"{name} at {float(t)!r} s"
+            yield _number(scene, motion, said, float(value), UNITS[name], ROUNDED * abs(float(value)) + least)
+
+
+def _number(scene: Scene, motion: str, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
+    named = {"scene": slug(scene.name), "motion": motion, "quantity": quantity}
+    return named | {"value": value, "unit": unit, "uncertainty": float(f"{uncertainty:.1e}")}
+
+
+def restitutions() -> Iterator[dict[str, float]]:
+    """Yield the restitution map by scheme, Omega and phase."""
+    for alpha, delta in STIFF:
+        for omega in OMEGAS:
+            for theta in PHASES:
+                e = impact_restitution(alpha, delta, 1.0, omega, theta)
+                yield {"alpha": alpha, "delta": delta, "omega": omega, "theta": theta, "restitution": e}
+
+
+def _as_csv(rows: list[Any]) -> str:
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)  # a float is written with all its digits
+    return text.getvalue()

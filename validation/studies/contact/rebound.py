@@ -1,0 +1,193 @@
+"""The study `rebound`: what time step, springs and scheme make of a contact that opens.
+
+A rigid block that lands with the speed V returns e V. For Newmark's scheme e is a function of Omega = w_c dt and of the
+phase theta in which the block lands (its overshoot in the first step in contact over V dt), a continuous one of
+straight lines in theta. DDA is held to that map, impact by impact; the map is held to its closed forms; and the
+paper's block, unlocked, shows over time step and springs what follows: solves, switches and energy.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates.gate import Gate
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.solvers import opened
+from validation.solvers.events import impact_restitution, impact_statistics
+from validation.studies.bands import about, cases
+from validation.studies.declaration import Study
+
+KINDS = ("constant", "average", "implicit", "conserving")
+IMPACTS = tuple(f"rebound-{kind}" for kind in KINDS)
+MAPS = tuple(f"contact-map-{kind}" for kind in KINDS)
+MAP = "restitution map"
+EXACT_SWITCHES = {1.0: 21, 10.0: 108, 100.0: 156}  # p/E -> switches of each corner in 0.2 s, by an independent program
+# Scheme -> mean, least, greatest and mean square of e on a rigid contact, and half a unit of the last digit.
+STIFF: Mapping[tuple[float, float], tuple[tuple[float, ...], float]] = {
+    (0.5, 1.0): ((1 / 2, 0.0, 1.0, 1 / 3), 0.0),
+    (0.25, 0.5): ((5 / 3, 1 / 3, 3.0, 91 / 27), 0.0),
+    (1 / 3, 0.5): ((5 / 4, 1 / 2, 2.0, 7 / 4), 0.0),
+    (0.5625, 1.0): ((19 / 45, 1 / 15, 7 / 9, 0.2204), 5e-5),
+    (0.3025, 0.6): ((1.280, 0.254, 2.306, 1.989), 5e-4),
+}
+PARTS = ("mean", "low", "high", "mean_square")
+TWO_STEPS = dict(zip(IMPACTS, (1 / 3, 1.0, 1 / 3, 1.0), strict=True))  # e at Omega = 2, where contact lasts two steps
+SOFT = 1e-7  # the block's own strain: eight times p/E, the steepest slope of the map in theta, and rounding beside it
+
+
+def omega(scene: Scene) -> float:
+    """Return sqrt(2 p / m) dt of a rigid block [-]."""
+    return math.sqrt(2 * scene.contact.stiffness / opened.mass(scene)) * scene.time.step
+
+
+def phase(scene: Scene) -> float:
+    """Return the overshoot of the predictor in the first step in contact over that step's way [-]."""
+    ways = scene.contact.gap / (-scene.block.velocity * scene.time.step)
+    return 1 - (ways - math.floor(ways))
+
+
+def expected(scene: Scene) -> float:
+    """Return the restitution at the scene's Omega and phase.
+
+    A rigid mass under a fully implicit contact force moves as under constant acceleration, w' = w + V dt + A' dt^2 / 2
+    and V' = V + A' dt; energy-conserving contact returns all of its speed.
+    """
+    t = scene.time
+    if scene.contact.rule == "energy-conserving":
+        return 1.0
+    if scene.contact.rule == "implicit":
+        return impact_restitution(0.5, 1.0, t.discount, omega(scene), phase(scene))
+    return impact_restitution(t.alpha, t.delta, t.discount, omega(scene), phase(scene))
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    rows = [Derived(name, MAP, tuple((c.name, "dda") for c in cases(name)), compared(name)) for name in IMPACTS]
+    statistics = [Derived(MAP, label(scheme), (), functools.partial(stiff, scheme)) for scheme in STIFF]
+    return (*rows, *statistics)
+
+
+def label(scheme: tuple[float, float]) -> str:
+    """Return a scheme's name."""
+    return f"({scheme[0]:.4g}, {scheme[1]:.4g})"
+
+
+def compared(name: str) -> Any:
+    """Return the function that compares the impacts of a scene with the map."""
+    return functools.partial(_compared, tuple(cases(name)))
+
+
+def _compared(scenes: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    off = [abs(_restitution(finished, scene) - expected(scene)) for scene in scenes]
+    return {"largest difference": max(off) if all(map(math.isfinite, off)) else "undefined"}
+
+
+def _restitution(finished: Finished, scene: Scene) -> float:
+    value = finished.rows[scene.name, "dda"].metrics.get("contact.restitution")
+    return value if isinstance(value, float) else math.nan
+
+
+def stiff(scheme: tuple[float, float], finished: Finished) -> Mapping[str, Value]:
+    """Return the statistics of the map on a rigid contact."""
+    return dict(zip(PARTS, impact_statistics(*scheme, 1.0, math.inf), strict=True))
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*impact_gates(), *map_gates(), *statistics_gates())
+
+
+def impact_gates() -> Iterator[Gate]:
+    """Yield the gates on the impacts of the rigid block."""
+    said = "the piecewise linear map of the scheme, computed without DDA; band: the block's strain, 8 p/E, and rounding"
+    for name in IMPACTS:
+        yield Gate(name, (MAP,), "largest difference", 0.0, SOFT, said, "other code")
+        for case in cases(name):
+            if math.isclose(omega(case), 2.0):
+                e = TWO_STEPS[name]
+                why = f"contact of two steps: e = {e:.4g} whatever the phase; band: the block's strain"
+                yield Gate(case.name, ("dda",), "contact.restitution", *about(e, SOFT), why)
+
+
+def statistics_gates() -> Iterator[Gate]:
+    """Yield the gates on the map's statistics on a rigid contact."""
+    for scheme, (values, half) in STIFF.items():
+        for part, value in zip(PARTS, values, strict=True):
+            why = "an independent computation: half a unit of its last digit" if half else "closed form"
+            yield Gate(
+                MAP, (label(scheme),), part, *about(value, half + 1e-12), why, "other code" if half else "exact", half
+            )
+
+
+def map_gates() -> Iterator[Gate]:
+    """Yield the gates on the paper's block over time step and springs."""
+    solves = "one contact: the state that the free gap asks for is the right one, so that two solves end the iteration"
+    falls = "delta = 1: the springs' energy is convex, so that no opening or closing adds energy; band: rounding"
+    falling = {
+        "newmark": falls,
+        "implicit": "a contact force of the step's end works against the motion; band: rounding",
+        "energy-conserving": "the contact force does the work by which the springs' energy changes; band: rounding",
+    }
+    closes = "the balance of stored and lost energy is an identity of the step; band: rounding over the steps"
+    for name in MAPS:
+        for case in cases(name):
+            yield Gate(case.name, ("dda",), "contact.most_solves", 1.0, 2.0, solves)
+            yield Gate(case.name, ("dda",), "energy.imbalance", 0.0, 1e-10, closes)
+            if case.time.delta == 1 or case.contact.rule != "newmark":
+                yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falling[case.contact.rule])
+    for case in finest():
+        count = 2.0 * EXACT_SWITCHES[ratio(case)]
+        why = "an independent program: a whole number, of each of the two corners"
+        yield Gate(case.name, ("block-events",), "switches.count", count, count, why, "other code")
+
+
+def ratio(scene: Scene) -> float:
+    """Return p/E."""
+    return scene.contact.stiffness / scene.block.young
+
+
+def finest() -> list[Scene]:
+    """Return the case of the smallest step for each p: there the exact motion is run."""
+    found: dict[float, Scene] = {}
+    for case in cases(MAPS[0]):
+        if ratio(case) not in found or case.time.step < found[ratio(case)].time.step:
+            found[ratio(case)] = case
+    return list(found.values())
+
+
+@functools.cache
+def data() -> Mapping[str, Any]:
+    """Return the restitution map for its figure: mean, least and greatest e over Omega, by kind."""
+    grid = np.geomspace(0.05, 1500.0, 61)
+    curves = {}
+    for kind, scheme in zip(KINDS, ((0.5, 1.0), (0.25, 0.5), (0.5, 1.0), None), strict=True):
+        rows = np.ones((len(PARTS), len(grid)))
+        if scheme is not None:
+            rows = np.array([impact_statistics(*scheme, 1.0, float(x)) for x in grid]).T
+        curves[kind] = {part: _short(row) for part, row in zip(PARTS, rows, strict=True)}
+    return {"omega": _short(grid), "schemes": curves}
+
+
+def _short(values: Any) -> list[float]:
+    return [float(f"{value:.5g}") for value in values]
+
+
+STUDY = Study(
+    name="rebound",
+    title="What time step and springs make of a contact that opens",
+    purpose="A block that lands leaves its springs with another speed than it came with, by the scheme, by w_c dt and "
+    "by where in the step it has landed. How far is that from the motion, in energy, switches and solves?",
+    scenes=(*IMPACTS, *MAPS),
+    extra=tuple((case.name, "block-events") for case in finest()),
+    gates=gates,
+    derived=derived,
+    data=data,
+    pairs=(),
+)

@@ -1,0 +1,138 @@
+"""The block after the last gate of a user's solver: what passed, what failed and what it tells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from validation.gates.gate import Status
+from validation.runs.run import Outcome
+from validation.studies.own_solver.evidence import diagnosis
+from validation.studies.own_solver.gates import GROUPS
+from validation.studies.own_solver.session import Told
+
+SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
+FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
+WIDTH = 11  # of the first column
+
+
+def block(told: Sequence[Told], every: bool = False) -> list[str]:
+    """Return the lines of the block.
+
+    Parameters
+    ----------
+    told
+        What each gate said.
+    every
+        List all failing gates of a group, not the first few.
+    """
+    judged = [t for t in told if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
+    failed = [t for t in judged if t.status == Status.FAIL]
+    lines = [*_table(told), *_headline(judged, failed), *_failures(failed, every), *_endings(told), *_not_run(told)]
+    return [*lines, *diagnosis(failed, first(judged, failed))]
+
+
+def _table(told: Sequence[Told]) -> Iterator[str]:
+    """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
+    yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
+    for group, says in GROUPS.items():
+        own = [t for t in told if t.group == group]
+        sound = [t.status for t in own if t.outcome == Outcome.COMPLETED]
+        absent = sum(t.status == Status.NOT_RUN for t in own)
+        passed, failed = sound.count(Status.PASS), sound.count(Status.FAIL)
+        if own:
+            counts = f"{passed:>8}{failed:>8}{len(own) - passed - failed - absent:>11}{absent:>9}"
+            yield f"{group:<{WIDTH}}{counts}   {says}"
+
+
+# ---- what it tells --------------------------------------------------------------------------------------------------
+
+
+def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
+    """Return the groups that a fault lies in: the first that fails, and the pressure where it fails by itself.
+
+    By itself means that the displacement of the same scene is right to rounding.
+    """
+    groups = {t.group for t in failed}
+    found = [group for group in FOLLOWS if group in groups][:1]
+    exact = {t.scene for t in judged if t.metric == "displacement.max" and t.group == "digits"}
+    exact -= {t.scene for t in failed if t.group != "pressure"}
+    alone = any(t.metric == "pressure.max" and t.scene in exact for t in failed)
+    return [*found, "pressure"] if alone or (groups and not found) else found
+
+
+def _headline(judged: Sequence[Told], failed: Sequence[Told]) -> Iterator[str]:
+    """Yield what is right, and where the fault is to be looked for."""
+    right = [g for g in GROUPS if any(t.group == g for t in judged) and not any(t.group == g for t in failed)]
+    if judged:
+        yield f"\nright:  {', '.join(right) or 'nothing yet'}"
+    found = first(judged, failed)
+    for group in found:
+        yield f"wrong:  {group} - {GROUPS[group]}"
+    rest = [group for group in GROUPS if group not in (*right, *found) and any(t.group == group for t in failed)]
+    if rest:
+        yield f"        {', '.join(rest)}: may follow from it, look again when it is right"
+
+
+def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
+    """Yield the failing gates with their values, group by group."""
+    for group in GROUPS:
+        own = [t for t in failed if t.group == group]
+        if own:
+            yield f"\nfailed: {group}"
+        for t in own if every else own[:SHOWN]:
+            yield f"  {t.scene}: {outside(t)}"
+        if len(own) > SHOWN and not every:
+            yield f"  and {len(own) - SHOWN} more (-v lists them)"
+
+
+def outside(told: Told) -> str:
+    """Return value and band with so many digits that one sees the band's width and the value outside."""
+    metric, low, high = told.metric, told.low, told.high
+    if not isinstance(told.value, float | int):
+        return f"{metric} is {told.value}; the band is [{low:.6g}, {high:.6g}]"
+    for digits in range(4, 17):
+        value, *edges = (f"{number:.{digits}g}" for number in (told.value, low, high))
+        if value not in edges and (edges[0] != edges[1] or low == high):
+            break
+    return f"{metric} = {value} is outside [{', '.join(edges)}]"
+
+
+# ---- what was not judged --------------------------------------------------------------------------------------------
+
+
+def _endings(told: Sequence[Told]) -> Iterator[str]:
+    """Yield how runs ended that gave no history to judge, each ending once with its scenes."""
+    ended = [t for t in told if t.status == Status.FAIL and t.outcome not in ("", Outcome.COMPLETED)]
+    for kind in dict.fromkeys(map(_ending, ended)):
+        own = [t for t in ended if _ending(t) == kind]
+        said, outcome = own[0].why, own[0].outcome
+        yield f"\n{said if said.startswith('wrong ') else f'{outcome}: {said}'}"
+        yield f"  {_gates(own)}: {_few([t.scene for t in own])}"
+
+
+def _ending(told: Told) -> tuple[str, str, str]:
+    """Return what tells one ending from another: the place in the solver's code, but no number of a scene."""
+    said, _, place = told.why.rpartition(" (") if told.outcome == Outcome.RAISED else (told.why, "", "")
+    return told.outcome, re.sub(r"\d+", "", said), place
+
+
+def _not_run(told: Sequence[Told]) -> Iterator[str]:
+    """Yield why gates were not run, each reason once."""
+    absent = [t for t in told if t.status == Status.NOT_RUN]
+    if absent:
+        yield "\nNOT RUN"
+    for why in dict.fromkeys(t.why for t in absent):
+        own = [t for t in absent if t.why == why]
+        yield f"  {_gates(own)}: {why}"
+
+
+def _gates(own: Sequence[Told]) -> str:
+    return f"{len(own)} gate{'s' * (len(own) > 1)}"
+
+
+def _few(names: Sequence[str]) -> str:
+    """Return the first names of a list, and how many there are besides."""
+    every = list(dict.fromkeys(names))
+    more = f" and {len(every) - SHOWN} more scenes" if len(every) > SHOWN else ""
+    return ", ".join(every[:SHOWN]) + more

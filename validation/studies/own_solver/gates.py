@@ -1,0 +1,157 @@
+"""The gates that a user's solver goes through, what each of them tells, and what a history shows in place of a report.
+
+A solver that is one function reports no modes and no static solution. Its history shows them all the same: where a
+damped motion ends, and with which root of the step it gets there (`history`).
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+
+from validation.engine.case import Case
+from validation.engine.finished import Derived
+from validation.engine.study import Study
+from validation.gates import closed_forms
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import about, near
+from validation.studies.catalogue import get_study, judged_studies
+from validation.studies.core import rounding
+from validation.studies.own_solver.history import FREQUENCY, PENCIL
+
+JUDGED = "dda"  # whose place a user's solver takes
+GROUPS = {  # in the order in which a person looks: a fault in one shows in those after it
+    "statics": "displacement at rest: load, springs, Young's modulus, size",
+    "frequency": "natural frequency, whatever damps it: mass, springs, alpha",
+    "damping": "damping ratio: delta, gg",
+    "start": "first step: initial acceleration, first row",
+    "digits": "displacement, step by step",
+    "pressure": "contact pressure: its formula, its time",
+}
+REPORTABLE = frozenset({HISTORY, STATIC, MODES, REFERENCE})  # what a user's solver, or a reference, can report
+FIRST = 1e-3  # relative: what a file of few digits may lose in the first row
+SHOWN = ("displacement.static", "mode1.frequency", "mode1.damping", "mode1.measured_damping")  # by a history
+
+
+def _start() -> Iterator[Gate]:
+    """Yield the gates on the first step and on what follows from it, from zero and from consistent acceleration."""
+    first = "the first step from rest, to three digits: a wrong initial acceleration changes it by half or by all of it"
+    history = "matrix pencil on the displacement, which holds the ratio and, with alpha and gg, the natural frequency"
+    same = "same equations, rounding apart (see the core study)"
+    for scene in starts():
+        high, pair, frequency = rounding(scene), (JUDGED, "dda-textbook"), closed_forms.dda_frequency(scene)
+        ratio = closed_forms.damping_ratio(scene, frequency)
+        yield Gate(scene.name, pair, "displacement.max", 0, FIRST, first, until=scene.time.step)
+        if scene.time.discount == 1:  # a slip in gg changes the root, and is one of damping
+            yield Gate(scene.name, (JUDGED,), "mode1.frequency", *near(frequency, FREQUENCY), history)
+        yield Gate(scene.name, (JUDGED,), "mode1.measured_damping", *about(ratio, PENCIL), history)
+        for metric in ("displacement.max", "pressure.max"):
+            yield Gate(scene.name, pair, metric, 0, high, same)
+
+
+@functools.cache
+def starts() -> tuple[Scene, ...]:
+    """Return the scenes in which the initial acceleration counts: average acceleration, with and without discount."""
+    plain = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    made = [plain.with_values({"time.start": start}, label=True) for start in ("zero", "consistent")]
+    return (*made, plain.with_values({"time.start": "consistent", "time.gg": 0.95}, label=True))
+
+
+START = Study(
+    "own-solver",
+    "Your own solver",
+    "Initial accelerations, of which the paper's scenes have one only.",
+    starts(),
+    (JUDGED, "dda-textbook"),
+    gates=lambda: tuple(_start()),
+)
+
+
+# ---- which gates ----------------------------------------------------------------------------------------------------
+
+
+@functools.cache
+def study_of(name: str) -> Study:
+    """Return a study whose gates the tests judge, by name; without the repeats of timings, of which no gate speaks."""
+    return START if name == START.name else replace(get_study(name), timed=False)
+
+
+@functools.cache
+def gates() -> Mapping[str, tuple[str, Gate]]:
+    """Return every gate of the suite that the tests judge: id to study and gate."""
+    return {gate.id: (study, gate) for study in judged_studies() for gate in get_study(study).gates()}
+
+
+@functools.cache
+def applying() -> Mapping[str, tuple[str, Gate]]:
+    """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone."""
+    own = {gate.id: (START.name, gate) for gate in START.gates()}
+    return {name: found for name, found in gates().items() if _applies(*found)} | own
+
+
+@functools.cache
+def cases(study: str) -> Mapping[tuple[str, str], Case]:
+    """Return the cases of a study by scene and solver."""
+    return {(case.scene.name, case.solver): case for case in study_of(study).cases()}
+
+
+@functools.cache
+def recipes(study: str) -> Mapping[tuple[str, str], Derived]:
+    """Return the derived rows of a study."""
+    return study_of(study).recipes()
+
+
+def _applies(study: str, gate: Gate) -> bool:
+    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history.
+
+    What a user's solver has no way to report, such as the solves of a step, is not asked of it.
+    """
+    if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
+        return False
+    case = cases(study)[gate.cases[0]]
+    if case.scene.column is not None:
+        return False
+    return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
+
+
+def group(gate: Gate, scene: Scene) -> str:
+    """Return which of `GROUPS` a gate belongs to."""
+    if gate.metric.startswith("pressure."):
+        return "pressure"
+    if gate.metric in ("displacement.static", "displacement.final"):
+        return "statics"
+    if gate.metric.startswith("mode1.") and "frequency" in gate.metric:
+        return "frequency"
+    if gate.metric.startswith(("mode1.", "contact.", "energy.")):
+        return "damping"
+    return "start" if gate.until == scene.time.step else "digits"
+
+
+# ---- what a solver does not report ----------------------------------------------------------------------------------
+
+
+def lacking(gate: Gate, scene: Scene, parts: Collection[str]) -> str | None:
+    """Return the part of the contract without which a gate measures nothing, None where a solver has what it takes.
+
+    Parameters
+    ----------
+    gate, scene
+        A gate and the scene of its judged side.
+    parts
+        What the solver reports beside its history, among "modes" and "static".
+    """
+    if shown_by_history(gate, scene):
+        return None
+    if gate.metric.endswith(".static"):
+        return None if "static" in parts else "static"
+    return "modes" if MODES in CATALOGUE[gate.metric].needs and "modes" not in parts else None
+
+
+def shown_by_history(gate: Gate, scene: Scene) -> bool:
+    """Whether the history shows what a gate of one solver asks for."""
+    if len(gate.pair) != 1 or gate.metric not in SHOWN:
+        return False
+    return scene.block.poisson == 0 and scene.block.vertices is None

@@ -1,0 +1,141 @@
+"""The claims C14 to C18 of the register: what the paper says of open-close, on the block whose contact opens."""
+
+from __future__ import annotations
+
+from validation.advice import contact
+from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named, whole
+
+CASES = named("open-close")
+DAMPED, UNDAMPED = (
+    [name for name, s in CASES.items() if s.time.delta == delta and s.time.gg == 1] for delta in (1, 0.5)
+)
+DISCOUNTED = [name for name, s in CASES.items() if s.time.discount < 1]
+COARSE, FINE = 0, -1  # of the cases of a scheme, by time step
+
+
+def most_solves(e: Evidence, cases: list[str]) -> float:
+    """Return the largest number of solves in a step of any case."""
+    return whole(max(e.number(case, "contact.most_solves") for case in cases))
+
+
+def guaranteed(e: Evidence) -> dict[str, float]:
+    """Return the most solves with and without algorithmic damping, and the cuts without."""
+    with_damping, without = most_solves(e, DAMPED), most_solves(e, UNDAMPED)
+    return {
+        "most solves a step with damping, (1/2, 1)": with_damping,
+        "most solves a step without, (1/4, 1/2)": without,
+        "solves that damping spares": without - with_damping,
+        "cut steps without": whole(sum(e.number(case, "contact.cuts") for case in UNDAMPED)),
+    }
+
+
+def vibrating(e: Evidence) -> dict[str, float]:
+    """Return switches at the smallest step, and how the solves change towards it."""
+    solves = [e.number(case, "contact.mean_solves") for case in UNDAMPED]
+    return {
+        "openings and closings at dt = 1e-4 s": whole(e.number(UNDAMPED[FINE], "switches.count")),
+        "mean solves a step at dt = 1e-3 s": solves[COARSE],
+        "at dt = 1e-4 s": solves[FINE],
+        "rise of the mean solves": solves[FINE] - solves[COARSE],
+    }
+
+
+def essence(e: Evidence) -> dict[str, float]:
+    """Return how the most solves and the switches under (1/2, 1) change with the step."""
+    most = [most_solves(e, [case]) for case in DAMPED]
+    switches = [whole(e.number(case, "switches.count")) for case in DAMPED]
+    return {
+        "change of the most solves over dt": max(most) - min(most),
+        "switches at dt = 1e-3 s": switches[COARSE],
+        "at dt = 1e-4 s": switches[FINE],
+        "rise of the switches": switches[FINE] - switches[COARSE],
+    }
+
+
+def right_scheme(e: Evidence) -> dict[str, float]:
+    """Return the energy that constant acceleration gains, and the range of its restitution at dt = 1e-3 s."""
+    found = contact.restitution(CASES[DAMPED[COARSE]], contact.omega(CASES[DAMPED[COARSE]]))
+    low, high = (float("nan"), float("nan")) if found is None else (found.low, found.high)
+    return {
+        "energy gained, over that given": max(e.number(case, "energy.rise") for case in DAMPED),
+        "w_c dt at dt = 1e-3 s": contact.omega(CASES[DAMPED[COARSE]]),
+        "least restitution there": low,
+        "greatest there": high,
+        "range of the restitution": high - low,
+    }
+
+
+def discounted(e: Evidence) -> dict[str, float]:
+    """Return the energy that average acceleration gains at gg = 0.95."""
+    gains = [e.number(case, "energy.rise") for case in DISCOUNTED]
+    return {
+        "energy gained at gg = 0.95 and dt = 1e-3 s, over that given": gains[COARSE],
+        "at dt = 2e-4 s": gains[FINE],
+        "w_c dt at dt = 1e-3 s": contact.omega(CASES[DISCOUNTED[COARSE]]),
+    }
+
+
+NOTHING = 1e-12
+OPEN_CLOSE = (
+    Claim(
+        "C14",
+        "section 4.2.2",
+        "Algorithmic damping can guarantee the open-close convergence.",
+        by_dda((*DAMPED, *UNDAMPED)),
+        guaranteed,
+        (Band("solves that damping spares", 1, 100),),
+        Finding.REFUTED,
+        "it converges in two solves without any damping: delta and gg are not in the iteration at all, and one "
+        "contact, "
+        "or two without friction, have one state that fits",
+    ),
+    Claim(
+        "C15",
+        "section 4.2.2",
+        "With too small a time interval the contact vibrates indefinitely, which affects the open-close convergence.",
+        by_dda(UNDAMPED),
+        vibrating,
+        (Band("openings and closings at dt = 1e-4 s", 10, 1000), Band("rise of the mean solves", 1e-3, 10)),
+        Finding.CONDITIONAL,
+        "the contact does open and close all the time, but the iteration converges all the better",
+        "as to the vibration, not to the convergence",
+        (Band("openings and closings at dt = 1e-4 s", 10, 1000),),
+    ),
+    Claim(
+        "C16",
+        "conclusion (3)",
+        "How the time interval influences open-close is by algorithmic damping.",
+        by_dda(DAMPED),
+        essence,
+        (Band("change of the most solves over dt", 1, 100), Band("rise of the switches", 1, 1000)),
+        Finding.CONDITIONAL,
+        "damping decides how often the contact opens, and does not touch the solves that a step takes",
+        "for the number of switches under (1/2, 1)",
+        (Band("rise of the switches", 1, 1000),),
+    ),
+    Claim(
+        "C17",
+        "sections 2.3 and 4.2.2",
+        "Constant acceleration is the scheme for DDA (implied).",
+        by_dda(DAMPED),
+        right_scheme,
+        (Band("energy gained, over that given", 0, NOTHING), Band("range of the restitution", 0, 0.1)),
+        Finding.CONDITIONAL,
+        "delta = 1 gains no energy by opening and closing, but beyond w_c dt = 2 what a landing returns is arbitrary",
+        "as to the energy",
+        (Band("energy gained, over that given", 0, NOTHING),),
+    ),
+    Claim(
+        "C18",
+        "section 4.3, conclusion (4)",
+        "The discount of the velocity controls dissipation under average acceleration.",
+        by_dda(DISCOUNTED),
+        discounted,
+        (
+            Band("energy gained at gg = 0.95 and dt = 1e-3 s, over that given", 0, 0.01),
+            Band("at dt = 2e-4 s", 0, 0.01),
+        ),
+        Finding.REFUTED,
+        "a stiff contact gains more in an impact than gg = 0.95 takes",
+    ),
+)

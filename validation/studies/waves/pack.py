@@ -1,0 +1,148 @@
+"""The part of the reference pack on waves: speed and loss, joints and bases in closed form, and a site's histories."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import math
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.engine.measure import completed
+from validation.errors import InputError
+from validation.gates import waves
+from validation.gates.wave_base import base_reflection
+from validation.runs.files import write_csv
+from validation.runs.run import Outcome
+from validation.scenes.scene import SCENE_DIRECTORY, Scene
+from validation.solvers.registry import get_solver
+from validation.studies.pack import as_toml, make_directory, slug, write_text
+from validation.studies.waves.rows import travelling
+from validation.studies.waves.study import SITE, usual_site
+
+BLOCKS, COURANTS = (8, 10, 16, 20, 40, 100), (0.1, 0.25, 0.5, 1.0)
+SCHEMES = ((0.5, 1.0), (0.25, 0.5), (1 / 3, 0.6))
+DISCOUNTS, GLUES = (1.0, 0.99), (math.inf, 1.0, 10.0, 100.0, 1e4)
+JOINTS, IMPEDANCES = (0.25, 0.5, 1.0, 2.0), (0.5, 1.0, 2.0)
+UNIT = 1.0  # h, rho and E of the columns of the tables, whose numbers do not depend on them
+
+README = """\
+# Waves in columns of blocks
+
+A part of the reference pack of dda-validation; nothing needs to be installed.
+
+| what | where |
+|---|---|
+| waves in a column of like blocks | `waves.csv`: `alpha,delta,gg,courant,blocks,glue,speed_error,left` |
+| a joint between two halves of it | `joints.csv`: `alpha,delta,gg,courant,blocks,joint,transmitted,reflected` |
+| a transmitting base below it | `bases.csv`: `alpha,delta,gg,courant,blocks,impedance,reflected` |
+| scenes, SI units | `scenes/NAME.toml`, with `waves-site.csv`, the record of one |
+| histories, one row a step | `histories/NAME.SOLVER.csv` |
+
+Blocks of height h, density rho and modulus E (that of the motion) stand on each other and move along or across the
+column; each has a displacement and one strain. Newmark's scheme with alpha, delta; gg multiplies the velocity at the
+start of each step. `courant` = c dt / h with c = sqrt(E / rho); `blocks` = c / (f h), blocks a wavelength of the
+continuum at the frequency f; `glue` = kg h / E, kg the stiffness per area of the springs between blocks, `inf` where
+faces that meet move alike. `speed_error` = phase speed / c - 1; `left` = share of the amplitude after 10 c / f.
+
+`joint` = kj / (rho c w), welded blocks; `transmitted` and `reflected` are |T| and |R| at the joint's two faces.
+`impedance` = z / (rho c), a dashpot z per area under the lowest face, welded blocks; `reflected` is |R| there.
+
+All numbers are closed forms, right to some 1e-13. Your code should give `speed_error` to 1e-10 and `left` to 1e-8 of
+itself. A way to measure them without a transient: send a smooth pulse up a column of a dozen blocks, go on until
+nothing moves, and take X_j = sum over the steps of x_j e^{-iwt} at three neighbours: cos(kh) = (X_1 + X_3) / (2 X_2).
+
+Histories: `displacement_1`, ... at the `heights` of the scene [m]; `displacement` of the top [m]; `contact_pressure`,
+the force per area of the base on the column [Pa], in shear minus the shear stress. `NAME.dda.csv` is what your code
+should give, `NAME.layers.csv` the continuum, exact in space and time.
+"""
+
+
+def write_waves_pack(directory: Path) -> int:
+    """Write the part into `waves` of a pack's directory, and return how many numbers its tables hold.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+    place, count = directory / "waves", 0
+    for part in ("scenes", "histories"):
+        make_directory(place / part)
+    for name, rows in (("waves", list(travel())), ("joints", list(joints())), ("bases", list(bases()))):
+        write_text(place / f"{name}.csv", _as_csv(rows))
+        count += len(rows)
+    try:
+        shutil.copyfile(SCENE_DIRECTORY / f"{SITE}.csv", place / "scenes" / f"{SITE}.csv")
+    except OSError as error:
+        raise InputError(f"{place}: cannot be written: {error.strerror}") from None
+    for scene in scenes():
+        _write_scene(scene, place)
+    write_text(place / "README.md", README)
+    return count
+
+
+def scenes() -> tuple[Scene, ...]:
+    """Return the scenes of the pack: those of travelling waves that DDA runs, and the site twice."""
+    found = {wave.scene.name: wave.scene for wave in travelling() if wave.scene.time.steps < 5000}
+    usual = usual_site()
+    site = usual.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.step": 2e-3, "time.steps": 4500})
+    return (*found.values(), site.model_copy(update={"name": SITE}), usual)
+
+
+def _write_scene(scene: Scene, place: Path) -> None:
+    """Write a scene, its DDA history and, of the site, the exact one."""
+    shown = scene
+    if scene.input.record is not None:
+        shown = scene.with_values({"input.record": Path(scene.input.record).name})
+    write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(shown))
+    for solver in ("dda", "layers") if scene.input.record is not None else ("dda",):
+        run = completed(get_solver(solver), scene)
+        if run.outcome is not Outcome.COMPLETED or run.history is None:
+            raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
+        write_csv(run.history, place / "histories" / f"{slug(scene.name)}.{solver}.csv")
+
+
+def _cases(discounts: tuple[float, ...]) -> Iterator[tuple[dict[str, float], waves.Stepping, float]]:
+    """Yield the first columns of a table, the stepping and w of each case, for h = rho = E = 1."""
+    for (alpha, delta), gg, courant, blocks in itertools.product(SCHEMES, discounts, COURANTS, BLOCKS):
+        named = {"alpha": alpha, "delta": delta, "gg": gg, "courant": courant, "blocks": float(blocks)}
+        yield named, waves.Stepping(courant, alpha, delta, gg), 2 * math.pi / blocks
+
+
+def travel() -> Iterator[dict[str, float]]:
+    """Yield speed and loss of waves."""
+    for named, stepping, w in _cases(DISCOUNTS):
+        for glue in GLUES:
+            column = waves.Column(UNIT, UNIT, UNIT, None if math.isinf(glue) else glue)
+            left, speed = column.travelled(stepping, w, 10 * 2 * math.pi / w)
+            yield named | {"glue": glue, "speed_error": float(speed), "left": float(left)}
+
+
+def joints() -> Iterator[dict[str, float]]:
+    """Yield what joints let through and send back."""
+    for named, stepping, w in _cases((1.0,)):
+        for ratio in JOINTS:
+            T, R = waves.joint_in_column(waves.Column(UNIT, UNIT, UNIT), stepping.squared_frequency(w), ratio * w)
+            yield named | {"joint": ratio, "transmitted": float(np.abs(T)), "reflected": float(np.abs(R))}
+
+
+def bases() -> Iterator[dict[str, float]]:
+    """Yield what transmitting bases send back."""
+    for named, stepping, w in _cases((1.0,)):
+        for impedance in IMPEDANCES:
+            R = base_reflection(waves.Column(UNIT, UNIT, UNIT), stepping, w, impedance)
+            yield named | {"impedance": impedance, "reflected": float(np.abs(R))}
+
+
+def _as_csv(rows: list[Any]) -> str:
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)  # a float is written with all its digits
+    return text.getvalue()

@@ -1,0 +1,226 @@
+"""The rows that the study derives from histories of columns, and the gates on them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates import waves
+from validation.gates.gate import Gate
+from validation.gates.wave_base import base_reflection
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import about, cases, near
+from validation.studies.waves.measure import Guide, column_of, joint_parts
+
+EXACT = 1e-10  # of k: what a measured wavenumber must keep
+JOINT = 1e-9  # of |T| and |R|
+COLUMNS = ("displacement_1", "displacement_2", "displacement_3")
+CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
+BLOCKS = {1.0e-3: (10,), 5.0e-4: (10,), 2.5e-4: (8, 10, 20), 1.0e-4: (40, 100)}  # a wavelength, by the time step
+OTHERS = {"waves-glue": (10,), "waves-discount": (20,), "waves-shear": (10, 16)}
+BASE = (8, 10, 20, 40)
+JOINTS = (  # blocks a wavelength, c dt/h, scheme
+    (10, 0.5, AVERAGE),
+    (20, 0.5, AVERAGE),
+    (40, 0.5, AVERAGE),
+    (160, 0.5, AVERAGE),
+    (10, 0.5, CONSTANT),
+    (20, 0.25, CONSTANT),
+    (40, 0.1, CONSTANT),
+)
+
+
+@dataclass(frozen=True)
+class Wave:
+    """One frequency of one case."""
+
+    scene: Scene
+    blocks: int  # a wavelength of the continuum
+    solver: str = "dda"
+
+    @property
+    def name(self) -> str:
+        """Name of its derived row."""
+        return f"{self.solver} at {self.blocks} blocks"
+
+    @property
+    def guide(self) -> Guide:
+        """Its closed forms."""
+        return Guide.of(self.scene, self.blocks)
+
+    def row(self, compute: Callable[[Wave, History], Mapping[str, Value]]) -> Derived:
+        """Return the derived row that a function of the wave and its history computes."""
+        return Derived(self.scene.name, self.name, ((self.scene.name, self.solver),), partial(self._computed, compute))
+
+    def _computed(
+        self, compute: Callable[[Wave, History], Mapping[str, Value]], finished: Finished
+    ) -> Mapping[str, Value]:
+        return compute(self, self.history(finished))
+
+    def history(self, finished: Finished) -> History:
+        """Return the history of its case.
+
+        Raises
+        ------
+        ValueError
+            There is none.
+        """
+        found = finished.history(self.scene.name, self.solver)
+        if found is None:
+            raise ValueError(f"{self.scene.name}: must have a history of {self.solver}, got none")
+        return found
+
+
+@functools.cache
+def travelling() -> tuple[Wave, ...]:
+    """Return the waves whose speed and loss are measured."""
+    found = []
+    for case in cases("waves-blocks"):
+        found += [Wave(case, blocks) for blocks in BLOCKS[case.time.step]]
+        found += [Wave(case, 10, "fem")] * (case.time.step == 5.0e-4)
+    for scene, counts in OTHERS.items():
+        for case in cases(scene):
+            found += [Wave(case, blocks) for blocks in counts]
+    return tuple(found)
+
+
+def travelled(wave: Wave, history: History) -> Mapping[str, Value]:
+    """Return the measured error of the phase speed, and the share left after ten wavelengths."""
+    speed, left = wave.guide.told(wave.guide.measured(history, COLUMNS))
+    return {"wave.speed_error": speed, "wave.left": left}
+
+
+def travelling_gates() -> Iterator[Gate]:
+    """Yield two gates a wave."""
+    speed_reason = "closed form of glued affine blocks at the squared frequency of the scheme; band: 1e-10 of k"
+    left_reason = "the same, over ten wavelengths: 1e-10 of k is 63e-10 of what is left"
+    for wave in travelling():
+        speed, left = wave.guide.told(wave.guide.wavenumber)
+        name = wave.scene.name, (wave.name,)
+        yield Gate(*name, "wave.speed_error", *about(speed, 1.5 * EXACT), speed_reason)
+        yield Gate(*name, "wave.left", *near(left, 20 * np.pi * EXACT), left_reason)
+
+
+# ---- joints ---------------------------------------------------------------------------------------------------------
+
+
+@functools.cache
+def jointed() -> tuple[Wave, ...]:
+    """Return the waves that meet a joint of kj = rho c w, with the scene of each."""
+    scene, found = load_scene("waves-joint"), []
+    for blocks, courant, (alpha, delta) in JOINTS:
+        guide = Guide.of(scene, blocks)
+        step = courant * guide.column.height / guide.speed
+        pulse = 0.4 * guide.omega / (2 * np.pi)
+        values = {
+            "column.joint": [{"height": 12.0, "stiffness": guide.impedance * guide.omega}],
+            "input.frequency": pulse,
+            "time.step": step,
+            "time.steps": int((4 / pulse + echoes(blocks, delta)) / step),
+            "time.alpha": alpha,
+            "time.delta": delta,
+        }
+        kind = "average" if (alpha, delta) == AVERAGE else "constant"
+        case = scene.with_values(values).model_copy(update={"name": f"waves-joint-{blocks}-{kind}"})
+        found.append(Wave(case, blocks))
+        found += [Wave(case, blocks, "fem")] * ((blocks, kind) == (20, "average"))
+    return tuple(found)
+
+
+def echoes(blocks: int, delta: float) -> float:
+    """Return how long the echoes between joint and top are waited for [s]: few blocks a wavelength leak slowly."""
+    return 1.6 if blocks <= 20 and delta == 0.5 else 0.6
+
+
+def parted(wave: Wave, history: History) -> Mapping[str, Value]:
+    """Return |T|, |R| and the sum of their squares."""
+    T, R = joint_parts(wave.guide, wave.scene, history)
+    return {"joint.transmitted": abs(T), "joint.reflected": abs(R), "joint.energy": abs(T) ** 2 + abs(R) ** 2}
+
+
+def joint_gates() -> Iterator[Gate]:
+    """Yield the gates on every joint."""
+    discrete = "closed form of a joint between two columns of welded blocks; band: 1e-9"
+    energy = "average acceleration takes no energy: what is not transmitted is reflected; band: 1e-9"
+    for wave in jointed():
+        guide, name = wave.guide, (wave.scene.name, (wave.name,))
+        W2 = guide.stepping.squared_frequency(guide.omega)
+        T, R = waves.joint_in_column(guide.column, W2, column_of(wave.scene).joint[0].stiffness)
+        yield Gate(*name, "joint.transmitted", *about(float(abs(T)), JOINT), discrete)
+        yield Gate(*name, "joint.reflected", *about(float(abs(R)), JOINT), discrete)
+        if wave.scene.time.delta == 0.5:
+            yield Gate(*name, "joint.energy", *about(1.0, JOINT), energy)
+
+
+def joint_order(finished: Finished) -> Mapping[str, Value]:
+    """Return the order in 1/N at which |T| tends to that of the continuum, fitted with its sign."""
+    found = []
+    for wave in averaged():
+        T, _ = joint_parts(wave.guide, wave.scene, wave.history(finished))
+        found.append((wave.blocks, abs(T) - float(waves.joint_transmission(1.0))))
+    blocks, errors = np.array(found).T
+    if np.any(errors <= 0):
+        return {"joint.order": "undefined"}
+    return {"joint.order": float(-np.polyfit(np.log(blocks), np.log(errors), 1)[0])}
+
+
+def averaged() -> list[Wave]:
+    """Return the joints of one Courant number under average acceleration, by DDA."""
+    return [w for w in jointed() if w.solver == "dda" and w.scene.time.delta == 0.5]
+
+
+def order_gate() -> Gate:
+    """Return the gate on the order."""
+    why = "blocks are linear elements and the scheme is of second order: 2; a tenth for the next order"
+    return Gate(averaged()[-1].scene.name, ("order",), "joint.order", 1.9, 2.1, why)
+
+
+# ---- transmitting base ----------------------------------------------------------------------------------------------
+
+
+@functools.cache
+def returned() -> tuple[Wave, ...]:
+    """Return the waves that come down on a transmitting base."""
+    return tuple(Wave(case, blocks) for case in cases("waves-base") for blocks in BASE)
+
+
+def sent_back(wave: Wave, history: History) -> Mapping[str, Value]:
+    """Return |R| of the base."""
+    up, down = wave.guide.parts(history, COLUMNS[:2], column_of(wave.scene).heights)
+    return {"base.reflected": abs(up / down)}
+
+
+def base_gates() -> Iterator[Gate]:
+    """Yield a gate a wave."""
+    why = "closed form of a dashpot under a column of welded blocks, of whose own impedance it is; band: 1e-9"
+    for wave in returned():
+        guide = wave.guide
+        R = base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
+        yield Gate(wave.scene.name, (wave.name,), "base.reflected", *about(float(abs(R)), JOINT), why)
+
+
+# ---- what the page draws --------------------------------------------------------------------------------------------
+
+
+def curves() -> dict[str, list[dict[str, object]]]:
+    """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
+    found: list[dict[str, object]] = []
+    blocks = np.geomspace(7.5, 110, 60)
+    for case in cases("waves-blocks"):
+        guide = Guide.of(case, 10)
+        omega = 2 * np.pi * guide.speed / (blocks * guide.column.height)
+        k = guide.column.wavenumber(guide.stepping.squared_frequency(omega))
+        left = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
+        scheme = "(1/2, 1)" if (case.time.alpha, case.time.delta) == CONSTANT else "(1/4, 1/2)"
+        rounded = {"speed": omega / k.real / guide.speed - 1, "left": left, "blocks": blocks}
+        values = {name: [float(f"{x:.5g}") for x in part] for name, part in rounded.items()}
+        courant = round(guide.speed * case.time.step / guide.column.height, 6)
+        found.append({"scheme": scheme, "courant": courant, **values})
+    return {"curves": found}
