@@ -1,6 +1,6 @@
 """A thousand histories of known origin by three generators, what `compare` makes of them, and the table of the docs.
 
-The generators share nothing with what judges: a plain DDA code (`plain_dda`), the finite elements of `fem_reference`
+The generators share nothing with what judges: a plain DDA code (`plain_block`), the finite elements of `fem_reference`
 with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
 scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in no catalogue;
 digits, noise, steps, schemes and scenes are drawn at random.
@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from oracles.plain_dda import Plain, run
+from oracles.plain_block import Plain, run
 
 from validation import load_scene, solve
 from validation.compare.diagnosis import compare

@@ -23,6 +23,7 @@ RARE = 14.0  # of the information criterion: a thousand to one
 ROUND = 3  # significant digits of a round number
 EXACT = 1e-7  # relative error of a round number
 LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
+WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
 MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
@@ -68,7 +69,7 @@ def decided(target: Target, own: Fit, found: Sequence[Found]) -> Verdict:
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
-    best = next((f for f in close if f.ids == ("contact-opened",)), best)  # a dead band without effect
+    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
     alike = {f.ids: f for f in reversed(close) if f.ids != best.ids and not _contained(best, f)}
     named = not alike and _nameable(target, own, best)
     if target.explained(own.residual) and not (named and score(target, own) - score(target, best.fit) >= NEEDED):
@@ -92,7 +93,7 @@ def _digits(value: float) -> int:
 
 def _contained(best: Found, other: Found) -> bool:
     """Whether an explanation is the best one with a further part that has no effect."""
-    return set(best.ids) < set(other.ids) or (best.ids == ("contact-opened",) and other.ids == ("dead-band",))
+    return set(best.ids) < set(other.ids) or (best.ids in WITHOUT_BAND and other.ids == ("dead-band",))
 
 
 def accepted(target: Target, own: Fit, found: Fit) -> bool:
