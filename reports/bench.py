@@ -138,10 +138,12 @@ def opening_model(p: float = 1e9) -> dda.UnilateralModel:
     return dda.UnilateralModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Unilateral(p), 5e6)
 
 
-def opening_history(steps: int, dt: float, p: float = 1e9, singly: bool = False) -> dda.UnilateralResult:
+def opening_history(
+    steps: int, dt: float, model: dda.UnilateralModel | None = None, singly: bool = False
+) -> dda.UnilateralResult:
     """Solve the square block on corners that open; step by step in all six unknowns if `singly`."""
     options = dda.UnilateralOptions(full=singly)
-    return dda.solve_unilateral(opening_model(p), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
+    return dda.solve_unilateral(model or opening_model(), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
 
 
 def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
@@ -154,12 +156,13 @@ def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
 
 def opening_line(steps: int, dt: float, p: float, repeats: int = 5) -> str:
     """Return a line of the table of contact that opens: its cost over that of locked contact, and over single steps."""
-    model = dda.TwoBlockModel(opening_model(p).block, dda.Contact(p), 5e6)
+    unlocked = opening_model(p)
+    model = dda.TwoBlockModel(unlocked.block, dda.Contact(p), 5e6)
     locked = lambda: tuple(dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, dt), steps).columns.values())  # noqa: E731
-    opens = lambda: tuple(opening_history(steps, dt, p).columns.values())  # noqa: E731
+    opens = lambda: tuple(opening_history(steps, dt, unlocked).columns.values())  # noqa: E731
     spent = np.array([(timed(locked)[0], timed(opens)[0]) for _ in range(repeats)]).min(axis=0)
-    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, p, singly=True).columns.values()))
-    switches = np.count_nonzero(np.diff(opening_history(steps, dt, p).closed_m))
+    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, unlocked, singly=True).columns.values()))
+    switches = np.count_nonzero(np.diff(opening_history(steps, dt, unlocked).closed_m))
     numbers = f"{spent[0]:.2g} | {spent[1]:.2g} | {spent[1] / spent[0]:.1f} | {seconds / spent[1]:.0f}"
     text = f"| {p / 1e9:g} E | {dt:g} | {steps:,} | {switches} | {numbers} | {difference(opens(), answer):.0e} |"
     print(text, flush=True)

@@ -9,6 +9,11 @@ With S = M + alpha dt^2 K of the block without the base's springs, factorised on
 
 so that M A1 = F - K D1 + B' (N, T) without a division by alpha dt^2. The gaps at the end are those of the free
 block plus C N, C = alpha dt^2 B S^-1 B'. Nothing depends on the contact states but the small problem of the forces.
+
+With implicit contact (Kane, Repetto, Ortiz and Marsden, 1999) A is the block's own, M A1 = F - K D1, under average
+acceleration, and the forces of the step's end throw it besides, D by dt^2 / 2 and V by dt times Q = M^-1 B' (N, T)::
+
+    D1 = D* + alpha dt^2 (A1 + Q / (2 alpha)),   V1 = gg V + dt ((1 - delta) A + delta A1) + dt Q
 """
 
 from __future__ import annotations
@@ -26,6 +31,9 @@ from fem_reference.problem.problem import Array, Scheme
 from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_acceleration, predictor, velocity
 
 SHEARS = ("frictionless", "glued")
+RULES = ("newmark", "implicit")
+AVERAGE = (0.25, 0.5)
+"""Alpha and delta of average acceleration."""
 KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
 DENSE = 256
@@ -63,22 +71,34 @@ class ContactStepper:
     Raises
     ------
     ValueError
-        If `shear` is unknown or `limit` is below one.
+        If `shear` or `rule` is unknown, `limit` is below one, or the scheme is not that of the rule.
     """
 
     model: ContactModel
     scheme: Scheme
     shear: str = "frictionless"  # ``"frictionless"``, or ``"glued"``: shear springs hold the closed points
     limit: int = 6  # greatest number of solutions of the open-close iteration [-]
+    rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the block
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
         if self.shear not in SHEARS:
             raise ValueError(f"shear: must be one of {SHEARS}, got {self.shear!r}")
+        if self.rule not in RULES:
+            raise ValueError(f"rule: must be one of {RULES}, got {self.rule!r}")
         if self.limit < 1:
             raise ValueError(f"limit: must be at least 1, got {self.limit!r}")
         both = vstack([self.model.normal, self.model.tangential])
         self._B = csr_array(both if self.shear == "glued" else self.model.normal)
+        self._weight = 1.0
+        self._thrown: Callable[[Array], Array] | None = None
+        if self.rule == "implicit":
+            if (self.scheme.alpha, self.scheme.delta) != AVERAGE:
+                raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
+            self._weight = 1 / (2 * self.scheme.alpha)
+            mass = self.work.factor(self.model.M)
+            thrown = self._responses(mass)[0]
+            self._thrown = (lambda f: mass(self._B.T @ f)) if thrown is None else (lambda f: thrown @ f)
         self._lengths: dict[float, _Matrices] = {}
         self._matrices(self.scheme.step)
 
@@ -109,15 +129,26 @@ class ContactStepper:
         N, T = contact.trial.normal, contact.trial.shear
         forces = np.concatenate([N, T]) if self.shear == "glued" else N
         A = free
-        if contact.closed.any():
-            A = own.solve(residual + self._B.T @ forces) if own.response is None else free + own.response @ forces
-        motion = State(ahead + scheme.alpha * scheme.step**2 * A, velocity(old, A, scheme), A)
+        if contact.closed.any() and own.response is not None:
+            A = free + own.response @ forces
+        elif contact.closed.any():
+            A = own.solve(residual + self._weight * (self._B.T @ forces))
+        motion = self._moved(old, ahead, A, forces, scheme)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
         gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
         slip, reference = state.slip, state.reference
         if self.shear == "glued":
             slip, reference = self._slipped(state, contact.closed, T, moved + own.C @ forces)
         return ContactState(motion, gap, slip, reference, N, T, contact.closed), contact
+
+    def _moved(self, old: State, ahead: Array, A: Array, forces: Array, scheme: Scheme) -> State:
+        """Motion at the end of a step from the accelerations that D1 = D* + alpha dt^2 A holds."""
+        D = ahead + scheme.alpha * scheme.step**2 * A
+        if self._thrown is None:
+            return State(D, velocity(old, A, scheme), A)
+        thrown = self._thrown(forces)
+        own = A - self._weight * thrown
+        return State(D, velocity(old, own, scheme) + scheme.step * thrown, own)
 
     def scheme_of(self, length: float) -> Scheme:
         """The scheme for one length of step [s], with the share of gg that belongs to it."""
@@ -147,7 +178,9 @@ class ContactStepper:
             scheme = replace(self.scheme, step=length, gg=self.scheme.gg**share)
             solve = self.work.factor(effective_matrix(self.model.M, self.model.K, scheme))
             response, C = self._responses(solve)
-            C, compliance = scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
+            if response is not None:
+                response *= self._weight
+            C, compliance = self._weight * scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
             glue = self.shear == "glued"
             small = GluedBase(C, compliance, self.model.shear_stiffness) if glue else FrictionlessBase(C, compliance)
             self._lengths[length] = _Matrices(scheme, solve, response, C, small)

@@ -8,7 +8,7 @@ d( ) the change over the step, the sum E of the energies of motion, strain, spri
 
 A start with A0 = 0 is out of balance by F0 = F - K D0 + B' lambda0, which adds -(1 - delta) dD' F0 to the first step.
 What a point adds while it keeps its state belongs to the scheme's own loss, what it adds while it opens or closes is
-the loss by switching, and gg takes (1 - gg^2) of the energy of motion.
+the loss by switching, and gg takes (1 - gg^2) of the energy of motion. With implicit contact N1 and T1 count alone.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from fem_reference.problem.problem import Array, Scheme
 class Losses:
     """Energies lost from t = 0 on, in the order of `opening_columns.LOSSES` [J]."""
 
-    def __init__(self, model: ContactModel, balanced: bool) -> None:
-        self.model, self._balanced = model, balanced
+    def __init__(self, model: ContactModel, balanced: bool, rule: str = "newmark") -> None:
+        self.model, self._balanced, self._implicit = model, balanced, rule == "implicit"
         self.values = np.zeros(3)
 
     def add(self, scheme: Scheme, before: ContactState, after: ContactState) -> None:
@@ -56,7 +56,8 @@ class Losses:
 
     def _points(self, scheme: Scheme, before: ContactState, after: ContactState) -> tuple[float, float]:
         """Losses of the points that keep their state and of those that change it."""
-        early, late = 1 - scheme.delta, scheme.delta
+        late = 1.0 if self._implicit else scheme.delta
+        early = 1 - late
         work = (after.gap - before.gap) * (early * before.normal + late * after.normal)
         work += (after.slip - before.slip) * (early * before.shear + late * after.shear)
         lost = springs(self.model, before) - springs(self.model, after) - work

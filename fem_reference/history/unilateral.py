@@ -34,6 +34,7 @@ class Unilateral:
     shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
     limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
+    rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
 
     def __post_init__(self) -> None:
@@ -41,6 +42,7 @@ class Unilateral:
             ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
             ("velocity", "must be a finite number", math.isfinite(self.velocity)),
             ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
+            ("rule", "must be 'newmark' or 'implicit'", self.rule in ("newmark", "implicit")),
             ("limit", "must be at least 1", self.limit >= 1),
             ("cut", "must be between 0 and 1", 0 < self.cut < 1),
             ("shortest", "must be above 0 and at most 1", 0 < self.shortest <= 1),
@@ -104,7 +106,7 @@ def solve_unilateral(
     contact = Unilateral() if contact is None else contact
     began = time.perf_counter()
     model = build(problem, full)
-    stepper = ContactStepper(model, scheme, contact.shear, contact.limit)
+    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule)
     state = stepper.start(contact.gap, contact.velocity)
     ready = time.perf_counter()
     watched = _Watched(stepper, problem.base_length, tuple(dict.fromkeys(columns)), every_point)
@@ -160,7 +162,7 @@ class _Watched:
         self.observers: list[Observer] = observers(stepper.model, length, asked)
         self.counted = [name for name in COUNTS if name in asked]
         lost = any(name in asked for name in LOSSES)
-        self.losses = Losses(stepper.model, stepper.scheme.start == "consistent") if lost else None
+        self.losses = Losses(stepper.model, stepper.scheme.start == "consistent", stepper.rule) if lost else None
         seen = [name for name in asked if name not in (*LOSSES, *COUNTS)]
         self.columns = (*seen, *(LOSSES if lost else ()), *self.counted)
         self.every_point = every_point

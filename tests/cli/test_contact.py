@@ -36,6 +36,9 @@ def test_the_page_states_what_json_holds() -> None:
     assert block["switches.first_closing"] == pytest.approx(0.0032525750597312, rel=1e-12)
     assert found["needed"]["depth"] <= 1e-4 and found["needed"]["stiffness"] >= found["needed"]["first_guess"]
     assert "the exact block then goes" in done.stdout
+    assert f"with these  a contact returns {found['needed']['restitution']['mean']:.3g} of its speed" in (
+        typed("contact", "unlocked-constant", *SHORT).stdout
+    )
     assert found["needed"]["step"] * found["contact_frequency"] < found["omega"]
     assert [alarm["kind"] for alarm in found["alarms"]] == ["step too large for contact"]
 

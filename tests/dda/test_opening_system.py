@@ -43,7 +43,9 @@ def off(a, b):
 
 
 # Impacts multiply rounding: at delta = 1/2 by all the digits there are (seeds 1 and 6), so few steps are compared.
-@pytest.mark.parametrize("seed", range(9))
+@pytest.mark.parametrize(
+    "seed", [3, 4, 5, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, 1, 2, 6, 7, 8))]
+)
 @pytest.mark.parametrize(
     ("scheme", "steps"),
     [(CONSTANT, 200), (Scheme(0.25, 0.5, 0.99, 3e-4, "consistent"), 40), (Scheme(0.7, 0.8, 0.98, 3e-4), 200)],
@@ -118,7 +120,7 @@ def test_random_blocks_keep_the_invariants(seed, scheme):
         assert np.max(np.diff(total)) < 1e-12 * size
 
 
-@pytest.mark.parametrize("shear", [0.0, 1e9])
+@pytest.mark.parametrize("shear", [pytest.param(0.0, marks=pytest.mark.long), 1e9])
 def test_the_mirror_image_exchanges_the_points(shear):
     model = replace(PAPER, contact=Unilateral(1e9, shear), eccentricity=0.3, traction=1e5)
     left, right = run(model, (3, 1)), run(mirrored(model), (3, 1))
@@ -157,7 +159,7 @@ def problem(rng, n):
 def test_frictionless_points_always_find_the_one_solution(limit):
     """Random problems of seven points, set all at once or one at a time: 0 <= N, w = w_f + C N = -N/p where N > 0."""
     rng, more = np.random.default_rng(1), 0
-    for _ in range(200):
+    for _ in range(60):
         law, free = problem(rng, 7)
         found = points.open_close_points(law, points.Points.at_rest(law, 7), free, limit)
         after = found.points
@@ -166,7 +168,7 @@ def test_frictionless_points_always_find_the_one_solution(limit):
         assert np.allclose(free.gap + free.C @ after.normal, after.gap, atol=1e-10)
         assert np.allclose(after.gap[after.closed], -after.normal[after.closed] / law.stiffness, rtol=1e-14)
         more += found.solves > limit
-    assert more > 100 or limit == 6
+    assert more > 30 or limit == 6
 
 
 CYCLES = [
@@ -227,7 +229,7 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
 
 
 def test_a_repeated_history_is_bitwise_the_same():
-    first, second = (run(replace(PAPER, eccentricity=0.3), (2, 2)) for _ in range(2))
+    first, second = (run(replace(PAPER, eccentricity=0.3), (2, 2), steps=60) for _ in range(2))
     assert np.array_equal(first.normal, second.normal) and np.array_equal(first.gap, second.gap)
 
 

@@ -312,8 +312,12 @@ FAULTS = {
 }
 
 
-def test_nothing_is_noticed_without_a_fault():
-    assert not any(map(notices, CHECKS))
+CHECKED = [pytest.param(check, marks=[pytest.mark.long] * (n > 3), id=check.__name__) for n, check in enumerate(CHECKS)]
+
+
+@pytest.mark.parametrize("check", CHECKED)
+def test_nothing_is_noticed_without_a_fault(check):
+    assert not notices(check)
 
 
 SHORT = (crossed_at_start, dead_band, damped_again)  # one of each check

@@ -40,7 +40,7 @@ def test_the_papers_block_keeps_its_energy_at_every_stiffness_and_step(p, dt):
     assert np.all(result.step_solves == 1)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(4))
 def test_random_blocks_keep_their_energy_but_for_gg(seed):
     model, dt, gg = random_model(seed, glued=False), 1e-4 * 4.0 ** (seed % 3), 1.0 if seed % 2 else 0.97
     result = solve_unilateral(model, average(dt, gg), 250, options=CONSERVING)
@@ -94,10 +94,15 @@ TRUTH = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ECCENTRIC = replace(TRUTH, eccentricity=0.3, poisson=0.2)
 
 
-@pytest.mark.parametrize("problem", [TRUTH, ECCENTRIC], ids=["centred", "eccentric"])
+LONG = pytest.mark.long
+
+
+@pytest.mark.parametrize(
+    "problem", [pytest.param(TRUTH, id="centred"), pytest.param(ECCENTRIC, id="eccentric", marks=LONG)]
+)
 @pytest.mark.parametrize(("options", "order", "scatter"), [(CONSERVING, 2.0, 0.15), (IMPLICIT, 1.0, 0.1)])
 def test_the_order_in_dt_through_switches(problem, options, order, scatter):
-    end, errors, counts = 0.03, [], [400, 800, 1600, 3200]
+    end, errors, counts = 0.03, [], [300, 600, 1200, 2400]
     motion = exact_motion(problem, end)
     block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, problem.poisson))
     model = UnilateralModel(block, Unilateral(1e9), 5e6, eccentricity=problem.eccentricity)
@@ -107,7 +112,7 @@ def test_the_order_in_dt_through_switches(problem, options, order, scatter):
         v = motion.at(np.minimum(result.time, end)).displacement[1]
         errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - order) < scatter, errors
-    assert errors[-1] < (1e-4 if order == 2 else 2e-2)
+    assert errors[-1] < (2e-4 if order == 2 else 3e-2)
 
 
 # ---- the forces ------------------------------------------------------------------------------------------------------

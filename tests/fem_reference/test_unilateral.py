@@ -52,6 +52,19 @@ def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
     assert found[-1][0] < 0.03
 
 
+def test_implicit_contact_leads_to_the_exact_bar_too():
+    problem, found = make(elements=128, degree=2), []
+    truth = exact(bar_of(problem), 0.0301).at(0.03 / 125 * np.arange(1, 126)).displacement
+    for steps in (250, 500, 1000, 2000):
+        scheme = replace(AVERAGE, step=0.03 / steps)
+        run = solve_unilateral(problem, scheme, steps, Unilateral(rule="implicit"), columns=("displacement",))
+        found.append(float(np.linalg.norm(run.columns["displacement"][steps // 125 - 1 :: steps // 125] - truth)))
+    # one force a step is of first order, and so is what fronts of width dt^(2/3) leave
+    assert np.polyfit(np.log([1 / 250, 1 / 500, 1 / 1000, 1 / 2000]), np.log(found), 1)[0] == pytest.approx(
+        1.0, abs=0.15
+    )
+
+
 def test_the_first_opening_and_landing_approach_the_exact_ones():
     problem = make(elements=256, degree=1)
     switches = [s.time for s in exact(bar_of(problem), 0.03).switches]
@@ -276,6 +289,10 @@ def test_bad_requests_are_refused_by_name():
             Unilateral(**{field: value})
     with pytest.raises(ValueError, match=r"^shortest: "):
         Unilateral(shortest=0.0)
+    with pytest.raises(ValueError, match=r"^rule: "):
+        Unilateral(rule="explicit")
+    with pytest.raises(ValueError, match=r"^alpha, delta: must be"):
+        solve_unilateral(make(elements=2), CONSTANT, 1, Unilateral(rule="implicit"))
     with pytest.raises(ValueError, match=r"^steps: "):
         solve_unilateral(make(elements=2), CONSTANT, 0)
     moving = replace(make(elements=2), motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))

@@ -122,13 +122,14 @@ def test_glued_bases_without_a_unique_set_of_states_say_so():
     assert (none, 2) in {(found.failure, found.solves) for found in many}
 
 
-@pytest.mark.parametrize("shear", ["frictionless", "glued"])
-def test_many_forces_are_solved_for_twice(shear, monkeypatch):
+@pytest.mark.parametrize(("shear", "rule"), [("frictionless", "newmark"), ("glued", "newmark"), ("glued", "implicit")])
+def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
     problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8)
-    contact = Unilateral(gap=1e-5, velocity=-0.1, shear=shear)
-    few = solve_unilateral(problem, replace(SCHEME, step=2e-4), 150, contact)
+    contact = Unilateral(gap=1e-5, velocity=-0.1, shear=shear, rule=rule)
+    scheme = Scheme(0.25, 0.5, 0.9, 2e-4) if rule == "implicit" else replace(SCHEME, step=2e-4)
+    few = solve_unilateral(problem, scheme, 150, contact)
     monkeypatch.setattr(stepper, "DENSE", 4)
-    many = solve_unilateral(problem, replace(SCHEME, step=2e-4), 150, contact)
+    many = solve_unilateral(problem, scheme, 150, contact)
     assert 0 < few.columns["open_share"].mean() < 1 and many.solves > few.solves
     for name, values in few.columns.items():
         # rounding of the energies lost is that of the energies

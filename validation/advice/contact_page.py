@@ -56,8 +56,9 @@ def scenes(scene: Scene) -> dict[str, Scene]:
     Raises
     ------
     InputError
-        The contact is locked.
+        The contact is locked, or the scene has a column.
     """
+    features.refuse_column(scene, "contact")
     if features.UNILATERAL not in features.of(scene):
         raise InputError(
             f"{scene.name}: contact.law: must be unilateral for the command contact, got locked, which neither opens "
@@ -199,14 +200,16 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     yield f"  time step   dt <= {need['step']:.3g} s at that p, {need['step_now']:.3g} s at the present one"
-    now = found["restitution_now"]
-    if now is None:
-        yield "  at present  the restitution map is not defined for this scheme"
-        return
-    yield (
-        f"  at present  a contact returns {now['mean']:.3g} of its speed on average, {now['low']:.3g} to "
-        f"{now['high']:.3g}, and {now['energy']:.3g} of its energy"
-    )
+    for words, map_ in (("with these", need["restitution"]), ("at present", found["restitution_now"])):
+        if map_ is None:
+            yield f"  {words}  the restitution map is not defined for this scheme"
+            continue
+        yield (
+            f"  {words}  a contact returns {map_['mean']:.3g} of its speed on average, {map_['low']:.3g} to "
+            f"{map_['high']:.3g}, and {map_['energy']:.3g} of its energy"
+        )
+    if scene.time.gg_rate is None and scene.time.discount < 1:
+        yield f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more of a landing it takes"
 
 
 def _depth(need: Mapping[str, Any], asked: float) -> str:

@@ -54,7 +54,7 @@ def peak_force(record: ContactRecord) -> Value:
 
 def penetration(record: ContactRecord) -> Value:
     """Largest penetration of a corner."""
-    return float(record.penetration.max())
+    return float(record.penetration.max()) + 0.0
 
 
 def gap(record: ContactRecord) -> Value:

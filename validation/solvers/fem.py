@@ -173,7 +173,7 @@ class OpeningMesh(Prepared):
         c = scene.contact
         glue = "glued" if c.shear else "frictionless"
         with naming(scene):
-            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut)
+            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut, c.rule)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -206,7 +206,7 @@ class OpeningMesh(Prepared):
         return ContactRecord(
             time=found.time,
             force=force,
-            impulse=opened.summed(force, scheme.step, scheme.delta),
+            impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
             penetration=seen["largest_penetration"],
             gap=seen["largest_gap"],
             open_share=seen["open_share"],
@@ -224,7 +224,9 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.COLUMN, features.DAMPING}) | features.LOADS
+    handles = features.LOADS | frozenset(
+        {features.SUB_BLOCKS, features.UNILATERAL, features.IMPLICIT, features.COLUMN, features.DAMPING}
+    )
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)

@@ -1,0 +1,71 @@
+"""Random blocks on bases that carry no tension: what must hold of every step of every one of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.elements import INCLINED, SQUARE, make
+
+from fem_reference import Scheme, Unilateral, solve_unilateral
+
+STORED = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
+LOST = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+SCHEMES = ((0.5, 1.0), (0.5625, 1.0), (0.75, 1.0), (0.25, 0.5), (0.3025, 0.6))
+
+
+def drawn(seed):
+    """A problem, a scheme and how the block stands on its base."""
+    rng = np.random.default_rng(seed)
+    outline = [{}, {"vertices": INCLINED, "base": 1, "top": 3}][rng.random() < 0.3]
+    foundation = str(rng.choice(["distributed", "distributed", "corner", "nodes"]))
+    mesh = {"elements": int(rng.integers(2, 5)), "degree": int(rng.integers(1, 3)), "foundation": foundation}
+    shear = 0.0 if rng.random() < 0.5 else 10 ** rng.uniform(8, 10.5)
+    problem = make(p=10 ** rng.uniform(8, 11.5), shear=shear, poisson=rng.uniform(0, 0.4), **mesh, **outline)
+    sideways = {"traction": rng.uniform(-1e6, 1e6), "gravity": 10 ** rng.uniform(-1, 2)}
+    problem = replace(problem, pressure=10 ** rng.uniform(4, 7), **sideways)
+    if problem.vertices == SQUARE and foundation != "nodes":
+        problem = replace(problem, eccentricity=rng.uniform(-0.6, 0.6))
+    alpha, delta = SCHEMES[rng.integers(len(SCHEMES))]
+    gg = 1.0 if rng.random() < 0.5 else rng.uniform(0.95, 1.0)
+    scheme = Scheme(alpha, delta, gg, 10 ** rng.uniform(-4.5, -3), str(rng.choice(["zero", "consistent"])))
+    contact = Unilateral(10 ** rng.uniform(-6, -3), -(10 ** rng.uniform(-2, 0)), "glued" if shear else "frictionless")
+    return problem, scheme, contact
+
+
+def check(seed):
+    problem, scheme, contact = drawn(seed)
+    run = solve_unilateral(problem, scheme, 60, contact, every_point=True)
+    if not len(run.time):
+        return 0
+    columns = run.columns
+    energies, lost = (np.array([columns[name] for name in names]) for names in (STORED, LOST))
+    begun = problem.density * problem.area * contact.velocity**2 / 2
+    size = np.abs(np.vstack([energies, lost])).max() + begun
+    # complementarity: no tension, and no force where there is a gap
+    assert run.normal.min() >= 0 and not run.normal[run.gap > 0].any()
+    assert np.array_equal(run.normal > 0, run.gap < 0)
+    # The energy budget closes; a step of delta = 1 takes energy, whatever switches. For alpha above one half that holds
+    # of the energy with what the scheme counts beside it, (alpha - 1/2) dt^2 A' M A / 2.
+    assert np.abs(energies.sum(axis=0) + lost.sum(axis=0) - begun).max() <= 1e-10 * size
+    if (scheme.alpha, scheme.delta) == (0.5, 1.0):
+        first = 0 if scheme.start == "consistent" else 1
+        assert np.diff(lost[0] + lost[2])[first:].min(initial=0) >= -1e-11 * size
+    assert np.diff(lost[1]).min(initial=0) >= 0
+    # momentum along y of the centre of mass, from the forces at both ends of each step
+    if problem.vertices == SQUARE and scheme.start == "consistent" and not columns["cuts"].any():
+        pushed = problem.pressure * (2 - 2 * abs(problem.eccentricity)) + 10800 * problem.gravity
+        force = np.append(0.0, columns["contact_pressure"] * 2.0) - pushed
+        gained = scheme.step * ((1 - scheme.delta) * force[:-1] + scheme.delta * force[1:]) / 10800
+        speed = np.append(contact.velocity, columns["velocity"])
+        scale = np.abs(speed).max() + np.abs(gained).max()
+        assert np.abs(speed[1:] - scheme.gg * speed[:-1] - gained).max() <= 1e-10 * scale
+    return np.count_nonzero(np.diff(run.gap > 0, axis=0))
+
+
+def test_what_holds_of_every_step():
+    assert sum(map(check, range(15))) > 50
+
+
+@pytest.mark.long
+def test_what_holds_of_every_step_of_many():
+    assert sum(map(check, range(15, 265))) > 1000
