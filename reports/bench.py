@@ -11,8 +11,6 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,7 +24,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import numpy as np  # noqa: E402  (after the number of threads is set)
-from rivals import block_numpy, elements_skfem, estimates  # noqa: E402
+from rivals import block_numpy, elements_skfem  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
@@ -265,9 +263,9 @@ def growth(quick: bool) -> list[str]:
 
 def sweep_seconds(name: str, values: dict[str, float], solver: str, count: int, jobs: int = 1) -> float:
     """Return the seconds of a study of some time steps of a scene, results kept."""
-    scene = load_scene(name).with_values({"time.step": 1e-3, **values}).model_copy(update={"sweep": {}})
     steps = [1e-3 * (1 + i / count) for i in range(count)]
-    study = Study("sweep", "Sweep", "Sweep.", [scene], (solver,), {"time.step": steps}, measures=("history",))
+    scene = load_scene(name).with_values(values).model_copy(update={"sweep": {"time.step": steps}})
+    study = Study("sweep", "Sweep", "Sweep.", [scene], (solver,), measures=("history",))
     with tempfile.TemporaryDirectory() as directory:
         began = time.perf_counter()
         run_study(study, Results(directory), jobs=jobs)
@@ -279,17 +277,6 @@ def two_workers(count: int = 16, n: int = 48) -> str:
     values = {"fem.elements": n, "fem.degree": 1}
     one, two = (sweep_seconds("poisson", values, "fem", count, jobs) for jobs in (1, 2))
     return f"A sweep of {count} scenes by `fem` takes {one:.2g} s on one worker and {two:.2g} s on two."
-
-
-def start_up(name: str, arguments: list[str]) -> str:
-    """Return a line of the start-up table: processor seconds of a fresh interpreter, least of five."""
-    spent = []
-    for _ in range(5):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, cwd=HERE.parent)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return f"| `{name}` | {min(spent):.2f} |"
 
 
 PAGE = """# Speed
@@ -330,16 +317,6 @@ no state of any step is kept. The elements keep the vectors of the small space, 
 vectors (at most 400), beside the factor of one sparse matrix; the results directory 8 (1 + columns) n bytes a case.
 
 {sweep}
-
-## The estimate
-
-{honesty}
-
-## Start-up
-
-| what | processor seconds |
-|---|---|
-{start}
 """
 
 
@@ -348,7 +325,6 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--quick", action="store_true", help="leave the long contests out and print only")
     quick = options.parse_args().quick
-    commands = {"import dda": ["-c", "import dda"], "dda-validate --help": ["-m", "validation", "--help"]}
     page = PAGE.format(
         machine=f"{os.cpu_count()} cores, {platform.machine()}",
         python=platform.python_version(),
@@ -358,8 +334,6 @@ def main() -> None:
         elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),
-        honesty=estimates.honesty(40 if quick else 200),
-        start="\n".join(start_up(name, arguments) for name, arguments in commands.items()),
     )
     if quick:
         print(page)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme import spectral
-from dda.scheme.newmark import Scheme, assembled_step, effective_matrix, modal_step
+from dda.scheme import spectral, viscous
+from dda.scheme.newmark import Scheme, assembled_step, effective_matrix, modal_step, viscosity
 
 Array = NDArray[np.float64]
 
@@ -61,12 +61,12 @@ def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, compl
     """Return the two non-zero eigenvalues of one step of a mode, the larger modulus first.
 
     The step is applied to the unit states of (D, dt V) with the acceleration that equilibrium
-    gives them, A = -w^2 D, which every step but the first starts from.
+    gives them, A = -w^2 D - (a0 + a1 w^2) V, which every step but the first starts from.
     """
     k = (frequency * scheme.step) ** 2
     S = effective_matrix(scheme, 1.0, k)
     a, c, _ = modal_step(scheme, S, k, 0.0, (1.0, 0.0, -k))
-    b, d, _ = modal_step(scheme, S, k, 0.0, (0.0, 1.0, 0.0))
+    b, d, _ = modal_step(scheme, S, k, 0.0, (0.0, 1.0, 0.0 - viscosity(scheme, k)))
     root = np.sqrt(complex(((a - d) / 2) ** 2 + b * c))
     pair = sorted(((a + d) / 2 + root, (a + d) / 2 - root), key=abs, reverse=True)
     return complex(pair[0]), complex(pair[1])
@@ -109,6 +109,13 @@ def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
         scaled_condition_number=float(np.linalg.cond(S)),
         scaled_residual=float(np.max(residual)),
         spectral_radius=max(abs(mode.eigenvalues[0]) for mode in reached),
-        predicted_radius=float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg))),
+        predicted_radius=_predicted(scheme, omegas),
         largest_omega=float(np.max(omegas)),
     )
+
+
+def _predicted(scheme: Scheme, omegas: Array) -> float:
+    """Return the largest |lambda| of some w dt from trace and determinant in closed form."""
+    if scheme.damped:
+        return max(abs(viscous.eigenvalues(scheme, w / scheme.step)[0]) for w in omegas.tolist())
+    return float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg)))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.solution import check_request
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme.harmonic import Complex, chosen
+from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
@@ -43,12 +43,12 @@ def response(
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
     check_request(1, columns)
-    W2 = np.atleast_1d(chosen(scheme, frequencies, exact))
+    W2, factor = (np.atleast_1d(part) for part in answering(scheme, frequencies, exact))
     modal = modal_form(model.gap_form.reduced())
     rows = np.array([model.gap_form.reduced().observers[name] @ modal.shapes for name in columns])
     apart = modal.frequencies[:, None] ** 2 - W2
     if along is None:
-        found = rows @ ((modal.load * model.load_size)[:, None] / apart)
+        found = rows @ ((modal.load * model.load_size)[:, None] / apart) * factor
     else:
         found = rows @ ((modal.translation @ along)[:, None] * (W2 / apart))
         found += np.array([along[_OWN[name]] if name in _OWN else 0.0 for name in columns])[:, None]

@@ -68,6 +68,7 @@ def solve(
         If the number of steps is not positive or a column is unknown.
     """
     check_request(steps, columns)
+    check_damping(scheme, model.motion is not None)
     began = perf_counter()
     form = model.gap_form if full else model.gap_form.reduced()
     with np.errstate(all="ignore"):
@@ -132,6 +133,12 @@ def check_request(steps: int, columns: Sequence[str]) -> None:
     for name in columns:
         if name not in COLUMNS:
             raise ValueError(f"columns: must be among {', '.join(COLUMNS)}, got {name!r}")
+
+
+def check_damping(scheme: Scheme, moving: bool) -> None:
+    """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
+    if scheme.damped and moving:
+        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
 
 
 def step_times(scheme: Scheme, steps: int) -> Array:

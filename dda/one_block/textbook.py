@@ -25,6 +25,8 @@ _STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3
 
 def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
     """Return why the printed recursion does not apply, or None if it does."""
+    if scheme.damped:
+        return "eq. (8) has no viscous damping"
     if scheme.alpha * scheme.step**2 == 0:
         return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
     if model.traction or model.gravity or model.eccentricity or model.motion is not None:

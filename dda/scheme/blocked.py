@@ -38,6 +38,8 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
     A power of a growing map overflows before the history does.
     """
+    if scheme.damped:
+        return "viscous damping"
     omegas = [scheme.step * w for w in frequencies.tolist()]
     if not all(1 / _RANGE < omega < _RANGE for omega in omegas):
         return f"w dt is outside {1 / _RANGE:g} to {_RANGE:g}"

@@ -68,3 +68,16 @@ def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> Complex:
     """Return W2 at frequencies in Hz, as stepped or in the limit that is exact in time."""
     omega = 2 * np.pi * np.asarray(frequencies, float)
     return limit_squared_frequency(scheme, omega) if exact else squared_frequency(scheme, omega)
+
+
+def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
+    """Return the squared frequency at which the undamped system answers, and the factor on its answer.
+
+    With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
+    """
+    W2, omega = chosen(scheme, frequencies, exact), 2 * np.pi * np.asarray(frequencies, float)
+    if not scheme.damped:
+        return W2, np.ones_like(W2)
+    S = 1j * omega if exact else velocity_factor(scheme, omega)
+    stiffer = 1 + scheme.stiffness_damping * S
+    return np.asarray((W2 - scheme.mass_damping * S) / stiffer), np.asarray(1 / stiffer)

@@ -49,6 +49,8 @@ class Scheme:
     gg: float  # share of the velocity that a step starts with [-]
     step: float  # dt [s]
     start: Start = "zero"  # initial acceleration: "zero", or "consistent" with M A0 = F
+    mass_damping: float = 0.0  # a0 of C = a0 M + a1 K [1/s]
+    stiffness_damping: float = 0.0  # a1 [s]
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -60,12 +62,24 @@ class Scheme:
             raise ValueError(f"gg: must be between 0 and 1, got {self.gg!r}")
         if not (math.isfinite(self.step) and self.step > 0):
             raise ValueError(f"step: must be finite and positive, got {self.step!r}")
+        for field in ("mass_damping", "stiffness_damping"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and value >= 0):
+                raise ValueError(f"{field}: must be finite and not negative, got {value!r}")
         if self.start not in ("zero", "consistent"):
             raise ValueError(f'start: must be "zero" or "consistent", got {self.start!r}')
 
+    @property
+    def damped(self) -> bool:
+        """Whether there is viscous damping."""
+        return bool(self.mass_damping or self.stiffness_damping)
+
 
 def effective_matrix(scheme: Scheme, M: Real, k: Real) -> Real:
-    """Return S = M + alpha dt^2 K, which is alpha dt^2 times the matrix of eq. (9)."""
+    """Return S = M + delta dt C + alpha dt^2 K, at C = 0 alpha dt^2 times the matrix of eq. (9)."""
+    if scheme.damped:
+        held = 1 + scheme.delta * scheme.mass_damping * scheme.step
+        return held * M + (scheme.alpha + scheme.delta * scheme.stiffness_damping / scheme.step) * k
     return M + scheme.alpha * k
 
 
@@ -96,10 +110,34 @@ def momentum_balance(scheme: Scheme, F: Real, k: Real, D: Real, P: Real, f: Real
 
 def modal_step(scheme: Scheme, S: Real, k: Real, F: Real, state: tuple[Real, Real, Real]) -> tuple[Real, Real, Real]:
     """Return (D, P, f) of one mode one step later."""
+    if scheme.damped:
+        return viscous_step(scheme, k, F, state)
     D, P, f = state
     D = D + momentum_balance(scheme, F, k, D, P, f) / S
     f1 = acceleration_corrector(F, k, D)
     return D, velocity_corrector(scheme, P, f, f1), f1
+
+
+def viscous_step(scheme: Scheme, k: Real, F: Real, state: tuple[Real, Real, Real]) -> tuple[Real, Real, Real]:
+    """Return (D, P, f) of one mode one step later where M A + C V + K D = F.
+
+    With e = dt (a0 + a1 w^2) and P* = gg P + (1 - delta) f, the part of the momentum that is known before the step,
+
+        (1 + delta e + alpha k) (D1 - D) = (1 + delta e) [gg P + (1/2 - alpha) f] + alpha (F - k D - e P*)
+        (1 + delta e) f1 = F - k D1 - e P*,        P1 = P* + delta f1.
+    """
+    D, P, f = state
+    e = viscosity(scheme, k)
+    kept, held = scheme.gg * P + (1 - scheme.delta) * f, 1 + scheme.delta * e
+    balance = held * predictor(scheme, P, f) + scheme.alpha * (F - k * D - e * kept)
+    D = D + balance / (held + scheme.alpha * k)
+    f1 = (F - k * D - e * kept) / held
+    return D, velocity_corrector(scheme, P, f, f1), f1
+
+
+def viscosity(scheme: Scheme, k: Real) -> Real:
+    """Return e = dt (a0 + a1 w^2) of modes with k = (w dt)^2."""
+    return scheme.mass_damping * scheme.step + scheme.stiffness_damping / scheme.step * k
 
 
 def modal_displacements(scheme: Scheme, omega: float, F: float) -> Iterator[float]:
@@ -174,6 +212,22 @@ def assembled_step(scheme: Scheme, M: Array, k: Array, D: Array, P: Array, f: Ar
     """
     column, zero = k[:, None], np.zeros_like(D)
     S = effective_matrix(scheme, M, np.diag(k))
+    if scheme.damped:
+        return _assembled_viscous_step(scheme, M, column, S, (D, P, f))
     D = D + np.linalg.solve(S, momentum_balance(scheme, zero, column, D, P, f))
     f1 = acceleration_corrector(zero, column, D)
     return D, velocity_corrector(scheme, P, f, f1), f1
+
+
+def _assembled_viscous_step(
+    scheme: Scheme, M: Array, k: Array, S: Array, state: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Return the state one step later where C = a0 M + a1 K; `k` is a column."""
+    D, P, f = state
+    C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * np.diag(k[:, 0])  # dt C
+    kept, ahead = scheme.gg * P + (1 - scheme.delta) * f, predictor(scheme, P, f)
+    drag = C @ np.linalg.solve(M, kept)
+    held = ahead + scheme.delta * C @ np.linalg.solve(M, ahead)
+    D = D + np.linalg.solve(S, held - scheme.alpha * (k * D + drag))
+    f1 = M @ np.linalg.solve(M + scheme.delta * C, -(k * D + drag))
+    return D, kept + scheme.delta * f1, f1

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dda.one_block.solution import check_request
-from dda.scheme.harmonic import Complex, chosen
+from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
 from dda.system.system import BlockSystem, Equations
 
@@ -119,7 +119,7 @@ def system_response(
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
     check_request(1, columns)
-    W2 = np.atleast_1d(chosen(scheme, frequencies, exact))
+    W2, factor = (np.atleast_1d(part) for part in answering(scheme, frequencies, exact))
     equations = system.reached
     rows = equations.rows(columns)
     if along is None:
@@ -132,7 +132,7 @@ def system_response(
         found, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
     for i in np.flatnonzero(~resolved):
         found[:, i] = dynamic.observed(rows, complex(W2[i]))
-    return dict(zip(columns, found, strict=True))
+    return dict(zip(columns, found * factor, strict=True))
 
 
 class _Dynamic:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.one_block.modes import Mode, scalar_eigenvalues
-from dda.one_block.solution import Result, bound_overflow, check_request, step_times
+from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, step_times
 from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
 from dda.system.joint_solver import Factor, factor
 from dda.system.system import BlockSystem, Equations, inverses
@@ -95,6 +96,48 @@ class Stepper:
         return observed
 
 
+class _ViscousStepper:
+    """The scheme with C = a0 M + a1 K, in the displacement G = D + a1 V that the damped springs resist.
+
+    With v = dt V, q = dt^2 A, m = 1 + delta a0 dt and beta = alpha + delta a1 / dt the end of a step obeys
+
+        m M q1 + a0 dt M v* + k G1 + B' mu1 = F,      G1 = G* + beta q1,
+
+    a step of the undamped equations with beta / m for alpha; mu are the forces of springs and dashpots together.
+    """
+
+    def __init__(self, equations: Equations, scheme: Scheme) -> None:
+        """Form the matrices of the undamped step that stands for the damped one."""
+        self.equations, self.scheme = equations, scheme
+        self.lag, self.drag = scheme.stiffness_damping / scheme.step, scheme.mass_damping * scheme.step
+        self.held, self.beta = 1 + scheme.delta * self.drag, scheme.alpha + scheme.delta * self.lag
+        plain = replace(scheme, alpha=self.beta / self.held, mass_damping=0.0, stiffness_damping=0.0)
+        self.step = Stepper(equations, plain)
+        self.factor, self.corrections = self.step.factor, self.step.corrections
+        self.M = equations.blockwise(equations.mass)
+        self.inverse = equations.blockwise(inverses(equations.mass))
+
+    def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
+        """Return the observed rows of D and of the springs' own forces at every step, (rows, steps)."""
+        e, s, step = self.equations, self.scheme, self.step
+        F, still = s.step**2 * e.F, np.zeros(len(e.pressure))
+        observed_by = rows[0] + (e.B.T @ (e.kappa @ rows[1].T)).T
+        D, v, G = np.zeros_like(F), np.zeros_like(F), np.zeros_like(F)
+        q, mu = self.inverse @ F if s.start == "consistent" else 0 * F, still
+        observed = np.empty((len(observed_by), steps))
+        for n in range(steps):
+            D, v = D + s.gg * v + (0.5 - s.alpha) * q, s.gg * v + (1 - s.delta) * q  # D*, v*
+            ahead, drag = D + self.lag * v, self.drag * (self.M @ v)
+            held = step.k @ G + step.Bt @ mu
+            dG, dmu = step.increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - held), still)
+            G, mu = G + dG, mu + dmu
+            q = self.inverse @ (F - drag - step.k @ G - step.Bt @ mu) / self.held
+            D = D + (s.alpha / self.beta * (G - ahead) if self.beta else 0 * D)
+            v = v + s.delta * q
+            observed[:, n] = observed_by @ D
+        return observed
+
+
 def solve_system(
     system: BlockSystem,
     scheme: Scheme,
@@ -121,9 +164,10 @@ def solve_system(
     import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
 
     check_request(steps, columns)
+    check_damping(scheme, system.motion is not None)
     began = perf_counter()
     equations = system.equations if full else system.reached
-    stepper = Stepper(equations, scheme)
+    stepper = _ViscousStepper(equations, scheme) if scheme.damped else Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
         observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))

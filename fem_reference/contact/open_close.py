@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dpotrf, dpotrs
-from scipy.optimize import nnls
 
 from fem_reference.problem.problem import Array
 
@@ -128,6 +127,8 @@ def complementary(A: Array, free: Array) -> Array:
     free
         Gaps without forces [m], shape (points,).
     """
+    from scipy.optimize import nnls
+
     # In units in which the diagonal and the load are of size one, as the tolerance of the least squares expects.
     unit, size = 1 / np.sqrt(np.diag(A)), float(np.max(np.abs(free), initial=0.0))
     if size == 0:

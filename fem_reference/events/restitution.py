@@ -196,32 +196,3 @@ def statistics(scheme: ContactScheme, omega: float) -> Statistics:
         high=max(values),
         mean_square=math.fsum(width * (first * first + first * last + last * last) / 3 for width, first, last in ends),
     )
-
-
-def damped_rebound(scheme: ContactScheme, omega: float) -> float:
-    """Restitution of many steps in contact, e = exp(-pi xi / sqrt(1 - xi^2)), Omega << 1.
-
-    xi = (1 - gg) / (2 Omega) + (delta - 1/2) Omega / 2 is the damping ratio of the scheme in contact; 0 beyond xi = 1.
-    """
-    xi = (1 - scheme.gg) / (2 * omega) + (scheme.delta - 0.5) * omega / 2
-    return math.exp(-math.pi * xi / math.sqrt(1 - xi * xi)) if xi < 1 else 0.0
-
-
-def two_step_contact(scheme: ContactScheme) -> tuple[float, float]:
-    """The Omega at which the trace of a step in contact is zero, and the restitution there for gg = 1.
-
-    Contact then lasts two steps whatever theta is, and two steps multiply the state by minus the determinant:
-    Omega^2 = 2 / (1/2 + delta - 2 alpha), e = 1 + (1/2 - delta) Omega^2 / (1 + alpha Omega^2).
-
-    Raises
-    ------
-    ValueError
-        If gg is not 1, or 2 alpha is not below 1/2 + delta: the trace is then positive at every Omega.
-    """
-    room = 0.5 + scheme.delta - 2 * scheme.alpha
-    if scheme.gg != 1:
-        raise ValueError(f"gg: must be 1 for a contact of two steps, got {scheme.gg!r}")
-    if room <= 0:
-        raise ValueError(f"alpha: must be below 1/4 + delta/2 for a contact of two steps, got {scheme.alpha!r}")
-    square = 2 / room
-    return math.sqrt(square), 1 + (0.5 - scheme.delta) * square / (1 + scheme.alpha * square)

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.exact import continuum
+from fem_reference.exact import continuum, viscous
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
@@ -167,7 +167,11 @@ class Bar:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         began = time.perf_counter()
         s: Array = scheme.step * np.arange(1.0, steps + 1) / self.travel
-        rate = -float(np.log(scheme.gg)) / scheme.step * self.travel
+        rate = (scheme.mass_damping - float(np.log(scheme.gg)) / scheme.step) * self.travel
+        if scheme.stiffness_damping:
+            lag = scheme.stiffness_damping / self.travel
+            history, change = viscous.histories(s, self.kappa, rate, lag, tuple(columns))
+            return self._result(scheme.step, history, 0, tuple(columns), change, began)
         history = continuum.histories(s, self.kappa, rate, tuple(columns))
         return self._result(scheme.step, history, 0, tuple(columns), None, began)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from fem_reference.exact.bar import Bar
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.harmonic import Complex, squares
+from fem_reference.scheme.harmonic import Complex, answering
 
 
 def response(
@@ -31,7 +31,8 @@ def response(
     ValueError
         If gg = 0 where the response that is exact in time is asked for.
     """
-    root = bar.travel * np.sqrt(squares(frequencies, scheme, exact))
+    W2, factor = answering(frequencies, scheme, exact)
+    root = bar.travel * np.sqrt(W2)
     theta: Complex = np.where(root.imag > 0, -root, root)
     whole = np.exp(-1j * theta)
     cosine, sine = (1 + whole**2) / 2, theta * _sine(theta, whole**2)
@@ -44,7 +45,7 @@ def response(
             "contact_pressure": bar.pressure * bar.kappa * whole / below,
             "horizontal_displacement": np.zeros_like(theta),
         }
-    return {name: found[name] for name in columns}
+    return {name: factor * found[name] for name in columns}
 
 
 def _sine(theta: Complex, square: Complex) -> Complex:

@@ -18,7 +18,7 @@ from fem_reference.history.krylov import KrylovSpace
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import check_request
-from fem_reference.scheme.harmonic import Complex, squares
+from fem_reference.scheme.harmonic import Complex, answering
 from fem_reference.scheme.newmark import Work
 
 NARROW = 1e5
@@ -67,10 +67,10 @@ def response(
     """
     check_request(1, tuple(columns))
     model = build(problem) if model is None else model
-    W2 = squares(frequencies, scheme, exact)
+    W2, factor = answering(frequencies, scheme, exact)
     F = problem.load_size * model.F if along is None else model.base_force @ np.asarray(along, float)
     rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(F))
-    found = dict(zip(columns, observed(model, F, rows, W2), strict=True))
+    found = dict(zip(columns, observed(model, F, rows, W2) * factor, strict=True))
     if along is not None and "contact_pressure" in found:
         found["contact_pressure"] = found["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
     return found

@@ -48,6 +48,8 @@ def solve(
         If the block cannot be meshed, or `steps`, `columns` or `fields` are not valid.
     """
     check_request(steps, tuple(columns))
+    if scheme.damped and problem.motion is not None:
+        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
     began = time.perf_counter()
     model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
@@ -85,6 +87,8 @@ def _in_small_space(
         return "the base moves"
     if writer is not None:
         return "fields are written"
+    if stepper.scheme.damped:
+        return "viscous damping"
     return reduced(stepper, _rows(model, columns), steps)
 
 

@@ -255,6 +255,8 @@ class Scheme:
     gg: float  # factor on the velocity at the start of each step [-], 0 to 1
     step: float  # time step dt [s]
     start: Literal["zero", "consistent"] | str = "zero"  # initial acceleration: A0 = 0 as the paper, or M A0 = F
+    mass_damping: float = 0.0  # a0 of C = a0 M + a1 K [1/s]
+    stiffness_damping: float = 0.0  # a1 [s]
 
     def __post_init__(self) -> None:
         for field in ("alpha", "delta", "gg", "step"):
@@ -264,3 +266,11 @@ class Scheme:
         _require(0 <= self.gg <= 1, "gg", "must be from 0 to 1", self.gg)
         _require(self.step > 0, "step", "must be positive", self.step)
         _require(self.start in STARTS, "start", f"must be one of {STARTS}", self.start)
+        for field in ("mass_damping", "stiffness_damping"):
+            value = getattr(self, field)
+            _require(math.isfinite(value) and value >= 0, field, "must be finite and not negative", value)
+
+    @property
+    def damped(self) -> bool:
+        """Whether there is viscous damping."""
+        return self.mass_damping > 0 or self.stiffness_damping > 0

@@ -60,3 +60,16 @@ def _cramer(turn: Array, scheme: Scheme) -> tuple[Complex, Complex, Complex]:
     determinant = scheme.gg * (1 + scheme.delta * away) + left * (0.5 + scheme.alpha * away)
     least = np.finfo(float).eps
     return away, left, np.where(abs(determinant) < least, least, determinant)
+
+
+def answering(frequencies: Array, scheme: Scheme, exact: bool = False) -> tuple[Complex, Complex]:
+    """W2' [1/s2] at which the undamped model answers, and the factor 1 / (1 + a1 S) on its answer.
+
+    (K + S C - W2 M) D = F with C = a0 M + a1 K is (1 + a1 S) (K - W2' M) D = F.
+    """
+    W2 = squares(frequencies, scheme, exact)
+    if not scheme.damped:
+        return W2, np.ones_like(W2)
+    S = rates(frequencies, scheme, exact)
+    factor = 1 / (1 + scheme.stiffness_damping * S)
+    return np.asarray(factor * (W2 - scheme.mass_damping * S)), np.asarray(factor)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.problem import Array, Scheme
+from fem_reference.scheme import viscous
 
 Complex = NDArray[np.complex128]
 
@@ -42,6 +43,8 @@ def applicable(scheme: Scheme) -> str | None:
 
     A continuum has modes of every frequency: the roots must stay in the unit disk up to h = 1 / alpha.
     """
+    if scheme.damped:
+        return viscous.applicable(scheme)
     if scheme.alpha == 0:
         return "alpha is 0, and an explicit step is unstable for the high frequencies of a continuum"
     h = 1 / scheme.alpha
@@ -90,6 +93,8 @@ def spectrum(omega: Array, scheme: Scheme) -> Spectrum:
 
 def roots(omega: float, scheme: Scheme) -> Complex:
     """The two roots of one mode, shape (2,)."""
+    if scheme.damped:
+        return viscous.roots(omega, scheme)
     s = spectrum(np.array([omega]), scheme)
     if s.discriminant[0] < 0:
         log, sign = _pair(s, scheme, h_of(np.array([omega]), scheme))
@@ -172,6 +177,8 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     ndarray
         Shape (quantities, steps).
     """
+    if scheme.damped:
+        return viscous.weighted_response(omega, weights, scheme, steps)
     # On a soft spring the lowest mode barely moves and is all that moves: 1 - x would cancel there.
     slowest = _lowest(omega[:1], scheme, steps)
     total: Array = weights[:, :1] * slowest + weights[:, 1:].sum(axis=1, keepdims=True)

@@ -55,7 +55,10 @@ class State:
 
 
 def effective_matrix(M: csr_array, K: csr_array, scheme: Scheme) -> csr_array:
-    """S = M + alpha dt^2 K, the paper's (9) times alpha dt^2."""
+    """S = M + delta dt C + alpha dt^2 K, at C = 0 the paper's (9) times alpha dt^2."""
+    if scheme.damped:
+        a0, a1, dt = scheme.mass_damping, scheme.stiffness_damping, scheme.step
+        return (1 + scheme.delta * dt * a0) * M + (scheme.alpha * dt**2 + scheme.delta * dt * a1) * K
     return M + (scheme.alpha * scheme.step**2) * K if scheme.alpha > 0 else M
 
 
@@ -93,8 +96,31 @@ Operator = Callable[[Array], Array]
 def advance(state: State, F: Array, scheme: Scheme, M: Operator, K: Operator, solve: Operator) -> State:
     """One step under the load `F` at its end; `solve` is the solution with S (with M for alpha = 0)."""
     predicted = predictor(state, scheme)
+    if scheme.damped:
+        return _advance_damped(state, predicted, F, scheme, M, K, solve)
     D = state.D + solve(corrector(state.D, predicted, M, F - K(state.D), scheme))
     A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(F - K(D))
+    return State(D, velocity(state, A, scheme), A)
+
+
+def _advance_damped(
+    state: State, predicted: Array, F: Array, scheme: Scheme, M: Operator, K: Operator, solve: Operator
+) -> State:
+    """One step of M A + C V + K D = F, C = a0 M + a1 K.
+
+    With V* = gg V + dt (1 - delta) A the part of the velocity that is known before::
+
+        (M + delta dt C + alpha dt^2 K) (D1 - D) = (M + delta dt C) (D* - D) + alpha dt^2 (F - C V* - K D)
+    """
+
+    def C(x: Array) -> Array:
+        return scheme.mass_damping * M(x) + scheme.stiffness_damping * K(x)
+
+    dt, way = scheme.step, predicted - state.D
+    slowed = scheme.gg * state.V + dt * (1 - scheme.delta) * state.A
+    held = F - C(slowed)
+    D = state.D + solve(M(way) + scheme.delta * dt * C(way) + scheme.alpha * dt**2 * (held - K(state.D)))
+    A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(held - K(D))
     return State(D, velocity(state, A, scheme), A)
 
 

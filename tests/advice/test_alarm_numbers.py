@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.made_cases import made_history, made_row
-from scipy.optimize import brentq
 
 from validation.advice import budget
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
@@ -221,6 +220,8 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
     scene = oblong()
     (found,) = budget.budgets([scene])
+    from scipy.optimize import brentq
+
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None

@@ -16,7 +16,7 @@ from validation.runs.files import read_csv
 
 
 def test_solve_writes_a_history(scene_file: Path, tmp_path: Path) -> None:
-    done = cli("solve", scene_file, "--solver", "dda", "--csv", tmp_path / "h.csv")
+    done = typed("solve", scene_file, "--solver", "dda", "--csv", tmp_path / "h.csv")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "h.csv").read_text().startswith("time,displacement,contact_pressure\n0.002,")
     assert len(read_csv(tmp_path / "h.csv").time) == 50

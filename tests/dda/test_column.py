@@ -54,7 +54,7 @@ def wavenumber(
 
 
 @pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
-@pytest.mark.parametrize(("count", "courant"), [(8, 0.25), (10, 0.25), (10, 0.5), (10, 1), (20, 0.25), (40, 0.1)])
+@pytest.mark.parametrize(("count", "courant"), [(8, 0.25), (10, 0.25), (10, 0.5), (10, 1), (20, 0.25)])
 def test_waves_in_welded_blocks(count: float, courant: float, scheme: tuple[float, float]) -> None:
     found, exact = wavenumber(count, courant, scheme)
     assert abs(found - exact) < 1e-10 * abs(exact)

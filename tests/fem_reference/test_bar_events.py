@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.bar_oracle import Delayed, random_problem
+from oracles.landing import stiff_opening
 
 from fem_reference import Bar, Scheme
 from fem_reference.events.bar_events import BarMotion, solve
 from fem_reference.events.bar_model import BarProblem
-from fem_reference.events.landing import stiff_opening
 from fem_reference.events.switches import TooManySwitchesError
 
 PAPER = BarProblem(height=2.0, width=2.0, density=2700.0, young=1e9, base_stiffness=2e9, pressure=5e6)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import cmath
 import math
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.bars import damped_by_kernel
 
 from fem_reference.exact import continuum, damped
@@ -19,8 +21,7 @@ STIFF = 1e9  # of the spring over the bar: here a front is sharpest, the shares 
 CUT_OFF = 2e-12  # the smooth cut-off promises 1e-12; the kernel's own rounding at a stiff spring is as much as a half
 
 
-@pytest.mark.parametrize("column", FIRST)
-@pytest.mark.parametrize("a", [0.003, 1.0])
+@pytest.mark.parametrize(("a", "column"), thinned(product([0.003, 1.0], FIRST), 3))
 def test_the_correction_reaches_as_far_as_the_cut_off_needs_it(column: str, a: float) -> None:
     """The tail of the cut-off sum is 1e-1 at a front and 1e-12 at 42 / modes from it: what is nearer is corrected.
 
@@ -33,9 +34,9 @@ def test_the_correction_reaches_as_far_as_the_cut_off_needs_it(column: str, a: f
     np.testing.assert_allclose(found, expected, rtol=0, atol=CUT_OFF)
 
 
-@pytest.mark.parametrize("column", FIRST)
-@pytest.mark.parametrize("a", [3.0, 3.3])
-@pytest.mark.parametrize("behind", [1 / damped.MODES, 0.25, 0.4])
+@pytest.mark.parametrize(
+    ("behind", "a", "column"), thinned(product([1 / damped.MODES, 0.25, 0.4], [3.0, 3.3], FIRST), 5)
+)
 def test_fronts_and_fast_modes_count_until_they_are_below_rounding(column: str, a: float, behind: float) -> None:
     """At a t = 21 to 25 a front of size exp(-a t), 1e-9 to 1e-11, is still alive, and so are the modes between."""
     first, gap = FIRST[column]

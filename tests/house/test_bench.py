@@ -58,10 +58,10 @@ def test_the_committed_table_holds_what_was_asked_for():
 @pytest.mark.long
 def test_each_part_of_the_bench_runs():
     code = (
-        "import bench, bench_subblocks as b; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
+        "import bench; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
         "print(bench.grown('n', [1, 2, 4], lambda n: n**2)); "
         "print(bench.opening_elements_line(8, 2e-4, 60, 1)); "
-        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1))); print(b.measure(2, 1)[0])"
+        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1)))"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT / "reports", capture_output=True, text=True, timeout=300
@@ -73,4 +73,3 @@ def test_each_part_of_the_bench_runs():
     assert "| n | 1, 2, 4 | 1, 4, 16 | 2.00 |" in lines
     assert "| numpy loop |" in told.stdout
     assert "| 8 x 8 | 0.0002 | 60 |" in told.stdout
-    assert lines[-1] == "24"

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from fem_reference.events.bar_model import BarProblem
 
@@ -60,6 +59,8 @@ class Delayed:
 
     def piece(self, low: float, high: float, w: float, closed: bool) -> tuple[float, float, bool]:
         k = self.kappa if closed else 0.0
+
+        from scipy.integrate import solve_ivp
 
         def rate(t, y):
             return [2 * self.down(t, low) - self.b * t - k * y[0]]

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from fem_reference.events.block_model import BlockProblem
 
@@ -59,6 +58,8 @@ class Integrated:
         return float(self.problem.gap + self.corners[corner][1] @ D)
 
     def run(self, closed: list[bool], end: float) -> tuple[list[float], NDArray[np.float64]]:
+        from scipy.integrate import solve_ivp
+
         y, t = np.zeros(12), 0.0
         y[7] = self.problem.velocity
         times: list[float] = []

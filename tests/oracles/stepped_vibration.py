@@ -65,7 +65,7 @@ def amplitudes(rule: Rule, M: Array, K: Array, F: Array, rows: Array, w: float) 
 
 
 def fit(seen: Array, w: float, times: Array) -> Complex:
-    """Return c of Re(c e^{iwt}) by least squares, one for each column."""
-    wave = np.column_stack([np.cos(w * times), -np.sin(w * times)])
-    real, imaginary = np.linalg.lstsq(wave, seen, rcond=None)[0]
+    """Return c of Re(c e^{iwt}) + shift by least squares, one for each column: a dashpot alone holds no place."""
+    wave = np.column_stack([np.cos(w * times), -np.sin(w * times), np.ones_like(times)])
+    real, imaginary, _ = np.linalg.lstsq(wave, seen, rcond=None)[0]
     return np.asarray(real + 1j * imaginary)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE
+from conftest import SCENE, thinned
 
 from validation.compare.reading import read
 from validation.errors import InputError
@@ -31,14 +31,17 @@ def pipe(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("command", "field"),
-    [
-        ("solve {pipe}", ""),
-        ("compare {scene} {pipe}", ""),
-        ("solve {scene} --set load.base_motion={pipe}", "load: base_motion: "),
-        ("solve {scene} --solver fem --set fem.mesh={pipe}", "fem: mesh: "),
-        ("run {scene} --set fem.mesh={pipe}", "fem: mesh: "),
-        ("damping {scene} --set fem.mesh={pipe}", "fem: mesh: "),
-    ],
+    thinned(
+        [
+            ("solve {pipe}", ""),
+            ("run {scene} --set fem.mesh={pipe}", "fem: mesh: "),
+            ("compare {scene} {pipe}", ""),
+            ("damping {scene} --set fem.mesh={pipe}", "fem: mesh: "),
+            ("solve {scene} --set load.base_motion={pipe}", "load: base_motion: "),
+            ("solve {scene} --solver fem --set fem.mesh={pipe}", "fem: mesh: "),
+        ],
+        2,
+    ),
 )
 def test_a_pipe_is_refused_and_not_waited_for(command: str, field: str, pipe: Path, scene_file: Path) -> None:
     words = [word.format(pipe=pipe, scene=scene_file) for word in command.split()]

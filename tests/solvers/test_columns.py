@@ -97,7 +97,10 @@ def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) ->
         assert np.abs(blocks - elements).max() <= 1e-11 * np.abs(elements).max() + 1e-300, name
 
 
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(
+    "base",
+    ["half-space", "springs", *(pytest.param(b, marks=pytest.mark.long) for b in ("rigid", "jointed half-space"))],
+)
 def test_blocks_converge_to_the_exact_layers(site: Scene, base: str) -> None:
     """Average acceleration at half the size and half the step: a quarter of the error, or three tenths."""
     errors = []
@@ -143,7 +146,7 @@ def test_pulses_are_derivatives_of_each_other(shape: str) -> None:
 # ---- vibrations -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("solver", ["dda", pytest.param("fem", marks=pytest.mark.long)])
 @pytest.mark.parametrize("base", BASES)
 def test_a_vibration_is_what_the_steps_make_of_it(site: Scene, base: str, solver: str) -> None:
     """The spectrum of a stepped pulse that damping has taken, over that of its drive."""

@@ -32,6 +32,7 @@ from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
 from validation.runs.modes import Mode
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
@@ -169,6 +170,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
     if solve_for not in KINDS:
         raise InputError(f"solve_for: must be one of {', '.join(KINDS)}, got {solve_for!r}")
+    features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
     search = SEARCHES[solve_for](scene, modes[0].frequency, max(mode.frequency for mode in modes))
     values = search.solutions(damping)

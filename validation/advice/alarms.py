@@ -79,7 +79,9 @@ def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | No
     radius = finished.rows[scene.name, judged].metrics.get("mode1.spectral_radius")
     if not (isinstance(agreement, float) and isinstance(error, float) and isinstance(radius, float)):
         return None
-    return {"agreement": agreement, "removed": removed_motion(scene, radius), "time error": error}
+    frequency = finished.rows[scene.name, judged].metrics.get("mode1.frequency")
+    removed = removed_motion(scene, radius, frequency if isinstance(frequency, float) else 0.0)
+    return {"agreement": agreement, "removed": removed, "time error": error}
 
 
 def _first(scene: Scene, finished: Cases, wanted: Role) -> tuple[str, History | None]:
@@ -90,12 +92,17 @@ def _first(scene: Scene, finished: Cases, wanted: Role) -> tuple[str, History | 
     return "", None
 
 
-def removed_motion(scene: Scene, radius: float) -> float:
-    """Return one minus the root mean square of (|lambda| / sqrt(gg))^n over the window, 0 where nothing is damped."""
-    kinetic = math.sqrt(scene.time.discount)
-    if radius == 0 or kinetic == 0:
+def removed_motion(scene: Scene, radius: float, frequency: float = 0.0) -> float:
+    """Return one minus the root mean square of (|lambda| / sqrt(gg))^n over the window, 0 where nothing is damped.
+
+    Damping tables are meant: what they take from a mode of some frequency [rad/s] is no removal, and neither is what
+    the discount takes.
+    """
+    rate = scene.damping.mass + scene.damping.stiffness * frequency**2
+    kept = math.sqrt(scene.time.discount) * math.exp(-rate * scene.time.step / 2)
+    if radius == 0 or kept == 0:
         return 1.0
-    amplitude = np.minimum(radius / kinetic, 1.0) ** np.arange(1, scene.time.steps + 1)
+    amplitude = np.minimum(radius / kept, 1.0) ** np.arange(1, scene.time.steps + 1)
     return float(1 - np.sqrt(np.mean(amplitude**2)))
 
 

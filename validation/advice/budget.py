@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
-from validation.advice.spectra import CONTACT, FIRST, dda_modes
+from validation.advice.spectra import CONTACT, FIRST, dda_modes, mode_damping
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.runs.case_name import scene_of
@@ -41,16 +41,16 @@ def budgets(scenes: Iterable[Scene]) -> Iterator[BudgetRecord]:
 def _setting(scene: Scene) -> str:
     data = scene.definition()
     time = {key: value for key, value in data["time"].items() if key not in ("step", "steps", "start")}
-    return repr((data["block"], data["contact"], time))
+    return repr((data["block"], data["contact"], data.get("damping"), time))
 
 
 def budget(cases: list[Scene]) -> BudgetRecord:
     """Return curves and limits of one setting, as plain data.
 
     Keys: `scene` (name of the first case), `steps` (dt of the cases [s]), `dt` [s], `modes` (name -> total,
-    algorithmic and kinetic xi, None where a root is not positive), `limits` (dt [s] where the first axial mode's roots
-    turn real, below which it is overdamped, wave transit), `real roots at` (w dt of the first of these), `floor` (first
-    frequency of DDA over that of the bar).
+    algorithmic, kinetic and, with damping tables, viscous xi, None where a root is not positive), `limits` (dt [s]
+    where the first axial mode's roots turn real, below which it is overdamped, wave transit), `real roots at` (w dt of
+    the first of these), `floor` (first frequency of DDA over that of the bar).
     """
     scene = cases[0]
     modes = dda_modes(scene)
@@ -87,12 +87,22 @@ def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float |
     total = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     own = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
     radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    return {
-        "total": _listed(total),
-        "algorithmic": _listed(own),
-        "kinetic": _listed(total - own),
-        "spectral_radius": _listed(radius),
-    }
+    parts = {"algorithmic": _listed(own), "kinetic": _listed(total - own)}
+    if scene.damping.present:
+        numerical, total, radius = total, *_viscous(scene, frequency, dt)
+        parts["viscous"] = _listed(total - numerical)
+    return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
+
+
+def _viscous(scene: Scene, frequency: float, dt: Array) -> tuple[Array, Array]:
+    """Return xi and spectral radius over dt with the damping tables."""
+    gg = discounts(scene, dt)
+    modes = [
+        mode_damping(scene.with_values({"time.step": float(step), "time.gg": float(g)}), FIRST, frequency)
+        for step, g in zip(dt, gg, strict=True)
+    ]
+    total = np.array([math.nan if mode.damping is None else mode.damping for mode in modes])
+    return total, np.array([mode.spectral_radius for mode in modes])
 
 
 def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
@@ -100,6 +110,9 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     t = scene.time
     fine = np.geomspace(dt[0], dt[-1], 20_001)
     total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
+    if scene.damping.present:
+        fine = dt
+        total = _viscous(scene, first, dt)[0]
     found = {}
     if np.isnan(total).any() and np.isfinite(total[0]):
         found["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])

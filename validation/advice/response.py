@@ -102,6 +102,10 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     """
     f = _checked(frequencies)
     check_scene(scene)
+    if scene.column is not None and scene.column.impedance is not None and not np.all(f > 0):
+        raise InputError(
+            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which holds nothing, got 0"
+        )
     chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")

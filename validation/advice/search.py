@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from validation.runs.history import Array
 
@@ -60,6 +59,8 @@ class Search:
 
     def _extremum(self, s: Array, i: int) -> float:
         """Refine a turning point of the grid."""
+        from scipy.optimize import minimize_scalar
+
         y = self.xi(s[i - 1 : i + 2])
         sign = -1.0 if y[1] >= max(y[0], y[2]) else 1.0
         bounds = (float(s[i - 1]), float(s[i + 1]))
@@ -72,6 +73,8 @@ class Search:
 
     def solutions(self, target: float) -> list[float]:
         """Return all coordinates at which xi is the target."""
+        from scipy.optimize import brentq
+
         found: list[float] = []
         for a, b in self.pieces:
             low, high = self.at(a) - target, self.at(b) - target

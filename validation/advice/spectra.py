@@ -15,7 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from dda.scheme import spectral
+from dda.scheme import spectral, viscous
+from dda.scheme.newmark import Scheme
+from dda.scheme.spectral import ComplexArray
 from validation.errors import InputError
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
@@ -39,9 +41,10 @@ class ModeDamping:
     spectral_radius: float  # max |lambda| [1]
     omega_dt: float  # Omega = w dt [1]
     algorithmic: float | None  # xi of the same scheme at gg = 1 [1]
-    kinetic: float | None  # the rest of xi [1]
+    kinetic: float | None  # what the discount adds [1]
     period_elongation: float | None  # w / w' - 1 [1]
     least_root: float  # real part of the eigenvalue next to -1 [1]
+    viscous: float | None = 0.0  # what damping tables add to xi [1]
 
     @property
     def flips(self) -> bool:
@@ -74,8 +77,16 @@ def number(value: float) -> float | None:
 
 def damping_ratio(scene: Scene, frequency: float) -> float:
     """Return xi of the scene's scheme at a frequency [rad/s]; NaN where a root is not positive."""
+    if scene.damping.present:
+        return viscous.damping_ratio(_viscous_scheme(scene), frequency)
     t = scene.time
     return float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
+
+
+def _viscous_scheme(scene: Scene) -> Scheme:
+    """Return the scheme of a scene with its damping tables."""
+    t, d = scene.time, scene.damping
+    return Scheme(t.alpha, t.delta, t.discount, t.step, mass_damping=d.mass, stiffness_damping=d.stiffness)
 
 
 def mode_names(modes: Sequence[Mode]) -> list[str]:
@@ -90,18 +101,33 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     omega, gg = frequency * t.step, t.discount
     total = damping_ratio(scene, frequency)
     own = float(spectral.damping_ratio(omega, t.alpha, t.delta))
-    roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
+    numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
+    if scene.damping.present:
+        roots = np.array(viscous.eigenvalues(_viscous_scheme(scene), frequency))
+        radius, elongation = float(np.max(np.abs(roots))), _elongation(omega, roots)
+    else:
+        roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
+        radius = float(spectral.spectral_radius(omega, t.alpha, t.delta, gg))
+        elongation = float(spectral.period_elongation(omega, t.alpha, t.delta, gg))
     return ModeDamping(
         name,
         frequency,
         number(total),
-        float(spectral.spectral_radius(omega, t.alpha, t.delta, gg)),
+        radius,
         omega,
         number(own),
-        number(total - own),
-        number(float(spectral.period_elongation(omega, t.alpha, t.delta, gg))),
+        number(numerical - own),
+        number(elongation),
         float(np.min(roots.real)),
+        number(total - numerical),
     )
+
+
+def _elongation(omega: float, roots: ComplexArray) -> float:
+    """Return w/w' - 1 of two eigenvalues, NaN where a root is not positive."""
+    if np.any((roots.imag == 0) & (roots.real <= 0)):
+        return math.nan
+    return omega / math.sqrt(abs(np.prod(np.log(roots)))) - 1
 
 
 def single(scene: Scene) -> Scene:
@@ -223,8 +249,12 @@ def percent(value: float) -> str:
 
 def parts(mode: ModeDamping) -> str:
     """Say which part of the damping is algorithmic and which is kinetic."""
-    if mode.algorithmic is None or mode.kinetic is None or mode.damping is None:
+    if mode.algorithmic is None or mode.kinetic is None or mode.viscous is None or mode.damping is None:
         return "kinetic and algorithmic"
+    if mode.viscous:
+        shares = (("algorithmic", mode.algorithmic), ("kinetic", mode.kinetic), ("viscous", mode.viscous))
+        said = [f"{percent(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
+        return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
     small = 1e-9 * mode.damping
     if abs(mode.kinetic) <= small:
         return "all of it algorithmic"

@@ -22,6 +22,7 @@ from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
 from validation.runs.history import Array, Complex
+from validation.scenes import features
 from validation.scenes.scene import Scene
 
 MOST_BLOCKS = 10_000_000
@@ -148,6 +149,7 @@ def advise_wave(
     """
     _check(frequency, loss, wavelengths, phase_error)
     check_scene(scene)
+    features.refuse_damping(scene, "advise")
     layers = layers_of(scene)
     way = _Way(layers, frequency, 1.0)
     if wavelengths is not None:

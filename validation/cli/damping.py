@@ -22,7 +22,7 @@ SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file
 
 @app.command()
 def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOption = False) -> None:
-    """Show the damping that a scene really has, mode by mode: total, algorithmic and kinetic.
+    """Show the damping that a scene really has, mode by mode: total, algorithmic, kinetic and viscous.
 
     Example: [bold]dda-validate damping figures-3-4 --set time.step=0.002[/bold]
     """
@@ -145,20 +145,22 @@ def claims(
 def _print_damping(found: Damping) -> None:
     rate = "" if found.gg_rate is None else f", c = {found.gg_rate:.4g} 1/s"
     typer.echo(f"{found.sentence}\n\ngg = {found.gg:.6g} per step{rate}")
-    heads = ("mode", "w [rad/s]", "w dt", "xi [%]", "algorithmic", "kinetic", "|lambda|", "w/w' - 1")
+    tables = any(mode.viscous for mode in found.modes)
+    parts = ("algorithmic", "kinetic", "viscous") if tables else ("algorithmic", "kinetic")
+    heads = ("mode", "w [rad/s]", "w dt", "xi [%]", *parts, "|lambda|", "w/w' - 1")
     rows = [
         (
             mode.name,
             f"{mode.frequency:.6g}",
             f"{mode.omega_dt:.4g}",
-            *(_percent(v) for v in (mode.damping, mode.algorithmic, mode.kinetic)),
+            *(_percent(v) for v in (mode.damping, *(getattr(mode, part) for part in parts))),
             f"{mode.spectral_radius:.6g}",
             "-" if mode.period_elongation is None else f"{mode.period_elongation:.3g}",
         )
         for mode in found.modes
     ]
     rows += [
-        (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), "", "", "", "")
+        (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), *[""] * (len(parts) + 2))
         for name, values in found.references.items()
     ]
     print_table([heads, *rows])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable
 
@@ -11,7 +10,7 @@ import typer
 from validation.cli import compare, contact, damping, report, run, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.output import prepare, silence
-from validation.cli.signals import caught, interruption, last_words
+from validation.cli.signals import caught, end
 from validation.errors import InputError
 from validation.runs.text import printable
 
@@ -25,9 +24,8 @@ def main() -> None:
     prepare()
     status = _guarded(lambda: app(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        typer.echo(last_words(), err=True, nl=False)
         _guarded(sys.stdout.flush)
-        os._exit(interruption())  # not through the pool's own exit, which may wait for a worker that is gone
+        end()
     sys.exit(_guarded(sys.stdout.flush) or status)
 
 
@@ -40,9 +38,9 @@ def _guarded(act: Callable[[], object]) -> int:
         return _said(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
         return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
-    except (KeyboardInterrupt, typer.Abort) as end:
-        if isinstance(end.__cause__, EOFError):  # which typer takes for the end of an answer, and nothing is asked here
-            raise end.__cause__ from None
+    except (KeyboardInterrupt, typer.Abort) as stop:
+        if isinstance(stop.__cause__, EOFError):  # typer takes it for the end of an answer; nothing is asked here
+            raise stop.__cause__ from None
         return INTERRUPTED
     except BrokenPipeError:  # what decides a status has been said before
         silence()

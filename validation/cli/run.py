@@ -219,11 +219,7 @@ def _solved(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run
     return done
 
 
-def _print_run(case: Scene, solver: str, done: object) -> None:
-    from validation.runs.run import Run
-
-    if not isinstance(done, Run):
-        return
+def _print_run(case: Scene, solver: str, done: Run) -> None:
     work = ", ".join(f"{count} {name}" for name, count in done.work.items())
     last = {name: float(values[-1]) for name, values in done.history.columns.items()} if done.history else {}
     ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())

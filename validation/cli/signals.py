@@ -9,28 +9,29 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
+from typing import NoReturn
 
 from validation.cli.app import INTERRUPTED
 
 CAUGHT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PATIENCE = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
-LAST_WORDS = "interrupted: finished rows are kept; run the same command again to continue\n"
+LAST_WORDS = b"interrupted: finished rows are kept; run the same command again to continue\n"
 _received: list[int] = []
-_unsaid: list[str] = []
+_unsaid = [LAST_WORDS]
+_saying = threading.RLock()
 _watchers: list[threading.Thread] = []
 
 
-def interruption() -> int:
-    """Return the status of an interrupted command: 128 and the number of the signal that ended it."""
-    return 128 + _received[0] if _received else INTERRUPTED
+def end() -> NoReturn:
+    """End an interrupted command, which says once that it was, whichever of its threads comes first.
 
-
-def last_words() -> str:
-    """Return what an interrupted command says, to the first of its threads that asks, and nothing after that."""
-    try:
-        return _unsaid.pop()
-    except IndexError:
-        return ""
+    Past the stream, which another thread may be holding, and past the pool's own exit, which may wait for a worker
+    that is gone.
+    """
+    with _saying, suppress(OSError):
+        while _unsaid:
+            os.write(2, _unsaid.pop())
+    os._exit(128 + _received[0] if _received else INTERRUPTED)
 
 
 @contextmanager
@@ -54,7 +55,7 @@ def caught() -> Iterator[None]:
             yield
         except BaseException:
             if _received:  # whatever a library has made of the interruption
-                os._exit(interruption())
+                end()
             raise
         finally:
             sys.unraisablehook = hook
@@ -85,9 +86,8 @@ def _watch(heard: int) -> None:
     while numbers := os.read(heard, 1):
         if numbers[0] in CAUGHT:
             threading.Event().wait(PATIENCE)
-            with suppress(OSError):
-                os.write(2, last_words().encode())  # the main thread may be holding the stream
-            os._exit(128 + numbers[0])
+            _received.append(numbers[0])
+            end()
     os.close(heard)
 
 
@@ -95,8 +95,10 @@ def _handler(owner: int) -> Callable[[int, FrameType | None], None]:
     """Return the handler of a process; its forks, which inherit it, just end."""
 
     def handle(number: int, frame: FrameType | None) -> None:
-        if _received or os.getpid() != owner:
+        if os.getpid() != owner:
             os._exit(128 + number)
+        if _received:
+            end()
         _received.append(number)
         raise KeyboardInterrupt
 
@@ -108,7 +110,7 @@ def _unraisable(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[s
 
     def told(raised: sys.UnraisableHookArgs) -> None:
         if _received:
-            os._exit(interruption())
+            end()
         hook(raised)
 
     return told

@@ -171,6 +171,9 @@ def rayleigh(
         points = advice.points(ratios or [], a0, a1)
         scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
     ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
+    if scene is not None and (tables := one_case(scene, assignments).damping).present:
+        own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
+        typer.echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
     band = low or ends[0], high or ends[1]
     advice.check_band(*band)
     _print_scheme(scheme, band)

@@ -105,6 +105,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
     features.refuse_column(scene, "compare")
+    features.refuse_damping(scene, "compare")
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(

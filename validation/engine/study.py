@@ -1,9 +1,9 @@
-"""Studies: scenes x variations x solvers, with the gates that judge them."""
+"""Studies: scenes x solvers, with the gates that judge them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from validation.engine.case import MEASURES, Case
@@ -14,18 +14,6 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 
 REPEATS = 3  # of each case of a study of timings
-
-
-def _no_gates() -> tuple[Gate, ...]:
-    return ()
-
-
-def _nothing_derived() -> tuple[Derived, ...]:
-    return ()
-
-
-def _no_data() -> Mapping[str, Any]:
-    return {}
 
 
 def _nothing_to_say(scenes: Sequence[Scene], finished: Finished) -> Annotations:
@@ -44,8 +32,6 @@ class Study:
         Names of built-in scenes, or scenes.
     solvers
         Solvers for every scene; by default those of the scene's `[run]` table.
-    variations
-        Dotted key to values, in product with the scenes' own sweeps.
     extra
         Further (case name, solver) pairs, such as a run without savings.
     gates
@@ -73,12 +59,11 @@ class Study:
     purpose: str
     scenes: Sequence[str | Scene]
     solvers: tuple[str, ...] | None = None
-    variations: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     extra: tuple[tuple[str, str], ...] = ()
-    gates: Callable[[], tuple[Gate, ...]] = _no_gates
+    gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False
-    derived: Callable[[], tuple[Derived, ...]] = _nothing_derived
-    data: Callable[[], Mapping[str, Any]] = _no_data
+    derived: Callable[[], tuple[Derived, ...]] = tuple
+    data: Callable[[], Mapping[str, Any]] = dict
     measures: tuple[str, ...] = MEASURES
     pairs: tuple[tuple[str, str], ...] | None = None
     annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
@@ -87,7 +72,8 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        scenes = [case for scene in self.scenes for case in self._varied(scene).expand()]
+        stated = [load_scene(scene) if isinstance(scene, str) else scene for scene in self.scenes]
+        scenes = [case for scene in stated for case in scene.expand()]
         named = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
         pairs += [(named[name], solver) for name, solver in self.extra if name in named]
@@ -102,10 +88,3 @@ class Study:
         """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
         recipes = self.recipes()
         return [need for name in gate.cases for need in (recipes[name].needs if name in recipes else (name,))]
-
-    def _varied(self, scene: str | Scene) -> Scene:
-        loaded = load_scene(scene) if isinstance(scene, str) else scene
-        if not self.variations:
-            return loaded
-        sweep = dict(loaded.sweep) | {key: list(values) for key, values in self.variations.items()}
-        return loaded.model_copy(update={"sweep": sweep})

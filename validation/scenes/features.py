@@ -26,6 +26,7 @@ class Feature:
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 COLUMN = "column"
+DAMPING = "damping tables"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
@@ -36,6 +37,7 @@ FEATURES = (
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
     Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
+    Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
     Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
 )
@@ -57,6 +59,27 @@ def of(scene: Scene) -> tuple[str, ...]:
 def linear(scene: Scene) -> bool:
     """Whether the motion is linear: modes, spectra, a static solution and closed forms exist."""
     return all(feature.linear for feature in _present(scene))
+
+
+def damping_apart(scene: Scene) -> str | None:
+    """Return None, or what viscous damping does not go together with: it is defined where the motion is linear."""
+    own = of(scene)
+    others = [name for name in own if name in (BASE_MOTION, UNILATERAL, COLUMN)]
+    if DAMPING in own and others:
+        return f"it does not handle {', '.join(sorted(others))} together with {DAMPING}"
+    return None
+
+
+def refuse_damping(scene: Scene, what: str) -> None:
+    """Refuse a scene with damping tables where the answer knows the scheme's own damping only.
+
+    Raises
+    ------
+    InputError
+        The scene has mass or stiffness damping.
+    """
+    if scene.damping.present:
+        raise InputError(f"{scene.name}: {what} takes scenes without damping tables only, got one with them")
 
 
 def refuse_column(scene: Scene, what: str) -> None:

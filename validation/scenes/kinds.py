@@ -11,6 +11,7 @@ from validation.scenes.column import ColumnSection, InputSection
 from validation.scenes.tables import (
     BlockSection,
     ContactSection,
+    DampingSection,
     FemSection,
     LoadSection,
     Section,
@@ -35,6 +36,7 @@ class SceneTables(Section):
     stated_load: LoadSection | None = Field(None, alias="load")
     column: ColumnSection | None = None
     stated_input: InputSection | None = Field(None, alias="input")
+    damping: DampingSection = DampingSection()
     fem: FemSection = FemSection()
 
     @property

@@ -236,6 +236,18 @@ class TimeSection(Section):
         return self.step * self.steps
 
 
+class DampingSection(Section):
+    """Viscous damping of Rayleigh's kind, C = a0 M + a1 K, springs of the contact included."""
+
+    mass: NonNegative = 0.0  # a0, 1/s
+    stiffness: NonNegative = 0.0  # a1, s
+
+    @property
+    def present(self) -> bool:
+        """Whether anything is damped."""
+        return self.mass > 0 or self.stiffness > 0
+
+
 class FemSection(Section):
     """The finite-element pair: mesh and foundation."""
 

@@ -126,8 +126,8 @@ class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
-    handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT})
-    sections = MESH_SECTIONS
+    handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING})
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
     role, rank = Role.REFERENCE, 5.0
@@ -143,7 +143,8 @@ class ExactBar(Solver):
         from fem_reference.scheme import modal
 
         exact = opening_bar if features.UNILATERAL in features.of(scene) else bar
-        return exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
+        apart = features.damping_apart(scene)
+        return apart or exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar, on a locked spring or on one that carries no tension."""
@@ -159,11 +160,15 @@ class ContinuousBar(NewmarkBar):
         return self.bar.continuum(self.scheme, self.scene.time.steps, self.scene.run.columns)
 
     def modes(self) -> tuple[Mode, ...]:
-        """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt), c = -ln(gg) / dt."""
-        step = self.scene.time.step
-        half_rate = -math.log(self.scene.time.discount) / step / 2
-        every = super().modes()
-        return tuple(Mode(m.frequency, m.share, _factors(m.frequency, half_rate, step), None, True) for m in every)
+        """Return the lowest modes with the eigenvalues exp((-c/2 +- sqrt(c^2/4 - w^2)) dt).
+
+        The rate of a mode is c = -ln(gg) / dt + a0 + a1 w^2.
+        """
+        step, d, every = self.scene.time.step, self.scene.damping, super().modes()
+        rate = d.mass - math.log(self.scene.time.discount) / step
+        halves = [(rate + d.stiffness * m.frequency**2) / 2 for m in every]
+        factors = [_factors(m.frequency, half, step) for m, half in zip(every, halves, strict=True)]
+        return tuple(Mode(m.frequency, m.share, pair, None, True) for m, pair in zip(every, factors, strict=True))
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time."""
@@ -180,7 +185,7 @@ class Continuum(ExactBar):
     """Exact in space and time."""
 
     name = "continuum"
-    handles = frozenset({features.SUB_BLOCKS})
+    handles = frozenset({features.SUB_BLOCKS, features.DAMPING})
     role, rank = Role.TRUTH, 6.0
     line = LineStyle("#999999", (), 0.7, 1)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -49,8 +49,8 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
     import dda
 
-    t = scene.time
-    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+    t, d = scene.time, scene.damping
+    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
 class OneBlock(Prepared):
@@ -62,23 +62,20 @@ class OneBlock(Prepared):
             self.model, self.scheme = model_of(scene), scheme_of(scene)
 
     def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
-        import dda
-
-        self.check(fields)
-        with naming(self.scene):
-            return to_run(
-                self.scene,
-                dda.solve(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns, self.full),
-            )
-
-    def check(self, fields: Path | None) -> None:
-        """Refuse fields, columns that DDA does not have, and steps beyond the scheme's limit."""
+        """Run the scene; DDA has no fields."""
         import dda
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, dda.COLUMNS)
         check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        with naming(self.scene):
+            return to_run(self.scene, self.solved(self.scene.time.steps, self.scene.run.columns))
+
+    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+        """Return the history of some steps."""
+        import dda
+
+        return dda.solve(self.model, self.scheme, steps, columns, self.full)
 
     def fastest(self) -> float:
         """Return the largest frequency that the load reaches [rad/s]."""
@@ -89,11 +86,14 @@ class OneBlock(Prepared):
         return self.model.static()
 
     def modes(self) -> tuple[Mode, ...]:
-        """Return the modes that the load reaches."""
+        """Return the modes that the load reaches, of sub-blocks the lowest."""
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in self.found_modes())
+
+    def found_modes(self) -> Sequence[dda.Mode]:
+        """Return the modes as DDA gives them."""
         import dda
 
-        found = dda.modes(self.model, self.scheme)
-        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
+        return dda.modes(self.model, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition numbers and residual."""
@@ -122,16 +122,11 @@ class SubBlocks(OneBlock):
         with naming(scene):
             self.system = dda.subdivided(self.model, *b.subdivide or (1, 1), b.glue_ratio * b.young, b.pattern)
 
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
+    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+        """Return the history of some steps."""
         import dda
 
-        self.check(fields)
-        with naming(self.scene):
-            return to_run(
-                self.scene,
-                dda.solve_system(self.system, self.scheme, self.scene.time.steps, self.scene.run.columns, self.full),
-            )
+        return dda.solve_system(self.system, self.scheme, steps, columns, self.full)
 
     def fastest(self) -> float:
         """Return the largest frequency that the load reaches [rad/s]."""
@@ -145,12 +140,11 @@ class SubBlocks(OneBlock):
 
         return dda.static_system(self.system)
 
-    def modes(self) -> tuple[Mode, ...]:
-        """Return the lowest modes that the load reaches."""
+    def found_modes(self) -> Sequence[dda.Mode]:
+        """Return the lowest modes as DDA gives them."""
         import dda
 
-        found = dda.system_modes(self.system, self.scheme)
-        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in found)
+        return dda.system_modes(self.system, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: diagnostics are those of one whole block."""
@@ -172,10 +166,11 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
+        | {features.DAMPING}
         | features.LOADS
         | features.RULES
     )
-    sections: tuple[str, ...] = ("block", "contact", "load", "column", "input", "time", "run")
+    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role, rank = Role.JUDGED, 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
@@ -193,7 +188,7 @@ class DDA(Solver):
             return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
         if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
-        return None
+        return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
@@ -212,14 +207,11 @@ class DDA(Solver):
 class Printed(OneBlock):
     """A whole block stepped by the printed recursion; there is nothing to save."""
 
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
+    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+        """Return the history of some steps."""
         import dda
 
-        self.check(fields)
-        with naming(self.scene):
-            found = dda.solve_textbook(self.model, self.scheme, self.scene.time.steps, self.scene.run.columns)
-            return to_run(self.scene, found)
+        return dda.solve_textbook(self.model, self.scheme, steps, columns)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Raise: the printed recursion is no M D'' + K D = F where mu is not zero."""

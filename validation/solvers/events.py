@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -51,23 +51,22 @@ def block_of(scene: Scene) -> BlockProblem:
 
     width, height = rectangle(scene) or (0.0, 0.0)
     b, c, q = scene.block, scene.contact, scene.load
-    with naming(scene):
-        return BlockProblem(
-            width=width,
-            height=height,
-            density=b.density,
-            young=b.young,
-            stiffness=c.stiffness,
-            pressure=q.pressure,
-            shear_stiffness=c.shear,
-            poisson=b.poisson,
-            hypothesis=b.hypothesis,
-            eccentricity=q.eccentricity,
-            traction=q.traction,
-            gravity=q.gravity,
-            gap=c.gap,
-            velocity=b.velocity,
-        )
+    return BlockProblem(
+        width=width,
+        height=height,
+        density=b.density,
+        young=b.young,
+        stiffness=c.stiffness,
+        pressure=q.pressure,
+        shear_stiffness=c.shear,
+        poisson=b.poisson,
+        hypothesis=b.hypothesis,
+        eccentricity=q.eccentricity,
+        traction=q.traction,
+        gravity=q.gravity,
+        gap=c.gap,
+        velocity=b.velocity,
+    )
 
 
 def bar_of(scene: Scene) -> BarProblem:
@@ -76,22 +75,23 @@ def bar_of(scene: Scene) -> BarProblem:
 
     width, height = rectangle(scene) or (0.0, 0.0)
     b, c, q = scene.block, scene.contact, scene.load
-    with naming(scene):
-        return BarProblem(
-            width=width,
-            height=height,
-            density=b.density,
-            young=b.young,
-            base_stiffness=2 * c.stiffness,
-            pressure=q.pressure,
-            gravity=q.gravity,
-            gap=c.gap,
-            velocity=b.velocity,
-        )
+    return BarProblem(
+        width=width,
+        height=height,
+        density=b.density,
+        young=b.young,
+        base_stiffness=2 * c.stiffness,
+        pressure=q.pressure,
+        gravity=q.gravity,
+        gap=c.gap,
+        velocity=b.velocity,
+    )
 
 
 class Motion(Prepared):
     """A scene whose motion is found from switch to switch; nothing in it is a step, a mesh or a saving."""
+
+    names: tuple[str, ...]  # of the columns
 
     def __init__(self, scene: Scene, name: str) -> None:
         self.scene, self.name = scene, name
@@ -135,14 +135,22 @@ class Motion(Prepared):
         """Whether a corner is closed just after t = 0."""
         raise NotImplementedError
 
-    def observed(self, columns: Mapping[str, Array], switches: Sequence[events.Switch], began: float) -> Run:
-        """Return the run of the columns that are asked for."""
-        self.found = switches
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        no_fields(self.name, self.scene, fields)
+        check_columns(self.scene, self.names)
+        began = perf_counter()
+        with naming(self.scene):
+            columns = dict(zip(self.names, self.moved(), strict=True))
         asked = {name: columns[name] for name in self.scene.run.columns}
-        work = {"switches": len(switches), "steps": self.scene.time.steps}
+        work = {"switches": len(self.found or ()), "steps": self.scene.time.steps}
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
-        history = History(self.instants(), asked)
-        return Run(Outcome.COMPLETED, history, work, seconds, ("exact in time", switches_in_words(switches)))
+        said = "exact in time", switches_in_words(self.found or ())
+        return Run(Outcome.COMPLETED, History(self.instants(), asked), work, seconds, said)
+
+    def moved(self) -> Iterable[Array]:
+        """Find the motion and its switches; return all columns in the order of `names`."""
+        raise NotImplementedError
 
 
 def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
@@ -162,25 +170,21 @@ def switches_in_words(switches: Sequence[events.Switch]) -> str:
 class BlockMotion(Motion):
     """The block of one strain."""
 
+    names = BLOCK_COLUMNS
     motion: block_events.BlockMotion
 
     def starts_closed(self, corner: str) -> bool:
         """Whether a corner is closed just after t = 0."""
         return self.motion.closed_at_start["MN".index(corner)]
 
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
+    def moved(self) -> Iterable[Array]:
+        """Find the motion and its switches; return all columns."""
         from fem_reference.events.block_events import solve
 
-        no_fields(self.name, self.scene, fields)
-        check_columns(self.scene, BLOCK_COLUMNS)
-        began, problem, t = perf_counter(), block_of(self.scene), self.instants()
-        with naming(self.scene):
-            self.motion = motion = solve(problem, self.end)
-        found = motion.at(t)
-        named = (found.displacement[1], found.contact_pressure, found.displacement[0], found.displacement[2])
-        columns = (*named, *found.gap, *found.normal_force)
-        return self.observed(dict(zip(BLOCK_COLUMNS, columns, strict=True)), motion.switches, began)
+        self.motion = solve(block_of(self.scene), self.end)
+        self.found, at = self.motion.switches, self.motion.at(self.instants())
+        u, v, r = at.displacement[:3]
+        return (v, at.contact_pressure, u, r, *at.gap, *at.normal_force)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
@@ -217,25 +221,22 @@ class BlockMotion(Motion):
 class BarMotion(Motion):
     """The bar."""
 
+    names = BAR_COLUMNS
     motion: bar_events.BarMotion
 
     def starts_closed(self, corner: str) -> bool:
         """Whether the base is closed just after t = 0."""
         return self.motion.closed_at_start
 
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
+    def moved(self) -> Iterable[Array]:
+        """Find the motion and its switches; return all columns."""
         from fem_reference.events.bar_events import solve
 
-        no_fields(self.name, self.scene, fields)
-        check_columns(self.scene, BAR_COLUMNS)
-        began, problem, t = perf_counter(), bar_of(self.scene), self.instants()
-        with naming(self.scene):
-            self.motion = motion = solve(problem, self.end)
-        found = motion.at(t)
-        force = found.contact_pressure * problem.width / 2
-        columns = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
-        return self.observed(dict(zip(BAR_COLUMNS, columns, strict=True)), motion.switches, began)
+        problem = bar_of(self.scene)
+        self.motion = solve(problem, self.end)
+        self.found, at = self.motion.switches, self.motion.at(self.instants())
+        force = at.contact_pressure * problem.width / 2
+        return (at.displacement, at.contact_pressure, at.gap, at.gap, force, force)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""

@@ -73,8 +73,8 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
     import fem_reference
 
-    t = scene.time
-    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
+    t, d = scene.time, scene.damping
+    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
 def check_stable(scene: Scene, model: Model | None = None) -> None:
@@ -224,8 +224,14 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = features.LOADS | {features.SUB_BLOCKS, features.UNILATERAL, features.IMPLICIT, features.COLUMN}
-    sections: tuple[str, ...] = (*MESH_SECTIONS, "column", "input")
+    handles = features.LOADS | {
+        features.SUB_BLOCKS,
+        features.UNILATERAL,
+        features.IMPLICIT,
+        features.COLUMN,
+        features.DAMPING,
+    }
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
@@ -241,7 +247,7 @@ class FiniteElements(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        return moving_base(scene)
+        return moving_base(scene) or features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import isotonic_regression
 
 from validation.runs.history import Array, History
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -103,6 +102,8 @@ def nudge(wanted: Sequence[float], gap: float, low: float, high: float) -> NDArr
     The least-squares answer: isotonic regression of ``wanted - gap * rank``, clipped so that all places
     stay within [low, high] as long as they fit.
     """
+    from scipy.optimize import isotonic_regression
+
     goal = np.asarray(wanted, dtype=float)
     order = np.argsort(goal, kind="stable")
     steps = gap * np.arange(goal.size)

@@ -174,6 +174,9 @@ def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
         if name == "first axial" and min(np.nanmax(part, initial=0.0) for part in (own, kinetic)) > LEAST_RATIO:
             found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
             found["kinetic part"] = (kinetic, colors[name], 0.9, (0, (1, 1.5)))
+        if name == "first axial" and "viscous" in curves:
+            found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
+            found["viscous part"] = (np.array(curves["viscous"], dtype=float), colors[name], 0.9, (0, (6, 1.5)))
     return found
 
 

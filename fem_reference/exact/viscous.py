@@ -1,0 +1,70 @@
+r"""The bar on a spring with stiffness-proportional damping, M D'' + (c M + a1 K) D' + K D = F, mode by mode.
+
+Time is in travel times. A mode goes the way 1 - x(w, t) of an oscillator with half the rate a = (c + a1 w^2) / 2: there
+are no fronts, since beyond w = 2 / a1 the modes creep. The sum over the modes is cut off smoothly and enlarged until it
+no longer changes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.problem.problem import Array
+
+FIRST, LAST = 256, 2**15
+"""Modes of the first and of the last attempt."""
+TARGET = 1e-12
+"""Change of the history over its maximum at which no more modes are added."""
+ROUNDING = 16 * np.finfo(float).eps
+"""Of a sum over modes, over the sum of their moduli."""
+BLOCK = 2**20
+"""Entries of a work array."""
+
+
+def histories(times: Array, kappa: float, rate: float, lag: float, columns: tuple[str, ...]) -> tuple[Array, float]:
+    """Histories over their static values, shape (columns, times), and the change by the last enlargement.
+
+    Parameters
+    ----------
+    times
+        Instants in travel times.
+    rate, lag
+        c times the travel time, and a1 over it.
+    """
+    count, found = FIRST, _summed(times, kappa, rate, lag, columns, FIRST)
+    while True:
+        count *= 2
+        finer = _summed(times, kappa, rate, lag, columns, count)
+        change = float(np.max(np.abs(finer - found)) / max(float(np.max(np.abs(finer))), np.finfo(float).tiny))
+        found = finer
+        if change <= TARGET or count >= LAST:
+            return found, change
+
+
+def _summed(times: Array, kappa: float, rate: float, lag: float, columns: tuple[str, ...], count: int) -> Array:
+    b = wave_numbers(kappa, count)
+    weights = np.array([shares(name, b, kappa) for name in columns]) * cut_off(count, count)
+    half = (rate + lag * b * b) / 2
+    parts = np.array_split(times, 1 + len(times) * count // BLOCK)
+    sums = [_sum(weights, gone(part, b, half).T) for part in parts]
+    return np.concatenate(sums, axis=1)
+
+
+def _sum(weights: Array, ways: Array) -> Array:
+    """Sum over the modes; what only rounding leaves, before a wave has come, is nothing."""
+    total = weights @ ways
+    return np.where(np.abs(total) <= ROUNDING * (np.abs(weights) @ np.abs(ways)), 0.0, total)
+
+
+def gone(t: Array, w: Array, a: Array) -> Array:
+    """Way 1 - x(w, t) of modes with half the rates a, shape (times, modes), also overdamped."""
+    t = t[:, None]
+    q = np.sqrt(np.abs((a - w) * (a + w)))
+    turning = q * t
+    under = np.exp(-a * t) * (np.cos(turning) + a * t * np.sinc(turning / np.pi))
+    slow = w * w / (a + q)  # the roots are -slow and -(a + q)
+    fall = -np.expm1(-2 * turning)
+    share = np.where(turning > 0, fall / np.maximum(2 * turning, np.finfo(float).tiny), 1.0)
+    over = np.exp(-slow * t) * (1 - fall / 2 + a * t * share)
+    return np.asarray(1 - np.where(a > w, over, under))

@@ -1,0 +1,188 @@
+"""Damping tables, C = a0 M + a1 K: histories, spectra, exact motions, the damping budget, and who refuses them."""
+
+import numpy as np
+import pytest
+from oracles.matrices_of_scenes import matrices, rule_of
+from oracles.stepped_vibration import Rule
+
+import dda
+import fem_reference
+from dda.scheme import viscous
+from fem_reference.scheme import viscous as fem_viscous
+from fem_reference.scheme.eigen import eigenvalues
+from validation import advise, damping, load_scene, response, solve
+from validation.advice.rayleigh import Rayleigh
+from validation.advice.wave_advice import advise_wave
+from validation.compare.diagnosis import compare
+from validation.errors import InputError
+from validation.solvers.registry import get_solver
+
+TABLES = {"damping.mass": 20.0, "damping.stiffness": 3e-4}
+BLOCK = load_scene("figures-3-4").with_values({"time.step": 5e-4, "time.steps": 120} | TABLES)
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+COLUMNS = ("displacement", "contact_pressure")
+
+
+def plain(rule: Rule, M: np.ndarray, K: np.ndarray, F: np.ndarray, steps: int, consistent: bool) -> np.ndarray:
+    """Return D of every step by the printed scheme with C, solved for the acceleration, (unknowns, steps)."""
+    C, dt = rule.a0 * M + rule.a1 * K, rule.step
+    D, V, A = np.zeros_like(F), np.zeros_like(F), np.linalg.solve(M, F) if consistent else np.zeros_like(F)
+    left, found = M + rule.delta * dt * C + rule.alpha * dt**2 * K, []
+    for _ in range(steps):
+        D, V = D + rule.gg * dt * V + dt**2 * (0.5 - rule.alpha) * A, rule.gg * V + dt * (1 - rule.delta) * A
+        A = np.linalg.solve(left, F - C @ V - K @ D)
+        D, V = D + rule.alpha * dt**2 * A, V + rule.delta * dt * A
+        found.append(D)
+    return np.array(found).T
+
+
+@pytest.mark.parametrize(
+    ("solver", "values"),
+    [
+        ("dda", {}),
+        ("dda", {"block.poisson": 0.25, "load.traction": 1e6, "time.gg": 0.97} | AVERAGE),
+        ("dda", {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 2e-4}),
+        ("dda", {"block.subdivide": [2, 2], "block.glue_ratio": 50.0, "block.poisson": 0.2}),
+        ("dda", {"block.subdivide": [1, 3], "block.pattern": "triangles", "block.glue_ratio": 10.0} | AVERAGE),
+        ("dda", {"block.subdivide": [2, 1], "block.glue_ratio": 5.0, "time.alpha": 0.0, "time.step": 1e-5}),
+        ("fem", {"fem.elements": 3}),
+        ("fem", {"fem.elements": 2, "block.poisson": 0.3, "load.traction": 1e6, "time.gg": 0.95} | AVERAGE),
+        ("fem", {"fem.elements": 2, "fem.degree": 1, "time.alpha": 0.0, "time.step": 2e-5}),
+    ],
+)
+def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: dict[str, object]) -> None:
+    scene = BLOCK.with_values(values)
+    M, K, F, rows = matrices(get_solver(solver).prepare(scene))
+    expected = rows @ plain(rule_of(scene), M, K, F, scene.time.steps, scene.time.start == "consistent")
+    history = solve(scene, solver).history
+    assert history is not None
+    for column, values_ in zip(COLUMNS, expected, strict=True):
+        assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))
+
+
+@pytest.mark.parametrize("values", [{}, AVERAGE, {"time.gg": 0.98, "time.alpha": 0.6}])
+def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
+    scene = BLOCK.with_values(values)
+    bar, errors = solve(scene, "bar").history, []
+    assert bar is not None
+    for elements in (8, 16):
+        found = solve(scene.with_values({"fem.elements": elements}), "fem").history
+        assert found is not None
+        errors.append([np.max(np.abs(found.columns[c] - bar.columns[c])) for c in COLUMNS])
+    assert np.all(np.log2(np.divide(*errors)) > 3.8)
+
+
+@pytest.mark.parametrize("values", [{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}])
+def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
+    errors = []
+    for step in (4e-4, 2e-4, 1e-4):
+        scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.06 / step)} | values)
+        bar, exact = (solve(scene, solver).history for solver in ("bar", "continuum"))
+        assert bar is not None and exact is not None
+        errors.append([np.max(np.abs(bar.columns[c] - exact.columns[c])) for c in COLUMNS])
+    assert np.all(np.log2(np.divide(errors[0], errors[2])) > 2.8)  # of two halvings, each of order two or nearly so
+
+
+def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
+    long = {"time.step": 1e-3, "time.steps": 60, "damping.stiffness": 0.0}
+    viscous_ = solve(BLOCK.with_values(long | {"damping.mass": 25.0}), "continuum").history
+    kinetic = solve(BLOCK.with_values(long | {"damping.mass": 0.0, "time.gg_rate": 25.0}), "continuum").history
+    assert viscous_ is not None and kinetic is not None
+    for column in COLUMNS:
+        assert np.allclose(viscous_.columns[column], kinetic.columns[column], rtol=1e-11, atol=1e-9)
+
+
+def test_a_static_load_is_carried_and_the_steps_know_no_savings_that_are_not_theirs() -> None:
+    for solver in ("dda", "fem", "bar", "continuum"):
+        run = solve(BLOCK.with_values({"time.step": 2e-3, "time.steps": 400}), solver)
+        assert run.displacement[-1] == pytest.approx(-0.01, rel=1e-8)
+        assert not any(word == "blocked" for word in run.notes)
+    assert "stepped: viscous damping" in solve(BLOCK, "dda").notes
+
+
+def test_what_has_not_arrived_is_nothing() -> None:
+    run = solve(BLOCK.with_values({"time.step": 1e-4, "time.steps": 40, "damping.stiffness": 0.0}), "bar")
+    assert not any("tension" in note for note in run.notes)
+
+
+@pytest.mark.parametrize("frequency", [3.0, 300.0, 2000.0, 2e5])
+@pytest.mark.parametrize("gg", [1.0, 0.97, 0.0])
+def test_eigenvalues_are_those_of_the_steps_own_operator(frequency: float, gg: float) -> None:
+    own = dda.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
+    theirs = fem_reference.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
+    three = eigenvalues(frequency, theirs)  # the least is zero
+    pairs = (
+        dda.one_block.modes.scalar_eigenvalues(own, frequency),
+        viscous.eigenvalues(own, frequency),
+        fem_viscous.roots(frequency * 2e-3, theirs),
+        three[:2],
+    )
+    sums, products = [sum(pair) for pair in pairs], [pair[0] * pair[1] for pair in pairs]
+    assert np.allclose(sums, sums[1], rtol=1e-7, atol=1e-9)
+    assert np.allclose(products, products[1], rtol=1e-7, atol=1e-9)
+
+
+def test_without_tables_closed_forms_are_those_without_damping() -> None:
+    own = dda.Scheme(0.4, 0.7, 0.97, 2e-3)
+    for frequency in (20.0, 700.0):
+        expected = dda.spectral.damping_ratio(frequency * 2e-3, 0.4, 0.7, 0.97)
+        assert viscous.damping_ratio(own, frequency) == pytest.approx(float(expected), rel=1e-10)
+
+
+def test_the_operator_of_the_assembled_step_has_the_modes_eigenvalues() -> None:
+    prepared = get_solver("dda").prepare(BLOCK)
+    operator = np.linalg.eigvals(dda.one_step_operator(prepared.model, prepared.scheme))  # type: ignore[attr-defined]
+    for mode in prepared.modes():
+        for root in mode.eigenvalues:
+            assert np.min(np.abs(operator - root)) < 1e-9
+    found = prepared.diagnostics()
+    assert found["spectral_radius"] == pytest.approx(found["predicted_radius"], rel=1e-10)
+
+
+def test_the_budget_has_a_viscous_part_that_rayleighs_formula_gives() -> None:
+    scene = BLOCK.with_values({"time.step": 1e-5, "time.gg": 0.9999})
+    mode = damping(scene).modes[0]
+    expected = float(Rayleigh(20.0, 3e-4).ratio(mode.frequency / 2 / np.pi))
+    assert mode.viscous == pytest.approx(expected, rel=2e-2)  # the parts add up to leading order
+    assert mode.damping is not None and mode.algorithmic is not None and mode.kinetic is not None
+    assert mode.damping == pytest.approx(mode.algorithmic + mode.kinetic + mode.viscous, rel=1e-12)
+    assert "viscous" in damping(scene).sentence
+    free = damping(BLOCK.with_values({"damping.mass": 0.0, "damping.stiffness": 0.0})).modes[0]
+    assert free.viscous == 0
+    exact = get_solver("continuum").prepare(BLOCK).modes()[0]
+    rate = -2 * np.log(abs(exact.eigenvalues[0])) / BLOCK.time.step
+    assert rate == pytest.approx(20.0 + 3e-4 * exact.frequency**2, rel=1e-9)
+
+
+def test_who_does_not_know_viscous_damping_refuses_it() -> None:
+    for solver in ("dda-textbook", "fenicsx", "dda-60", "bar-60"):
+        with pytest.raises(InputError, match="damping tables"):
+            solve(BLOCK, solver)
+    opened = {"contact.law": "unilateral"}
+    for solver in ("dda", "fem", "bar"):
+        with pytest.raises(InputError, match="damping tables"):
+            solve(BLOCK.with_values(opened), solver)
+    column = load_scene("waves-base").expand()[0].with_values(TABLES)
+    for solver in ("dda", "fem", "layers"):
+        with pytest.raises(InputError, match="damping tables"):
+            solve(column, solver)
+    for act in (lambda: advise(BLOCK, 0.05), lambda: advise_wave(BLOCK, 5.0, 0.1), lambda: compare(BLOCK, None)):  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="damping tables"):
+            act()
+
+
+def test_a_moving_base_does_not_go_with_damping_tables(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    record = tmp_path / "base.csv"
+    record.write_text("time,y\n0,0\n1,0.1\n")
+    moving = BLOCK.with_values({"load.base_motion": str(record)})
+    for solver in ("dda", "fem"):
+        with pytest.raises(InputError, match="base motion together with damping tables"):
+            solve(moving, solver)
+        with pytest.raises(InputError, match="base motion together with damping tables"):
+            response(moving, 1.0, solver)
+
+
+def test_numbers_out_of_range_are_refused() -> None:
+    for key in TABLES:
+        with pytest.raises(InputError, match=key):
+            BLOCK.with_values({key: -1.0})
