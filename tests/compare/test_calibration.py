@@ -7,8 +7,6 @@ import re
 import pytest
 from oracles import calibration
 
-pytestmark = pytest.mark.xdist_group("calibration")
-
 
 @pytest.fixture(scope="module")
 def sixty() -> list[calibration.Judged]:
