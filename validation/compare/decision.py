@@ -19,6 +19,7 @@ AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every 
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
+FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
 RARE = 14.0  # of the information criterion: a thousand to one
 ROUND = 3  # significant digits of a round number
 EXACT = 1e-7  # relative error of a round number
@@ -43,6 +44,7 @@ class Verdict:
     explained: bool
     alike: tuple[Found, ...] = ()  # others that explain it as well
     single: tuple[Found, ...] = ()  # every cause by itself, the best first
+    around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
 
     @property
