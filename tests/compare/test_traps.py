@@ -16,7 +16,7 @@ from validation.compare.diagnosis import Answer, compare
 from validation.compare.reading import Foreign
 from validation.scenes.scene import Scene
 
-PLAIN = Plain(steps=60)  # figures-3-4 at 2 ms
+PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms
 
 
 def scene_of(p: Plain) -> Scene:
@@ -89,7 +89,7 @@ def test_a_slip_is_named_with_its_number(slip: dict[str, Any], causes: list[str]
 
 @pytest.mark.parametrize("opening", [{}, {"band": 1e-3}])
 def test_opening_and_its_dead_band_are_told(opening: dict[str, float]) -> None:
-    """At 0.2 ms the block leaves its base and comes down again, 60 steps long."""
+    """At 0.2 ms the block leaves its base and comes down again, 50 steps long."""
     answer = judged(replace(PLAIN, dt=2e-4), opens=True, **opening)
     assert answer.causes == (["contact-opened", "dead-band"] if opening else ["contact-opened"])
     assert answer.opened is not None and answer.opened[0] == 1
@@ -143,6 +143,10 @@ def test_the_evidence_says_which_column_is_right_by_itself() -> None:
     stages = {stage.name: stage for stage in judged(late=1).evidence}
     assert stages["displacement"].agrees and not stages["contact_pressure"].agrees
     assert all(stages[name].agrees for name in ("reading", "bounded", "statics", "frequency", "damping"))
+
+
+@pytest.mark.long
+def test_the_evidence_of_a_soft_block_is_where_it_comes_to_rest() -> None:
     soft = {stage.name: stage for stage in judged(E=0.8e9).evidence}
     # q a / 2p + (a/2) q / E with 0.8 E: 5 mm + 6.25 mm
     assert soft["statics"].numbers["file"] == pytest.approx(-0.01125, rel=1e-6)
@@ -150,7 +154,7 @@ def test_the_evidence_says_which_column_is_right_by_itself() -> None:
 
 
 def test_a_tolerance_decides_what_counts_as_the_same(tmp_path: Any) -> None:
-    displacement, _ = run(replace(PLAIN, hht=-0.02))
+    displacement, _ = run(replace(PLAIN, rho=2725.0))
     path = tmp_path / "theirs.csv"
     rows = zip(PLAIN.dt * np.arange(1, PLAIN.steps + 1), displacement, strict=True)
     path.write_text("time,displacement\n" + "\n".join(f"{float(t)!r},{float(u)!r}" for t, u in rows))

@@ -1,6 +1,6 @@
 """A thousand histories of known origin by three generators, what `compare` makes of them, and the table of the docs.
 
-The generators share nothing with what judges: a plain DDA code (`plain_dda`), the finite elements of `fem_reference`
+The generators share nothing with what judges: a plain DDA code (`plain_block`), the finite elements of `fem_reference`
 with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
 scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in no catalogue;
 digits, noise, steps, schemes and scenes are drawn at random.
@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from oracles.plain_dda import Plain, run
+from oracles.plain_block import Plain, run
 
 from validation import load_scene, solve
 from validation.compare.diagnosis import compare
@@ -161,7 +161,9 @@ def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str,
     if kind < 0.08:
         return {}, (SAME,)
     if kind < 0.38 and maker == "plain":
-        return _outside(rng), (UNKNOWN,)
+        slips = _outside(rng)
+        # more stiffness in a step is another alpha, damping of the stiffness another alpha and delta: the same rows
+        return slips, ("scheme",) if {"hht", "structural"} & set(slips) else (UNKNOWN,)
     if kind < 0.38 and maker == "modes":
         return {"hht": 1.0}, (UNKNOWN,)  # summed in closed form: no scheme at all
     if kind < 0.55:

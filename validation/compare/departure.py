@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -18,7 +17,7 @@ from validation.runs.history import Array
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
 SEEN = 1e-3  # of the largest displacement: a smaller difference is no departure
-NOISE = 4.0  # standard deviations of what is left unexplained
+NOISE = 4.0  # standard deviations
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,7 @@ def expected(target: Target, found: Fit, scene: Variant) -> Array:
     return computed(target.column, [plain], target.steps).displacement[:, 0]
 
 
-def departure(
-    target: Target, wanted: Array, found: Fit, causes: Sequence[str], open_steps: Sequence[int]
-) -> Departure | None:
+def departure(target: Target, wanted: Array, causes: Sequence[str], open_steps: Sequence[int]) -> Departure | None:
     """Return where the history departs; None if there is no cause but benign ones.
 
     A contact that opens is a departure from its first open step on, even before the displacement shows it.
@@ -51,8 +48,7 @@ def departure(
         return None
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")
-    noise = found.misfit * float(np.linalg.norm(target.displacement)) / math.sqrt(len(target.rows))
-    gone = measured(wanted[target.rows], target.displacement, target.rows, noise)
+    gone = measured(wanted[target.rows], target.displacement, target.rows, target.bars[0].spread)
     if open_steps and set(causes) & {"contact-opened"} and gone.step > open_steps[0]:
         return Departure(open_steps[0], gone.kind)
     return gone

@@ -201,7 +201,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     steps = _opened(target, found.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
     expected = departure.expected(target, shown, own)
-    gone = departure.departure(target, expected, shown, ids, steps)
+    gone = departure.departure(target, expected, ids, steps)
     told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target, ids, v)
     soft = causes.compliance(target, v)

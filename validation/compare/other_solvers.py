@@ -14,7 +14,7 @@ from validation.runs.history import PRESSURE, Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
-SCHEMES_OF = {"continuum": 1, "fem": 2}  # how many are tried: the continuum has none, finite elements take long
+SCHEMES_OF = {"continuum": 1, "fem": 1}  # how many are tried: the continuum has none, finite elements take long
 NUDGE = 1e-4  # of ln stiffness, for the derivative
 ROUNDS = 4  # of Gauss-Newton: a compliance of some per cent needs two
 MOST = math.log(1e3)  # no spring is softer or stiffer than that
@@ -113,7 +113,9 @@ SLIPS = {  # id to the field of the scene that a factor changes
     "density-factor": "block.density",
     "young-factor": "block.young",
     "load-factor": "load.pressure",
+    "gg": "time.gg",
 }
+DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
 
 
@@ -121,27 +123,32 @@ def slipped(scene: Scene, name: str, goal: Goal) -> list[Rival]:
     """Return a solver's answers with one number of the scene wrong by a factor, each at its best factor."""
     if name == "fem" or get_solver(name).refusal(scene) is not None:
         return []
-    own = {"density-factor": scene.block.density, "young-factor": scene.block.young, "load-factor": scene.load.pressure}
+    b, t = scene.block, scene.time
+    own = {"density-factor": b.density, "young-factor": b.young, "load-factor": scene.load.pressure, "gg": t.discount}
     wanted = goal.scaled(goal.displacement, goal.pressure)
     found = []
     for slip, key in SLIPS.items():
+        most = 1 / own[slip] if slip == "gg" else np.inf  # a discount ends at one
 
-        def answer(factor: float, key: str = key, value: float = own[slip]) -> tuple[Array, Array]:
-            return _response(scene.with_values({key: value * factor}), name, goal, 0.0)
+        def answer(factor: float, key: str = key, value: float = own[slip], most: float = most) -> tuple[Array, Array]:
+            return _response(scene.with_values({key: value * min(factor, most)}), name, goal, 0.0)
 
         try:
-            factor, (best, shown) = _best_factor(answer, wanted)
+            factor, (best, shown) = _best_factor(answer, wanted, DISCOUNTS if slip == "gg" else STARTS)
+            factor = min(factor, most) * (own[slip] if slip == "gg" else 1.0)
         except InputError:  # the step lies beyond the limit of the scheme
             continue
-        t, misfit = scene.time, float(np.linalg.norm(wanted - best))
+        misfit = float(np.linalg.norm(wanted - best))
         alpha, delta, gg = (None, None, None) if name == "continuum" else (t.alpha, t.delta, t.discount)
         found.append(Rival(name, alpha, delta, gg, misfit, 0.0, shown, shown, misfit, slip, factor))
     return found
 
 
-def _best_factor(answer: Callable[[float], tuple[Array, Array]], wanted: Array) -> tuple[float, tuple[Array, Array]]:
+def _best_factor(
+    answer: Callable[[float], tuple[Array, Array]], wanted: Array, starts: Sequence[float]
+) -> tuple[float, tuple[Array, Array]]:
     """Return the factor whose answer is nearest, by trial and Gauss and Newton's method."""
-    factor = min(STARTS, key=lambda f: float(np.linalg.norm(wanted - answer(f)[0])))
+    factor = min(starts, key=lambda f: float(np.linalg.norm(wanted - answer(f)[0])))
     best = answer(factor)
     for _ in range(2 * ROUNDS):
         slope = (answer(factor * (1 + NUDGE))[0] - best[0]) / NUDGE

@@ -224,13 +224,9 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = features.LOADS | {
-        features.SUB_BLOCKS,
-        features.UNILATERAL,
-        features.IMPLICIT,
-        features.COLUMN,
-        features.DAMPING,
-    }
+    handles = features.LOADS | frozenset(
+        {features.SUB_BLOCKS, features.UNILATERAL, features.IMPLICIT, features.COLUMN, features.DAMPING}
+    )
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from dda.one_block.variants import Variant
-from validation.compare.fits.target import ROUNDING, Target, norm
+from validation.compare.fits.target import ROUNDING, Target
 from validation.runs.history import Array
 
 NAMED: dict[str, tuple[float, float]] = {
@@ -129,7 +129,7 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
         ]
         jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
         residual = goal - base
-        found.append(Fit(variant, free, norm(residual), residual, jacobian))
+        found.append(Fit(variant, free, float(np.linalg.norm(residual)), residual, jacobian))
         at += 1 + len(free)
     return found
 

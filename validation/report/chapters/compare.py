@@ -17,7 +17,7 @@ from validation.runs.history import DISPLACEMENT, History
 from validation.scenes.scene import Scene
 
 FIGURE = "compare.svg"
-LINES = 7  # of the ranking that leave the answer on one page
+LINES = 5  # of the ranking that leave the answer on one page
 
 
 def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
@@ -47,18 +47,33 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         Paragraph(parameters(scene, set()), "small"),
         histories.saved(histories.history_figure([panel], DISPLACEMENT), directory, FIGURE, caption),
         *_facts(answer),
-        _ranking(answer),
+        *_evidence(answer),
+        *([_ranking(answer)] if answer.ranking else []),
         *(Paragraph(line, "small") for line in rest),
     ]
 
 
 def _facts(answer: Answer) -> list[Block]:
-    rows = [(name, CAUSES[name].words) for name in answer.causes]
+    rows = [(name, CAUSES[name].words + _number(answer, name)) for name in answer.causes]
+    if answer.nearest and answer.nearest["causes"]:
+        rows.append(("nearest", f"{', '.join(answer.nearest['causes'])}: {short(100 * answer.unexplained, 2)} % left"))
+    rows += [("same rows", f"{', '.join(one['causes'])}; told apart by {one['further_scene']}") for one in answer.alike]
     if answer.departure:
         rows.append(("departure", f"step {answer.departure.step}, mainly in {answer.departure.kind}"))
     if answer.opened:
         rows.append(("contact open", f"first step {answer.opened[0]}, last {answer.opened[1]}"))
     return [Table((Column("Found", "code"), Column("In words", "fill")), tuple(rows))] if rows else []
+
+
+def _number(answer: Answer, name: str) -> str:
+    return f": {short(answer.values[name], 5)}" if name in answer.values else ""
+
+
+def _evidence(answer: Answer) -> list[Block]:
+    """Return what was measured before any cause was named."""
+    marks = {True: "right", False: "wrong", None: DASH}
+    rows = tuple((stage.name.replace("_", " "), marks[stage.agrees], stage.words) for stage in answer.evidence)
+    return [Table((Column("Evidence", "code"), Column("", "code"), Column("In words", "fill")), rows)] if rows else []
 
 
 def _ranking(answer: Answer) -> Table:
