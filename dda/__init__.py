@@ -15,7 +15,7 @@ from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.response import response
-from dda.one_block.solution import Result, solve
+from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
@@ -31,6 +31,7 @@ from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
 
 __all__ = [
+    "ADAPTIVE_COLUMNS",
     "COLUMNS",
     "FIXED",
     "UNKNOWNS",
@@ -66,6 +67,7 @@ __all__ = [
     "response",
     "shared_edges",
     "solve",
+    "solve_adaptive",
     "solve_opening_system",
     "solve_system",
     "solve_textbook",

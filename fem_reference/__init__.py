@@ -14,6 +14,7 @@ from fem_reference.problem.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
     from fem_reference.exact.bar import Bar, applicable
+    from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, solve_adaptive
     from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
     from fem_reference.history.solver import solve, static
     from fem_reference.history.unilateral import Unilateral, UnilateralResult, solve_unilateral
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from fem_reference.scheme.eigen import highest_frequency, modes
 
 _HOMES = {
+    "ADAPTIVE_COLUMNS": "history.adaptive",
     "Bar": "exact.bar",
     "applicable": "exact.bar",
     "assemble": "mesh.model",
@@ -31,10 +33,12 @@ _HOMES = {
     "UNILATERAL_COLUMNS": "history.opening_columns",
     "Unilateral": "history.unilateral",
     "UnilateralResult": "history.unilateral",
+    "solve_adaptive": "history.adaptive",
     "solve_unilateral": "history.unilateral",
 }
 
 __all__ = [
+    "ADAPTIVE_COLUMNS",
     "COLUMNS",
     "UNILATERAL_COLUMNS",
     "Bar",
@@ -50,6 +54,7 @@ __all__ = [
     "highest_frequency",
     "modes",
     "solve",
+    "solve_adaptive",
     "solve_unilateral",
     "static",
 ]

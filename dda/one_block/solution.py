@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from dda.one_block.gap_form import COLUMNS, GapForm
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
+from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
 from dda.scheme.newmark import Scheme, carried_histories, stepped_modes
 
 Array = NDArray[np.float64]
+ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")  # of self-adaptive damping, further columns [-, J]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +97,70 @@ def solve(
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
     )
+
+
+def solve_adaptive(
+    model: TwoBlockModel,
+    scheme: Scheme,
+    steps: int,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    floor: float = 0.0,
+    full: bool = False,
+) -> Result:
+    """Step the two-block model from rest with self-adaptive kinetic damping.
+
+    While the kinetic energy T grows a step keeps the velocity of the one before; once it has fallen in step n, step
+    n + 1 starts with the share gg = max(floor, sqrt(T_n / T_(n-1))) of it (`dda.scheme.adaptive`).
+
+    Parameters
+    ----------
+    scheme : Scheme
+        Without discount, gg = 1, and without viscous damping.
+    columns : sequence of str
+        Any of `dda.COLUMNS`, "discount" (that each step starts with) and "kinetic_damping_loss" (energy taken up to
+        the end of a step, J per metre of thickness).
+    floor : float
+        Least discount, 0 to 1; with 1 nothing is damped.
+    full : bool
+        Keep all six unknowns, also those that the load cannot reach.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, a column is unknown, the scheme has a damping of its own, or the base moves.
+    """
+    check_request(steps, [name for name in columns if name not in ADAPTIVE_COLUMNS])
+    _check_adaptive(model, scheme, floor)
+    began = perf_counter()
+    form, size = model.gap_form if full else model.gap_form.reduced(), model.load_size
+    with np.errstate(all="ignore"):
+        modal = modal_form(form)
+        ready = perf_counter()
+        found = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
+        seen = size * np.array([form.observers[name] @ modal.shapes @ found.modes for name in COLUMNS])
+        overflow = bound_overflow(seen, size)
+    own = dict(zip(ADAPTIVE_COLUMNS, (found.discount, found.loss * size * size), strict=True))
+    every = dict(zip(COLUMNS, seen, strict=True)) | own
+    return Result(
+        time=step_times(scheme, steps),
+        columns={name: every[name] for name in columns},
+        unknowns=len(form.unknowns),
+        nonzeros=int(np.count_nonzero(form.M)),
+        factorisations=1,
+        solves=steps,
+        notes=(*_savings(form), f"stepped: self-adaptive damping, discount at least {floor:g}", *overflow),
+        setup_seconds=ready - began,
+        stepping_seconds=perf_counter() - ready,
+    )
+
+
+def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
+    if not 0 <= floor <= 1:
+        raise ValueError(f"floor: must be between 0 and 1, got {floor!r}")
+    if scheme.gg != 1:
+        raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
+    if scheme.damped or model.motion is not None:
+        raise ValueError("adaptive discount: goes with neither viscous damping nor a base that moves, got it")
 
 
 def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool) -> str | None:

@@ -171,9 +171,12 @@ def rayleigh(
         points = advice.points(ratios or [], a0, a1)
         scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
     ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
-    if scene is not None and (tables := one_case(scene, assignments).damping).present:
+    tables = None if scene is None else one_case(scene, assignments).damping
+    if tables is not None and tables.present:
         own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
         typer.echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
+    if tables is not None and tables.kinetic == "adaptive":
+        typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 stand for, comes on top of it")
     band = low or ends[0], high or ends[1]
     advice.check_band(*band)
     _print_scheme(scheme, band)

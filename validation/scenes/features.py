@@ -26,7 +26,7 @@ class Feature:
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 COLUMN = "column"
-DAMPING = "damping tables"
+DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
@@ -38,6 +38,7 @@ FEATURES = (
     Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
+    Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
     Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
 )
@@ -62,11 +63,15 @@ def linear(scene: Scene) -> bool:
 
 
 def damping_apart(scene: Scene) -> str | None:
-    """Return None, or what viscous damping does not go together with: it is defined where the motion is linear."""
+    """Return None, or what viscous damping, or a discount that adapts, does not go together with.
+
+    Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
+    """
     own = of(scene)
-    others = [name for name in own if name in (BASE_MOTION, UNILATERAL, COLUMN)]
-    if DAMPING in own and others:
-        return f"it does not handle {', '.join(sorted(others))} together with {DAMPING}"
+    for damping, more in ((DAMPING, ()), (ADAPTIVE, (DAMPING,))):
+        others = [name for name in own if name in (BASE_MOTION, UNILATERAL, COLUMN, *more)]
+        if damping in own and others:
+            return f"it does not handle {', '.join(sorted(others))} together with {damping}"
     return None
 
 

@@ -83,6 +83,12 @@ class Scene(SceneTables):
         return self
 
     @model_validator(mode="after")
+    def _check_discount(self) -> Self:
+        if self.damping.kinetic == "adaptive" and self.time.discount != 1:
+            raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
+        return self
+
+    @model_validator(mode="after")
     def _check_rule(self) -> Self:
         given = self.time.alpha, self.time.delta
         if self.column is None and self.contact.rule != "newmark" and given != (0.25, 0.5):

@@ -237,14 +237,22 @@ class TimeSection(Section):
 
 
 class DampingSection(Section):
-    """Viscous damping of Rayleigh's kind, C = a0 M + a1 K, springs of the contact included."""
+    """Viscous damping of Rayleigh's kind, C = a0 M + a1 K, springs of the contact included, and what chooses gg."""
 
     mass: NonNegative = 0.0  # a0, 1/s
     stiffness: NonNegative = 0.0  # a1, s
+    kinetic: Literal["constant", "adaptive"] = "constant"  # gg of [time], or from the kinetic energies of the steps
+    floor: Annotated[Real, Field(ge=0, le=1)] = 0.0  # least adaptive gg
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.floor and self.kinetic != "adaptive":
+            raise ValueError(f'floor goes with kinetic = "adaptive" only, got {self.floor:g} without it')
+        return self
 
     @property
     def present(self) -> bool:
-        """Whether anything is damped."""
+        """Whether there is viscous damping."""
         return self.mass > 0 or self.stiffness > 0
 
 

@@ -111,6 +111,26 @@ class OneBlock(Prepared):
             return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
+class AdaptiveBlock(Prepared):
+    """A whole block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        self.scene, self.block = scene, OneBlock(scene, full)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene; DDA has no fields."""
+        import dda
+
+        no_fields("dda", self.scene, fields)
+        check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS))
+        check_step(self.scene, dda.spectral.critical_omega, self.block.fastest)
+        t, own = self.scene.time, self.block
+        columns, floor = self.scene.run.columns, self.scene.damping.floor
+        with naming(self.scene):
+            found = dda.solve_adaptive(own.model, own.scheme, t.steps, columns, floor, own.full)
+        return to_run(self.scene, found)
+
+
 class SubBlocks(OneBlock):
     """A block cut into glued sub-blocks."""
 
@@ -166,7 +186,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING}
+        | {features.DAMPING, features.ADAPTIVE}
         | features.LOADS
         | features.RULES
     )
@@ -179,7 +199,7 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
@@ -188,6 +208,8 @@ class DDA(Solver):
             return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
         if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
+        if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
+            return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
@@ -201,6 +223,8 @@ class DDA(Solver):
         if features.UNILATERAL in features.of(scene):
             kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
             return kind(scene, scheme_of(scene), full)
+        if features.ADAPTIVE in features.of(scene):
+            return AdaptiveBlock(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
 

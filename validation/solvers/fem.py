@@ -157,6 +157,26 @@ class Mesh(Prepared):
             return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
 
+class AdaptiveMesh(Prepared):
+    """A meshed block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
+
+    def __init__(self, scene: Scene, full: bool) -> None:
+        self.scene, self.mesh = scene, Mesh(scene, full)
+
+    def run(self, fields: Path | None = None) -> Run:
+        """Run the scene."""
+        import fem_reference
+
+        no_fields("fem with self-adaptive damping", self.scene, fields)
+        check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
+        own, t = self.mesh, self.scene.time
+        check_stable(self.scene, own.model)
+        columns, floor = self.scene.run.columns, self.scene.damping.floor
+        with naming(self.scene):
+            found = fem_reference.solve_adaptive(own.problem, own.scheme, t.steps, columns, floor, model=own.model)
+        return to_run(self.scene, found, built=own.building)
+
+
 # J, in the order of `STORED` and `LOST`
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
@@ -225,7 +245,14 @@ class FiniteElements(Solver):
 
     name = "fem"
     handles = features.LOADS | frozenset(
-        {features.SUB_BLOCKS, features.UNILATERAL, features.IMPLICIT, features.COLUMN, features.DAMPING}
+        {
+            features.SUB_BLOCKS,
+            features.UNILATERAL,
+            features.IMPLICIT,
+            features.COLUMN,
+            features.DAMPING,
+            features.ADAPTIVE,
+        }
     )
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
@@ -239,7 +266,8 @@ class FiniteElements(Solver):
         import fem_reference
         from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
-        return tuple(dict.fromkeys((*fem_reference.COLUMNS, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
+        own = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
+        return tuple(dict.fromkeys((*own, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
@@ -253,4 +281,6 @@ class FiniteElements(Solver):
             from validation.solvers.columns.elements import LineColumn
 
             return LineColumn(scene, scheme_of(scene))
+        if features.ADAPTIVE in features.of(scene):
+            return AdaptiveMesh(scene, full)
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

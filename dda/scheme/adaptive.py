@@ -1,0 +1,63 @@
+r"""Self-adaptive kinetic damping: the discount of each step from the kinetic energies of the two steps before it.
+
+With T_n = V_n' M V_n / 2 at the end of step n, step n + 1 starts with the velocity gg_(n+1) V_n,
+
+    gg_(n+1) = 1                                    where T_n >= T_(n-1),
+    gg_(n+1) = max(floor, sqrt(T_n / T_(n-1)))      where it falls,
+
+one discount for all unknowns; the first step starts from rest. gg is continuous in the ratio, and does not change with
+the size of the load, but the motion is no longer linear: loads do not superpose.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.scheme.newmark import Scheme, effective_matrix, initial_acceleration, modal_step
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Adapted:
+    """What self-adaptive damping makes of mass-normalised modes."""
+
+    modes: Array  # (n, steps) D of every mode and step
+    discount: Array  # (steps,) gg that each step starts with [-]
+    loss: Array  # (steps,) kinetic energy taken up to each step [J]
+
+
+def next_discount(before: float, now: float, floor: float) -> float:
+    """Return gg from the square roots of the kinetic energies one step before and now."""
+    return max(floor, now / before) if now < before else 1.0
+
+
+def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, floor: float) -> Adapted:
+    """Step all modes together from rest under a constant modal load.
+
+    Parameters
+    ----------
+    scheme : Scheme
+        Its own discount is 1.
+    frequencies, load : (n,) array
+        w [rad/s] and load of the mass-normalised modes.
+    floor : float
+        Least discount [-].
+    """
+    dt = scheme.step
+    k, F = (dt * frequencies) ** 2, dt * dt * load
+    S = effective_matrix(scheme, np.ones_like(k), k)
+    D, P, f = np.zeros_like(k), np.zeros_like(k), initial_acceleration(scheme, F)
+    modes, discount, taken = np.empty((len(k), steps)), np.empty(steps), np.empty(steps)
+    before = now = 0.0  # dt sqrt(2 T)
+    for n in range(steps):
+        discount[n] = next_discount(before, now, floor)
+        taken[n] = (1 - discount[n] ** 2) * (now / dt) ** 2 / 2
+        D, P, f = modal_step(replace(scheme, gg=float(discount[n])), S, k, F, (D, P, f))
+        modes[:, n] = D
+        before, now = now, math.hypot(*P.tolist())
+    return Adapted(modes, discount, np.cumsum(taken))

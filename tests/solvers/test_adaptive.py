@@ -1,0 +1,170 @@
+"""Self-adaptive kinetic damping: the rule, its energies, its rest, and who refuses it."""
+
+import numpy as np
+import pytest
+from oracles.matrices_of_scenes import matrices, rule_of
+from oracles.stepped_vibration import Rule
+
+import dda
+import fem_reference
+from dda.scheme.adaptive import adapted_modes
+from validation import advise, damping, load_scene, response, solve
+from validation.advice.wave_advice import advise_wave
+from validation.compare.diagnosis import compare
+from validation.errors import InputError
+from validation.scenes.scene import Scene
+from validation.solvers.dda import model_of, scheme_of
+from validation.solvers.fem import problem_of
+from validation.solvers.fem import scheme_of as fem_scheme_of
+from validation.solvers.registry import get_solver
+
+COLUMNS = ("displacement", "contact_pressure", "discount", "kinetic_damping_loss")
+STEPPED = {"time.step": 5e-4, "time.steps": 150, "run.columns": COLUMNS}
+PLAIN = load_scene("figures-3-4").with_values(STEPPED | {"fem.elements": 3})
+BLOCK = PLAIN.with_values({"damping.kinetic": "adaptive"})
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+CASES = [
+    ("dda", {}),
+    ("dda", {"block.poisson": 0.25, "load.traction": 1e6} | AVERAGE),
+    ("dda", {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 2e-4, "damping.floor": 0.3}),
+    ("dda", {"load.gravity": 9.81, "load.eccentricity": 0.3, "damping.floor": 0.95}),
+    ("fem", {}),
+    ("fem", {"damping.floor": 0.9} | AVERAGE),
+    ("fem", {"block.poisson": 0.3, "load.traction": 1e6, "fem.elements": 2} | AVERAGE),
+]
+
+
+def columns(scene: Scene, solver: str) -> dict[str, np.ndarray]:
+    history = solve(scene, solver).history
+    assert history is not None
+    return history.columns
+
+
+def plain(rule: Rule, system: tuple[np.ndarray, ...], steps: int, consistent: bool, floor: float) -> np.ndarray:
+    """Return displacement, pressure, gg, energy taken and mechanical energy of every step by the printed scheme."""
+    (M, K, F, rows), dt, taken = system, rule.step, 0.0
+    D, V, A = np.zeros_like(F), np.zeros_like(F), np.linalg.solve(M, F) if consistent else np.zeros_like(F)
+    T, found = [0.0, 0.0], []
+    for _ in range(steps):
+        gg = max(floor, np.sqrt(T[-1] / T[-2])) if T[-1] < T[-2] else 1.0
+        V, taken = gg * V, taken + (1 - gg * gg) * T[-1]
+        D, V = D + dt * V + dt**2 * (0.5 - rule.alpha) * A, V + dt * (1 - rule.delta) * A
+        A = np.linalg.solve(M + rule.alpha * dt**2 * K, F - K @ D)
+        D, V = D + rule.alpha * dt**2 * A, V + rule.delta * dt * A
+        T.append(V @ M @ V / 2)
+        found.append([*(rows @ D), gg, taken, T[-1] + D @ K @ D / 2 - F @ D])
+    return np.array(found).T
+
+
+@pytest.mark.parametrize(("solver", "values"), CASES)
+def test_histories_are_those_of_the_printed_scheme_with_the_rule(solver: str, values: dict[str, object]) -> None:
+    scene = BLOCK.with_values(values)
+    still = scene.with_values({"damping.kinetic": "constant", "damping.floor": 0.0})
+    system = matrices(get_solver(solver).prepare(still))
+    consistent = scene.time.start == "consistent"
+    expected = plain(rule_of(scene), system, scene.time.steps, consistent, scene.damping.floor)
+    found = columns(scene, solver)
+    assert expected[2].min() < 0.96 and expected[2].max() == 1
+    for column, own in zip(COLUMNS, expected, strict=False):
+        # rounding; a discount is a ratio of velocities and keeps fewer digits where they nearly vanish
+        assert np.max(np.abs(found[column] - own)) <= 1e-8 * np.max(np.abs(own)), column
+    if consistent:  # average acceleration has no loss of its own
+        assert np.max(np.abs(found[COLUMNS[3]] + expected[4])) <= 1e-8 * found[COLUMNS[3]][-1]
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_rest_is_the_static_solution(solver: str) -> None:
+    scene = BLOCK.with_values({"block.poisson": 0.2, "time.steps": 600} | AVERAGE)
+    static = get_solver(solver).prepare(scene.with_values({"damping.kinetic": "constant"})).static()
+    found, undamped = columns(scene, solver), columns(scene.with_values({"damping.floor": 1.0}), solver)
+    for column in COLUMNS[:2]:
+        last = slice(-50, None)
+        assert np.max(np.abs(found[column][last] - static[column])) < 1e-3 * abs(static[column])
+        assert np.max(np.abs(undamped[column][last] - static[column])) > 0.5 * abs(static[column])
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_with_floor_one_nothing_is_damped(solver: str) -> None:
+    free = columns(PLAIN.with_values({"run.columns": COLUMNS[:2]}), solver)
+    found = columns(BLOCK.with_values({"damping.floor": 1.0}), solver)
+    for column in COLUMNS[:2]:
+        assert np.max(np.abs(found[column] - free[column])) <= 1e-10 * np.max(np.abs(free[column]))
+    assert np.all(found["discount"] == 1) and np.all(found["kinetic_damping_loss"] == 0)
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_twice_the_load_is_twice_the_history_but_loads_do_not_superpose(solver: str) -> None:
+    scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2})
+    one, two = (columns(scene.with_values({"load.pressure": q}), solver) for q in (5e6, 1e7))
+    for column, power in zip(COLUMNS, (1, 1, 0, 2), strict=True):
+        assert np.allclose(two[column], 2**power * one[column], rtol=1e-12, atol=0)
+    sides = [{}, {"load.traction": 3e6}, {"load.traction": 3e6, "load.pressure": 0.0}]
+    pressed, both, pushed = (columns(scene.with_values(side), solver)["contact_pressure"] for side in sides)
+    assert np.max(np.abs(both - pressed - pushed)) > 1e-3 * np.max(np.abs(both))
+
+
+def test_a_fall_takes_about_as_many_steps_as_the_docs_say_and_ends_nearer_to_rest_with_smaller_steps() -> None:
+    ends = []
+    for omega in (0.01, 0.001):
+        scheme = dda.Scheme(0.25, 0.5, 1.0, omega, "consistent")
+        found = adapted_modes(scheme, np.ones(1), np.ones(1), int(3 / omega), 0.0)
+        falling = np.flatnonzero(found.discount < 1)
+        ends.append(abs(found.modes[0, falling[-1]] - 1))
+    assert np.all(np.diff(falling) == 1)  # the first fall alone: the next one comes after w t = 3
+    assert len(falling) * omega ** (2 / 3) == pytest.approx(2.5, abs=0.05)
+    assert ends[1] < 0.6 * ends[0] < 0.6
+
+
+def test_savings_change_nothing() -> None:
+    scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2, "time.steps": 60})
+    steps, found = scene.time.steps, columns(scene, "fem")
+    model, problem = model_of(scene), problem_of(scene)
+    every = dda.solve_adaptive(model, scheme_of(scene), steps, COLUMNS, full=True).columns
+    whole = fem_reference.solve_adaptive(problem, fem_scheme_of(scene), steps, COLUMNS, full=True).columns
+    own = columns(scene, "dda")
+    for column in COLUMNS:
+        assert np.allclose(every[column], own[column], rtol=1e-8, atol=1e-8 * np.max(np.abs(own[column])))
+        assert np.allclose(whole[column], found[column], rtol=1e-8, atol=1e-8 * np.max(np.abs(found[column])))
+
+
+def test_who_needs_a_linear_motion_refuses_it(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    asks = (
+        lambda: damping(BLOCK),
+        lambda: response(BLOCK, [1.0], "fem"),
+        lambda: advise(BLOCK, 0.05),
+        lambda: advise_wave(BLOCK, 5.0, 0.1),
+        lambda: compare(BLOCK, None),  # type: ignore[arg-type]
+    )
+    for ask in asks:
+        with pytest.raises(InputError, match="self-adaptive damping"):
+            ask()
+    for solver in ("dda-textbook", "bar", "continuum", "fenicsx", "dda-60", "fem-60"):
+        with pytest.raises(InputError, match="self-adaptive damping"):
+            solve(BLOCK, solver)
+    record = tmp_path / "base.csv"
+    record.write_text("time,y\n0,0\n1,0.1\n")
+    apart = {"contact.law": "unilateral"}, {"damping.mass": 1.0}, {"load.base_motion": str(record)}
+    for values in apart:
+        for solver in ("dda", "fem"):
+            with pytest.raises(InputError, match="together with self-adaptive damping"):
+                solve(BLOCK.with_values(values), solver)
+    with pytest.raises(InputError, match="sub-blocks together with self-adaptive damping"):
+        solve(BLOCK.with_values({"block.subdivide": (2, 1)}), "dda")
+
+
+def test_settings_that_do_not_go_together_are_refused() -> None:
+    for values, named in (({"time.gg": 0.9}, "time: gg"), ({"damping.floor": 1.5}, "damping.floor")):
+        with pytest.raises(InputError, match=named):
+            BLOCK.with_values(values)
+    with pytest.raises(InputError, match="floor goes with"):
+        PLAIN.with_values({"damping.floor": 0.5})
+    block, mesh = model_of(PLAIN), problem_of(PLAIN)
+    for scheme in ((0.5, 1.0, 0.9, 1e-3), (0.5, 1.0, 1.0, 1e-3, "zero", 1.0)):
+        with pytest.raises(ValueError, match="adapt"):
+            dda.solve_adaptive(block, dda.Scheme(*scheme), 3)  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="adapt"):
+            fem_reference.solve_adaptive(mesh, fem_reference.Scheme(*scheme), 3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="floor"):
+        dda.solve_adaptive(block, dda.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
+    with pytest.raises(ValueError, match="floor"):
+        fem_reference.solve_adaptive(mesh, fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
