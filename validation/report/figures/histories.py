@@ -74,15 +74,19 @@ class Margins:
 
 
 def axes_grid(
-    rows: Sequence[tuple[float, float]], columns: int, margins: Margins, width: float = WIDTH
+    rows: Sequence[tuple[float, float]],
+    columns: int,
+    margins: Margins,
+    width: float = WIDTH,
+    between: float = COLUMN_GAP,
 ) -> tuple[Figure, list[list[Axes]]]:
     """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
     height = margins.top + sum(map(sum, rows)) - rows[-1][1] + margins.bottom
-    across = (width - margins.left - margins.right - COLUMN_GAP * (columns - 1)) / columns
+    across = (width - margins.left - margins.right - between * (columns - 1)) / columns
     figure, grid, y = Figure(figsize=(width / 25.4, height / 25.4)), [], height - margins.top
     for row, gap in rows:
         y -= row
-        lefts = [margins.left + j * (across + COLUMN_GAP) for j in range(columns)]
+        lefts = [margins.left + j * (across + between) for j in range(columns)]
         grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in lefts])
         y -= gap
     return figure, grid

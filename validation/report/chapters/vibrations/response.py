@@ -10,7 +10,7 @@ import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.scene import gate_count
-from validation.report.chapters.text import DASH, percent
+from validation.report.chapters.text import DASH, percent, plain
 from validation.report.figures.histories import saved
 from validation.report.figures.response import ResponseCurve, response_figure
 from validation.runs.records import Manifest
@@ -23,6 +23,7 @@ WAYS = {
 }
 SOLVERS = ("dda", "fem", "bar")
 PARTS = {"displacement": 1e3, "pressure": 1e-6}  # mm, MPa
+DIGITS = 6  # that rows are kept with: to round once more would be to round twice
 HIDDEN = "response-damping"
 Rows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene, name) -> metrics
 
@@ -71,7 +72,7 @@ def amplitudes(rows: Rows) -> Table:
         cells = []
         for part, factor in PARTS.items():
             values = [rows.get((way, f"{solver} at {frequency}"), {}).get(part) for solver in SOLVERS]
-            cells += [f"{factor * value:.4f}" if isinstance(value, float) else DASH for value in values]
+            cells += [plain(factor * value, DIGITS) if isinstance(value, float) else DASH for value in values]
         lines.append((WAYS[way], frequency.removesuffix(" Hz"), *cells))
     titles = (
         *columns("text", "Answer"), *columns("decimal", "f [Hz]"),
