@@ -40,6 +40,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_opened_chapters",
     "test_contact_pack",
     "test_subblocks_chapter",
+    "test_calibration",
     "test_changes",
     "test_claims",
     "test_compare",

@@ -63,6 +63,7 @@ class Variant:
     opens: bool = False  # the contact carries no tension
     band: float = 0.0  # penetration beyond which an open contact closes [m]
     reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
+    reset: bool = False  # a closing contact is sheared from the start of the step on, not from where it touched
     discounted: Literal["both", "velocity", "displacement"] = "both"  # formulas in which gg stands
     strain_load: float = 1.0  # share of the load in the row of ey [-]
     coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]

@@ -1,4 +1,4 @@
-"""A thousand histories of random origin: the table of the documentation, of which the long tests judge sixty again."""
+"""Histories of random origin: the table of the documentation, and sixty others that the long tests judge."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import re
 
 import pytest
 from oracles import calibration
-
-pytestmark = pytest.mark.xdist_group("calibration")
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +35,7 @@ def test_the_table_of_the_documentation_says_that_99_of_100_are_right() -> None:
     total = rows.pop("**all**")
     assert total == [sum(column) for column in zip(*rows.values(), strict=True)]
     count, right, silent, hidden, wrong = total
-    assert count == right + silent + hidden + wrong >= 400
+    assert count == right + silent + hidden + wrong >= 150
     # of what is right, "same" and "not explained" where they are due are no named causes
     due = rows["same"][1] + rows["unexplained"][1]
     assert wrong <= 0.01 * (right - due + wrong)

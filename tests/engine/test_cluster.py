@@ -1,5 +1,6 @@
 """Sweeps over processes and over a Dask cluster: the same rows, streamed into the same results directory."""
 
+import itertools
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -16,14 +17,11 @@ from validation.errors import InputError
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
-STUDY = Study(
-    "sweep",
-    "Sweep",
-    "A sweep.",
-    [load_scene("figures-5-6")],
-    ("dda", "bar"),
-    {"time.step": [1e-3, 2e-3], "time.gg": [1.0, 0.98]},
-)
+SCENES = [
+    load_scene("figures-5-6").with_values({"time.step": step, "time.gg": gg}, label=True)
+    for step, gg in itertools.product((1e-3, 2e-3), (1.0, 0.98))
+]
+STUDY = Study("sweep", "Sweep", "A sweep.", SCENES, ("dda", "bar"))
 
 
 def rows(directory: Path) -> dict:

@@ -12,8 +12,8 @@ import pytest
 from conftest import beside
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("theory.md", "extending.md", "contact.md", "waves.md", "columns.md")
-LONG = ("judge-your-code.md", "ci.md", "fenicsx.md")  # with gates, which build all studies
+PAGES = ("theory.md", "extending.md", "columns.md")
+LONG = ("contact.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")  # seconds each
 BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 

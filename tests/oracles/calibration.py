@@ -161,7 +161,9 @@ def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str,
     if kind < 0.08:
         return {}, (SAME,)
     if kind < 0.38 and maker == "plain":
-        return _outside(rng), (UNKNOWN,)
+        slips = _outside(rng)
+        # more stiffness in a step is another alpha, damping of the stiffness another alpha and delta: the same rows
+        return slips, ("scheme",) if {"hht", "structural"} & set(slips) else (UNKNOWN,)
     if kind < 0.38 and maker == "modes":
         return {"hht": 1.0}, (UNKNOWN,)  # summed in closed form: no scheme at all
     if kind < 0.55:

@@ -23,7 +23,7 @@ def contact(
         float, typer.Option("--restitution-error", help="Error of the restitution asked for, 0.05 for 5 %.", min=1e-6)
     ] = 0.05,
     penetration: Annotated[
-        float, typer.Option("--penetration", help="Largest penetration asked for [m].", min=1e-12)
+        float, typer.Option("--penetration", help="Largest penetration asked for, in m.", min=1e-12)
     ] = 1e-4,
     assignments: SetOption = None,
     as_json: JsonOption = False,

@@ -19,6 +19,7 @@ AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every 
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
+FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
 RARE = 14.0  # of the information criterion: a thousand to one
 ROUND = 3  # significant digits of a round number
 EXACT = 1e-7  # relative error of a round number
@@ -27,7 +28,7 @@ WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
 MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
-HIDDEN, HIDDEN_RARE, HIDDEN_TWO = 0.2, 0.03, 0.01
+HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
 USUAL = (
     *("density-factor", "young-factor", "springs-factor", "load-factor", "own-weight", "contact-opened", "start"),
     *("gg", "gg-in-one-formula", "scheme", "time-shift", "pressure-shift", "pressure-factor", "reported-point"),
@@ -43,6 +44,7 @@ class Verdict:
     explained: bool
     alike: tuple[Found, ...] = ()  # others that explain it as well
     single: tuple[Found, ...] = ()  # every cause by itself, the best first
+    around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
 
     @property
@@ -120,6 +122,8 @@ def _nameable(target: Target, own: Fit, found: Found) -> bool:
     if not found.moves or target.within_digits(target.inner(found.fit.residual, found.fit.variant)):
         return True
     single = len(found.moves) == 1 and len(set(found.fit.free) - {"base"}) <= 1
+    if found.ids == ("scheme",):  # any other integrator is near to some scheme
+        return found.fit.misfit <= HIDDEN_SCHEME * own.misfit
     usual = single and found.ids[0] in USUAL
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
     return found.fit.misfit <= limit * own.misfit

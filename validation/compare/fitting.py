@@ -111,10 +111,10 @@ def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
 
 def _leading(found: Sequence[Found]) -> list[Found]:
     """Return the best few, of the same causes the best with the same free numbers."""
-    kept: dict[tuple[tuple[str, ...], tuple[str, ...]], Found] = {}
+    kept: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Found] = {}
     for f in found:
-        if len({ids for ids, _ in kept} | {f.ids}) <= KEPT:
-            kept.setdefault((f.ids, f.fit.free), f)
+        if len({ids for ids, _, _ in kept} | {f.ids}) <= KEPT:
+            kept.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
     return list(kept.values())
 
 

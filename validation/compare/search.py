@@ -13,7 +13,17 @@ from itertools import combinations
 
 from dda.one_block.variants import Variant
 from validation.compare.causes import OUTSIDE, Move, moves
-from validation.compare.decision import AROUND, HIDDEN_TWO, NEGLIGIBLE, SURROUNDINGS, Verdict, accepted, decided, score
+from validation.compare.decision import (
+    AROUND,
+    FAULT,
+    HIDDEN_TWO,
+    NEGLIGIBLE,
+    SURROUNDINGS,
+    Verdict,
+    accepted,
+    decided,
+    score,
+)
 from validation.compare.fits.fit import Fit, changed, fit
 from validation.compare.fits.target import Target
 from validation.compare.fitting import Found, fitted
@@ -44,7 +54,8 @@ def simple(target: Target, scene: Variant) -> Verdict:
         return verdict
     around = decided(target, own, _around(target, scene))
     better = around.reached or around.best.fit.misfit < verdict.best.fit.misfit
-    return replace(around if better else verdict, single=tuple(single))
+    left = around.best.fit.misfit
+    return replace(around if better else verdict, single=tuple(single), around=left)
 
 
 def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
@@ -56,8 +67,8 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
         return before  # noise hides too much for two causes to be told
     pairs = [pair for pair in combinations(few, 2) if _together(pair)]
     verdict = decided(target, before.own, fitted(target, scene, pairs))
-    if verdict.reached:
-        return verdict
+    if verdict.reached or before.around < FAULT:
+        return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))
     faults = [move for move in few if move.id not in SURROUNDINGS]
     around = tuple(_surroundings(target, scene))
     beside = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])

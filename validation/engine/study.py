@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 from validation.engine.case import MEASURES, Case
@@ -59,6 +59,7 @@ class Study:
     purpose: str
     scenes: Sequence[str | Scene]
     solvers: tuple[str, ...] | None = None
+    _: KW_ONLY
     extra: tuple[tuple[str, str], ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False

@@ -183,9 +183,10 @@ def bar_response(scene: Scene, omega: Array) -> Array:
             predicted = D + t.discount * V + (0.5 - t.alpha) * A
             D = (predicted + t.alpha * o2) / beta
             V, A = t.discount * V + (1 - t.delta) * A + t.delta * o2 * (1 - D), o2 * (1 - D)
-            x[n] = D - 1
+            before, now = x[0], D - 1
         else:
-            x[n] = trace * x[n - 1] - det * x[n - 2]
+            before, now = now, trace * now - det * before
+        x[n] = now
     return 1 + x
 
 

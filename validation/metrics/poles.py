@@ -16,6 +16,7 @@ from validation.runs.history import Array
 LONGEST = 400  # samples: enough for a pencil, small enough for its singular values
 LEAST = 6  # samples
 TURN = 1.0  # rad between two samples, at most: far from pi
+STOPPED = 240.0  # dB that a filter takes from what would be read as a slower power: below the rounding of a signal
 HELD = 1e-6  # of the maximum
 STILL = 1e-4  # of a power from 1: a constant
 ROUGH = 0.1  # of the maximum: what the powers may leave of a signal of which they say something
@@ -96,18 +97,29 @@ def swing(signal: Array, step: float, order: int = 7) -> Swing:
 def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, int]:
     """Return the samples that are used, and how many steps they are apart.
 
-    The first samples, every one of them; only where these turn slowly, every k-th one over a longer time, k so small
-    that the fastest power turns by at most `TURN`: a power that turns by more than pi between samples is read as a
-    slower one.
+    The first samples, every one of them; only where the strongest power of these turns slowly, every k-th one over a
+    longer time, after a low-pass filter: a filter leaves the powers z^n of a signal as they are and changes their
+    coefficients only, and what would turn by more than pi between two samples, and be read as a slower power, is gone.
     """
     y = signal[:LONGEST]
     most = len(signal) // LONGEST
     if most < 2 or not np.any(y) or not np.all(np.isfinite(signal[: LONGEST * most])):
         return y, 1
     z, c, _ = _fit(y / float(np.max(np.abs(y))), order, tolerance)
-    fastest = float(np.max(np.abs(np.angle(z[np.abs(c) > HELD])), initial=0.0))
-    thin = max(1, min(most, int(TURN / fastest))) if fastest > 0 else 1
-    return signal[: LONGEST * thin : thin], thin
+    turns = np.angle(z) * (z.imag > 1e-9)
+    strongest = float(turns[np.argmax(np.abs(c) * (turns > 0))]) if np.any(turns > 0) else 0.0
+    thin = max(1, min(most, int(TURN / strongest))) if strongest > 0 else 1
+    return (signal[: LONGEST * thin], 1) if thin == 1 else (_low(signal[: LONGEST * thin], thin), thin)
+
+
+def _low(signal: Array, thin: int) -> Array:
+    """Return every k-th sample of a signal whose powers up to `TURN` between these pass and those beyond pi do not."""
+    from scipy.signal import fftconvolve, firwin, kaiserord
+
+    passes, stops = TURN / np.pi, 1.0  # of pi between two of the samples that are left
+    taps, beta = kaiserord(STOPPED, (stops - passes) / thin)
+    low = firwin(taps | 1, (passes + stops) / 2 / thin, window=("kaiser", beta))
+    return np.asarray(fftconvolve(signal, low, mode="valid")[::thin])
 
 
 def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:

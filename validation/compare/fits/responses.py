@@ -48,7 +48,7 @@ def _column_of(found: Histories, i: int) -> Columns:
 def _solver_has(v: Variant) -> bool:
     """Whether the suite's solver of opening contact has everything of a variant."""
     as_it_is = Variant(v.alpha, v.delta, v.gg)
-    own = ("updated", "viscous", "discounted", "strain_load", "coupling", "kept")
+    own = ("updated", "viscous", "reset", "discounted", "strain_load", "coupling", "kept")
     return v.opens and v.gg <= 1 and not v.base and all(getattr(v, n) == getattr(as_it_is, n) for n in own)
 
 
