@@ -38,9 +38,7 @@ class ResponseCurve:
 def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metre: bool = False) -> Figure:
     """Draw amplitudes on a logarithmic axis above phases, displacement beside contact pressure."""
     with house_style():
-        figure, (sizes, phases) = axes_grid(
-            [(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5), between=BETWEEN
-        )
+        figure, (sizes, phases) = axes_grid([(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5, BETWEEN))
         for above, below, column in zip(sizes, phases, (DISPLACEMENT, PRESSURE), strict=True):
             ends = _draw(above, below, curves, column, per_metre)
             for axes in (above, below):
