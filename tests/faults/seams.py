@@ -20,6 +20,7 @@ from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
+from dda.one_block import response as dda_vibration
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
@@ -29,6 +30,8 @@ from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, block_events
 from fem_reference.events import restitution as map_of_impacts
 from fem_reference.exact import opening_bar
+from fem_reference.exact import vibration as bar_vibration
+from fem_reference.history import response as fem_vibration
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import diagnostics as fem_diagnostics
@@ -84,6 +87,7 @@ DDA_EFFECTIVE = Seam(newmark, newmark.effective_matrix)
 DDA_SQUARES = Seam(blocked, blocked._squared)
 DDA_STIFFNESS = Seam(gap_form, gap_form._stiffness)
 DDA_LOAD = Seam(gap_form, gap_form._load)
+DDA_CARRIED = Seam(solution, solution.carried_histories)
 DDA_HISTORIES = Seam(solution, solution.modal_histories)
 DDA_MODES = Seam(solution, solution.modal_form)
 DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
@@ -91,6 +95,11 @@ DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
 DDA_OPENED = Seam(dda, dda.solve_unilateral)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
+
+# Answers to what vibrates
+DDA_ANSWERING = Seam(dda_vibration, dda_vibration.answering)
+FEM_ANSWERING = Seam(fem_vibration, fem_vibration.answering)
+BAR_ANSWERING = Seam(bar_vibration, bar_vibration.answering)
 
 # Systems of blocks
 SYSTEM_BASE = Seam(subdivision, subdivision.base_share)

@@ -37,7 +37,7 @@ def test_tables_hold_the_numbers_of_an_independent_computation() -> None:
 def test_the_pack_is_whole_and_its_scenes_give_its_histories(tmp_path: Path) -> None:
     count = pack.write_waves_pack(tmp_path)
     place = tmp_path / "waves"
-    texts = [(place / f"{name}.csv").read_text().splitlines() for name in ("waves", "joints", "bases")]
+    texts = [(place / f"{name}.csv").read_text().splitlines() for name in ("waves", "joints", "bases", "response")]
     assert count == sum(len(text) - 1 for text in texts) > 1000
     for path in sorted((place / "scenes").glob("*.toml")):
         scene = load_scene(path)

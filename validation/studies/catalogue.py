@@ -28,6 +28,7 @@ STUDIES = {
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
     "waves": "validation.studies.waves.study:study",
+    "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
 }
 T = TypeVar("T")

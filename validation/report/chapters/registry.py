@@ -16,6 +16,7 @@ CHAPTERS: dict[str, str] = {
     "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
     "waves": "validation.report.chapters.waves:chapter",
+    "response": "validation.report.chapters.vibrations.response:chapter",
     "stiff-contact": "validation.report.chapters.limits.stiff_contact:contact_chapter",
 }
 DEFAULT_CHAPTER = "validation.report.chapters.scene:scene_chapter"

@@ -65,12 +65,13 @@ def saved(figure: Figure, directory: Path, file: str, caption: str) -> FigureBlo
 
 @dataclass(frozen=True)
 class Margins:
-    """Margins of a figure [mm]."""
+    """Margins of a figure, and the gap between its columns [mm]."""
 
     left: float = 13.0
     right: float = 21.0
     top: float = 5.0
     bottom: float = 8.5
+    between: float = COLUMN_GAP
 
 
 def axes_grid(
@@ -78,11 +79,11 @@ def axes_grid(
 ) -> tuple[Figure, list[list[Axes]]]:
     """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
     height = margins.top + sum(map(sum, rows)) - rows[-1][1] + margins.bottom
-    across = (width - margins.left - margins.right - COLUMN_GAP * (columns - 1)) / columns
+    across = (width - margins.left - margins.right - margins.between * (columns - 1)) / columns
     figure, grid, y = Figure(figsize=(width / 25.4, height / 25.4)), [], height - margins.top
     for row, gap in rows:
         y -= row
-        lefts = [margins.left + j * (across + COLUMN_GAP) for j in range(columns)]
+        lefts = [margins.left + j * (across + margins.between) for j in range(columns)]
         grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in lefts])
         y -= gap
     return figure, grid

@@ -19,6 +19,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
 COLORS = ("#d55e00", "#0072b2", "#009e73")
 DASHED = (4.0, 1.6)
+BETWEEN = 12.0  # two panels [mm]: the powers of ten of the right one stand there
 DOTS = 200  # an inch, of PNG files
 UNDATED: dict[str, dict[str, None]] = {".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
@@ -37,7 +38,7 @@ class ResponseCurve:
 def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metre: bool = False) -> Figure:
     """Draw amplitudes on a logarithmic axis above phases, displacement beside contact pressure."""
     with house_style():
-        figure, (sizes, phases) = axes_grid([(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5))
+        figure, (sizes, phases) = axes_grid([(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5, BETWEEN))
         for above, below, column in zip(sizes, phases, (DISPLACEMENT, PRESSURE), strict=True):
             ends = _draw(above, below, curves, column, per_metre)
             for axes in (above, below):
