@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import typed
+from conftest import thinned, typed
 from oracles.shi_dda import Program, run, write_measured_point
 
 from dda.one_block.variants import Variant, histories
@@ -117,6 +117,7 @@ def test_what_one_settled_row_cannot_tell_is_said() -> None:
     assert {name for direction in untold(found) for name in direction} >= {"alpha", "delta", "gg"}
 
 
+@pytest.mark.long
 def test_a_base_that_gives_way_is_no_fault_of_the_integrator(tmp_path: Path) -> None:
     """A heavy base that adds 1 % to the static displacement, and swings at 1.4 krad/s."""
     program = Program(dt=5e-4, steps=60, base_young=1e12, fixed=5e9, gg=0.99)
@@ -189,12 +190,15 @@ def test_numbers_of_the_examples_readme() -> None:
 
 @pytest.mark.parametrize(
     ("program", "opened"),
-    [
-        (Program(dt=1e-3, p=1e9, gravity=9.81), [1, 2]),
-        (Program(dt=5e-4, p=1e10, gg=0.98, gravity=9.81, rho=2300.0), None),
-        (Program(dt=2e-4, p=5e8, steps=100, gravity=9.81), None),
-        (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0), None),
-    ],
+    thinned(
+        [
+            (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0), None),
+            (Program(dt=1e-3, p=1e9, gravity=9.81), [1, 2]),
+            (Program(dt=5e-4, p=1e10, gg=0.98, gravity=9.81, rho=2300.0), None),
+            (Program(dt=2e-4, p=5e8, steps=100, gravity=9.81), None),
+        ],
+        4,
+    ),
 )
 def test_a_program_of_another_make(program: Program, opened: list[int] | None, tmp_path: Path) -> None:
     """Base that yields, moving geometry, weight, opening: the scheme is named and the steps are found."""

@@ -101,7 +101,7 @@ SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL]
 LEAVERS = [("with_a_child", "sleep(600)"), ("with_a_daemon", "user_worker")]  # and what shows that one has begun
 
 
-@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 3))
+@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 5))
 def test_nothing_outlives_the_parent(
     number: signal.Signals, leaver: tuple[str, str], tmp_path: Path, mark: str
 ) -> None:
@@ -128,7 +128,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
     assert len(Results(tmp_path / "r").rows()) == 1, "the finished row of dda is kept"
 
 
-@pytest.mark.parametrize("solver", ["with_a_thread", "with_an_exit_hook", "with_a_daemon_left"])
+@pytest.mark.parametrize("solver", thinned(["with_an_exit_hook", "with_a_thread", "with_a_daemon_left"], 3))
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2") as process:
         process.communicate(timeout=60)

@@ -65,17 +65,17 @@ CASES = [
     ("changes_directory", Outcome.COMPLETED, ""),
     ("collects_itself", Outcome.COMPLETED, ""),
     pytest.param("writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("drips", Outcome.TIMEOUT, HUNG, marks=needs_linux),
+    pytest.param("drips", Outcome.TIMEOUT, HUNG, marks=[needs_linux, pytest.mark.long]),
     pytest.param("writes_garbage", Outcome.RAISED, "crashed: no answer but", marks=needs_linux),
     pytest.param("writes_a_list", Outcome.RAISED, "crashed: no answer but '[1, 2]'", marks=needs_linux),
     pytest.param("answers_another_request", Outcome.COMPLETED, "", marks=needs_linux),
     ("closes_everything", Outcome.RAISED, "crashed: the process ended with status"),
     ("closes_and_sleeps", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("sleeps", Outcome.TIMEOUT, HUNG),
+    pytest.param("sleeps", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
     ("spins", Outcome.TIMEOUT, HUNG),
-    ("ignores_signals", Outcome.TIMEOUT, HUNG),
-    ("stops_itself", Outcome.TIMEOUT, HUNG),
-    ("stops_its_guard", Outcome.TIMEOUT, HUNG),
+    pytest.param("ignores_signals", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
+    pytest.param("stops_itself", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
+    pytest.param("stops_its_guard", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
     ("kills_its_guard", Outcome.RAISED, "crashed: the process ended with status -9"),
     ("terminates_its_guard", Outcome.RAISED, "crashed: the process ended with status 137"),
     ("kills_its_group", Outcome.RAISED, "crashed: the process ended with status 137"),
@@ -155,6 +155,7 @@ def test_what_a_solver_says_fits_a_line() -> None:
     assert words("Spannung in N/mm², σ") == "Spannung in N/mm², σ"
 
 
+@pytest.mark.long
 def test_a_study_of_hostile_solvers_ends_with_every_row(mark: str, tmp_path: Path) -> None:
     """Through the command line, on two workers: every case a row, no traceback."""
     names = MANY.split()

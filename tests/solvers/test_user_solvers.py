@@ -125,6 +125,7 @@ def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
     assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names, "JUnit has the gates' ids"
 
 
+@pytest.mark.long
 def test_a_broken_solver_fails_by_name() -> None:
     shown = through_the_gates("slack", "-x")
     assert "failed" in shown and "is outside [" in shown

@@ -107,12 +107,14 @@ def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[st
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", FAULTS)
 def test_changed_code_turns_verdicts_over(fault: str, killed: dict[str, set[str]]) -> None:
     turned = {f"{REGISTER}:{claim}:verdict" for claim in FAULTS[fault][2]}
     assert turned <= killed[fault], sorted(turned - killed[fault])
 
 
+@pytest.mark.long
 def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed: dict[str, set[str]]) -> None:
     bitten = set().union(*killed.values())
     unbitten = {gate.id for gate in PAPER.gates()} - bitten

@@ -109,6 +109,7 @@ def test_every_gate_is_bitten(tmp_path: Path, finished_cases: Path) -> None:
     check(False, BITING, tmp_path, finished_cases)
 
 
+@pytest.mark.long
 def test_every_gate_of_the_longest_scene_is_bitten(tmp_path: Path, finished_cases: Path) -> None:
     check(True, FEW, tmp_path, finished_cases)
 

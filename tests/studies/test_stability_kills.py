@@ -117,6 +117,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path,
     check_kill_matrix(study, study.cases(), study.gates(), KILLS[name], tmp_path, finished_cases)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KILLS)
 def test_every_gate_passes_and_the_chapter_is_written(name: str, tmp_path: Path, finished_cases: Path) -> None:
     results = beside(finished_cases, tmp_path / "results")
