@@ -218,6 +218,7 @@ def test_a_program_of_another_make(program: Program, opened: list[int] | None, t
         assert answer.sentence.startswith("Same model, same scheme")
 
 
+@pytest.mark.long
 def test_a_history_of_finite_elements_is_named_so() -> None:
     s = scene(time__steps=80)
     run_ = solve(s.with_values({"fem.elements": 16}), "fem")

@@ -91,7 +91,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("name", thinned(FAULTS, 2))
+@pytest.mark.parametrize("name", thinned(FAULTS, 4))
 def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     seam, wrap, cause = FAULTS[name]
     seam.wrap(monkeypatch, wrap)

@@ -63,6 +63,7 @@ def test_a_run_that_is_killed_goes_on_where_it_stopped(number, long_scene, tmp_p
     assert len(fresh) == 8 - len(kept), "only what was missing runs"
 
 
+@pytest.mark.long
 def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
     scene, other = tmp_path / "scene.toml", tmp_path / "other.toml"
     scene.write_text(long_scene.read_text().replace("steps = 8000", "steps = 1000"))

@@ -91,6 +91,7 @@ def test_the_content_of_a_record_enters_the_key(scene: Scene, tmp_path: Path) ->
     assert len(keys) == 2
 
 
+@pytest.mark.long
 def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     before = {solver: Case(scene, solver).key() for solver in ("dda", "fem", "fenicsx")}
     monkeypatch.setattr(FEniCSx, "versions", lambda self: {"dolfinx": "another"})

@@ -118,7 +118,7 @@ def test_nothing_outlives_the_parent(
         assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
-@pytest.mark.parametrize("number", thinned(reversed(SIGNALS), 2))
+@pytest.mark.parametrize("number", thinned(reversed(SIGNALS), 4))
 def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)
@@ -145,6 +145,7 @@ def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
     assert left(mark) == [] and "Traceback" not in said and process.returncode == 130
 
 
+@pytest.mark.long
 def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path, mark: str) -> None:
     """As under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)

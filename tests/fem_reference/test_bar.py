@@ -232,7 +232,9 @@ def test_damped_bar_against_the_kernel(kappa, a, step):
             assert row[i] == pytest.approx(damped_by_kernel(column, step * (i + 1), kappa, a), abs=2e-11)
 
 
-@pytest.mark.parametrize(("gg", "dt"), [(0.98, 1e-2), (0.999999, 1e-6), (0.5, 1e-6), (0.5, 1e-9), (0.01, 1e-3)])
+@pytest.mark.parametrize(
+    ("gg", "dt"), thinned([(0.5, 1e-6), (0.98, 1e-2), (0.01, 1e-3), (0.5, 1e-9), (0.999999, 1e-6)], 2)
+)
 def test_damped_bar_sums_a_bounded_number_of_modes(gg, dt, monkeypatch):
     asked, waves = [], []
     wave_numbers_of, undamped = damped.wave_numbers, continuum.undamped

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import SCENE
+from conftest import SCENE, thinned
 from oracles.processes import MARK, left, new_mark
 
 from validation.engine.case import Case
@@ -122,7 +122,7 @@ def test_a_hostile_solver_is_a_row_with_a_name(
     assert left(mark) == []
 
 
-@pytest.mark.parametrize("attribute", ["forks", "forks_and_stays"])
+@pytest.mark.parametrize("attribute", thinned(["forks_and_stays", "forks"], 2))
 def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, attribute: str) -> None:
     for _ in range(4):
         assert row_of(scene, attribute).metrics["displacement.final"] == -1e-3

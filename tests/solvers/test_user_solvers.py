@@ -118,6 +118,7 @@ def through_the_gates(attribute: str, *options: str) -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
     shown = through_the_gates("solve", f"--junitxml={tmp_path / 'junit.xml'}")
     assert " passed" in shown and "failed" not in shown
