@@ -95,9 +95,13 @@ def thinned(cases: Iterable[object], every: int) -> list[object]:
     lengths of the axes.
     """
     listed = list(cases)
+    cases = [case if isinstance(case, type(pytest.param())) else pytest.param(*_parts(case)) for case in listed]
     long = [[] if i % every == 0 else [pytest.mark.long] for i in range(len(listed))]
-    parts = [case if isinstance(case, tuple) else (case,) for case in listed]
-    return [pytest.param(*part, marks=marks) for part, marks in zip(parts, long, strict=True)]
+    return [pytest.param(*case.values, marks=[*case.marks, *more]) for case, more in zip(cases, long, strict=True)]
+
+
+def _parts(case: object) -> tuple[object, ...]:
+    return case if isinstance(case, tuple) else (case,)
 
 
 def beside(finished_cases: Path, directory: Path) -> Results:

@@ -214,7 +214,7 @@ BASELINES = {
 }
 
 
-@pytest.mark.parametrize("name", BASELINES)
+@pytest.mark.parametrize("name", thinned(BASELINES, 3))
 def test_a_baseline_that_is_none_is_refused_before_anything_runs(name: str, scene_file: Path, tmp_path: Path) -> None:
     change, words = BASELINES[name]
     scene_file.write_text(WIDE)

@@ -101,7 +101,7 @@ SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL]
 LEAVERS = [("with_a_child", "sleep(600)"), ("with_a_daemon", "user_worker")]  # and what shows that one has begun
 
 
-@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 5))
+@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 8))
 def test_nothing_outlives_the_parent(
     number: signal.Signals, leaver: tuple[str, str], tmp_path: Path, mark: str
 ) -> None:
@@ -136,6 +136,7 @@ def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Pa
     assert {str(row.outcome) for row in Results(tmp_path / "r").rows().values()} == {"completed"}
 
 
+@pytest.mark.long
 def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)

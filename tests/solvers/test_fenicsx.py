@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import meshio
 import numpy as np
 import pytest
-from conftest import SCENE, thinned, typed
+from conftest import SCENE, typed
 from faults import seams
 from faults.fault import Fault, late, no_discount, times, with_scheme
 from faults.kill_matrix import Overlay
@@ -224,8 +224,9 @@ def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatc
         assert os.access(found["XDG_CACHE_HOME"], os.W_OK)
 
 
+@pytest.mark.long
 @pytest.mark.fenicsx
-@pytest.mark.parametrize("solver", thinned(["fenicsx:2", "fenicsx"], 2))
+@pytest.mark.parametrize("solver", ["fenicsx", "fenicsx:2"])
 def test_fenicsx_runs_without_a_home_and_from_any_path(
     scene: Scene, solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

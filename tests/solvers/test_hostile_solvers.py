@@ -65,17 +65,17 @@ CASES = [
     ("changes_directory", Outcome.COMPLETED, ""),
     ("collects_itself", Outcome.COMPLETED, ""),
     pytest.param("writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("drips", Outcome.TIMEOUT, HUNG, marks=[needs_linux, pytest.mark.long]),
+    pytest.param("drips", Outcome.TIMEOUT, HUNG, marks=needs_linux),
     pytest.param("writes_garbage", Outcome.RAISED, "crashed: no answer but", marks=needs_linux),
     pytest.param("writes_a_list", Outcome.RAISED, "crashed: no answer but '[1, 2]'", marks=needs_linux),
     pytest.param("answers_another_request", Outcome.COMPLETED, "", marks=needs_linux),
     ("closes_everything", Outcome.RAISED, "crashed: the process ended with status"),
     ("closes_and_sleeps", Outcome.RAISED, "crashed: the process ended with status 137"),
-    pytest.param("sleeps", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
+    ("sleeps", Outcome.TIMEOUT, HUNG),
     ("spins", Outcome.TIMEOUT, HUNG),
-    pytest.param("ignores_signals", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
-    pytest.param("stops_itself", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
-    pytest.param("stops_its_guard", Outcome.TIMEOUT, HUNG, marks=pytest.mark.long),
+    ("ignores_signals", Outcome.TIMEOUT, HUNG),
+    ("stops_itself", Outcome.TIMEOUT, HUNG),
+    ("stops_its_guard", Outcome.TIMEOUT, HUNG),
     ("kills_its_guard", Outcome.RAISED, "crashed: the process ended with status -9"),
     ("terminates_its_guard", Outcome.RAISED, "crashed: the process ended with status 137"),
     ("kills_its_group", Outcome.RAISED, "crashed: the process ended with status 137"),
@@ -107,7 +107,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("attribute", "outcome", "said"), CASES)
+@pytest.mark.parametrize(("attribute", "outcome", "said"), thinned(CASES, 3))
 def test_a_hostile_solver_is_a_row_with_a_name(
     scene: Scene, mark: str, attribute: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -105,6 +105,7 @@ def check(slow: bool, names: Collection[str], directory: Path, finished_cases: P
     check_kill_matrix(CORE, cases, gates, faults, directory, finished_cases)
 
 
+@pytest.mark.long
 def test_every_gate_is_bitten(tmp_path: Path, finished_cases: Path) -> None:
     check(False, BITING, tmp_path, finished_cases)
 
