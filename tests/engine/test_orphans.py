@@ -128,7 +128,8 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
     assert len(Results(tmp_path / "r").rows()) == 1, "the finished row of dda is kept"
 
 
-@pytest.mark.parametrize("solver", thinned(["with_an_exit_hook", "with_a_thread", "with_a_daemon_left"], 3))
+@pytest.mark.long
+@pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_daemon_left"])
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2") as process:
         process.communicate(timeout=60)

@@ -115,6 +115,7 @@ def pack(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return directory
 
 
+@pytest.mark.long
 def test_a_pack_is_complete(pack: Path) -> None:
     with (pack / "bands.csv").open(newline="") as stream:
         bands = list(csv.DictReader(stream))

@@ -62,6 +62,7 @@ def test_what_a_solver_does_is_named(scene: Scene, attribute: str, outcome: Outc
     assert words in "; ".join(run.notes)
 
 
+@pytest.mark.long
 def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, "1.5")
     run = completed(get_solver("my_solver:hangs"), scene)
