@@ -51,7 +51,6 @@ NORMAL_95 = 1.96
 UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
 SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
 LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
-NEXT_TO_NOTHING = 20.0  # times smaller
 UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
 
 
