@@ -29,6 +29,9 @@ def parse(**changes: object) -> Scene:
     return parse_scene(changed(**changes), "x.toml")
 
 
+UNLOCKED = {"contact__law": "unilateral"}
+SLIDING = UNLOCKED | {"contact__friction": 30.0}
+AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
 REFUSED = [
     ({"block__young": -1.0}, "block.young: must be greater than 0, got -1.0"),
     ({"block__young": 0}, "block.young: must be greater than 0, got 0"),
@@ -55,6 +58,23 @@ REFUSED = [
     ({"load__eccentricity": 1.0}, "load: eccentricity must be below half the top edge 1, got 1"),
     ({"load__pressure": 0.0, "load__eccentricity": 0.5}, "load: eccentricity goes with a pressure only, got 0.5"),
     ({"load__gravity": math.nan}, "load.gravity: must be a finite number, got nan"),
+    ({"load__slope": 20.0}, "load: slope goes with gravity only, got 20 without it"),
+    ({"load__gravity": 9.81, "load__slope": 90}, "load.slope: must be less than 90, got 90"),
+    ({"contact__friction": 30.0}, 'contact: friction goes with law = "unilateral" only, got it with a locked contact'),
+    (UNLOCKED | {"contact__friction": -1.0}, "contact.friction: must be greater than or equal to 0, got -1.0"),
+    (UNLOCKED | {"contact__friction": 90.0}, "contact.friction: must be less than 90, got 90.0"),
+    (UNLOCKED | {"contact__cohesion": 1e5}, "contact: cohesion goes with friction only, got it without one"),
+    (UNLOCKED | {"contact__rules": "lagged"}, "contact: rules goes with friction only, got it without one"),
+    (SLIDING | {"contact__rules": "late"}, "contact.rules: must be 'consistent' or 'lagged', got 'late'"),
+    (SLIDING | {"contact__shear_stiffness": 0}, "contact: shear_stiffness must be greater than 0 with friction, got 0"),
+    (SLIDING | AVERAGE | {"contact__rule": "energy-conserving"}, "contact: friction goes with rule = "),
+    (
+        SLIDING | AVERAGE | {"contact__rule": "implicit", "contact__rules": "lagged"},
+        'contact: rules = "lagged" goes with rule = "newmark" only, got it with \'implicit\'',
+    ),
+    ({"run__geometry": "updated"}, 'run: geometry = "updated" goes with contact.law = "unilateral" only'),
+    (UNLOCKED | {"block__tilt": 1.0}, 'block: tilt goes with run.geometry = "updated" only, got 1'),
+    (UNLOCKED | {"run__rotation": "first-order"}, 'run: rotation goes with geometry = "updated" only'),
     ({"load__base_motion": 3}, "load.base_motion: must be a valid string, got 3"),
     ({"time__step": 0.0}, "time.step: must be greater than 0, got 0.0"),
     ({"time__steps": 0}, "time.steps: must be greater than or equal to 1, got 0"),

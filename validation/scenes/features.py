@@ -25,6 +25,7 @@ class Feature:
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
+FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
 COLUMN = "column"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
@@ -36,6 +37,10 @@ FEATURES = (
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
     Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
+    Feature(FRICTION, lambda scene: scene.contact.friction is not None, linear=False),
+    Feature(LAGGED, lambda scene: scene.contact.rules == "lagged", linear=False),
+    Feature(SLOPE, lambda scene: scene.load.slope != 0),
+    Feature(ROTATION, lambda scene: scene.run.geometry == "updated", linear=False),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),

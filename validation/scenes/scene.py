@@ -83,6 +83,14 @@ class Scene(SceneTables):
         return self
 
     @model_validator(mode="after")
+    def _check_geometry(self) -> Self:
+        if self.run.geometry == "updated" and (self.column is not None or self.contact.law == "locked"):
+            raise ValueError('run: geometry = "updated" goes with contact.law = "unilateral" only, got another scene')
+        if self.column is None and self.block.tilt and self.run.geometry == "small":
+            raise ValueError(f'block: tilt goes with run.geometry = "updated" only, got {self.block.tilt:g}')
+        return self
+
+    @model_validator(mode="after")
     def _check_discount(self) -> Self:
         if self.damping.kinetic == "adaptive" and self.time.discount != 1:
             raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')

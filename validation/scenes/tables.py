@@ -51,6 +51,7 @@ def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
 
 
 Real = Annotated[float, BeforeValidator(_real)]
+Angle = Annotated[float, BeforeValidator(_real), Field(gt=-90, lt=90)]  # deg
 Positive = Annotated[Real, Field(gt=0)]
 Stiffness = Annotated[
     float, BeforeValidator(_stiffness), Field(gt=0), PlainSerializer(_stiffness_as_data, when_used="json")
@@ -83,6 +84,7 @@ class BlockSection(Section):
     density: Positive  # kg/m3
     young: Positive  # Pa
     velocity: Real = 0.0  # m/s at t = 0, upwards; for unilateral contact only
+    tilt: Angle = 0.0  # deg at t = 0, counter-clockwise about the corner that stays down; for updated geometry only
     poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
     hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
     subdivide: tuple[Count, Count] | None = None  # sub-blocks along the base and upwards
@@ -148,7 +150,10 @@ class ContactSection(Section):
     law: Literal["locked", "unilateral"] = "locked"
     stiffness: Stiffness  # p, N/m per corner spring; inf is a rigid stop, for unilateral contact only
     shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
+    friction: Annotated[Angle, Field(ge=0)] | None = None  # angle phi, deg; a closed corner is glued in shear without
+    cohesion: NonNegative = 0.0  # Pa over the whole base, of which each corner carries half; goes with friction
     rule: Literal["newmark", "implicit", "energy-conserving"] = "newmark"  # how a step takes the contact force
+    rules: Literal["consistent", "lagged"] = "consistent"  # lagged: friction of the iteration before, as programs do
     gap: NonNegative = 0.0  # m, between block and springs at t = 0
     band: tuple[NonNegative, NonNegative] = (0.0, 0.0)  # m: closes below -band[0], opens above band[1]
     solve_limit: Count = 6  # solves of the open-close iteration before every contact state is tried
@@ -156,9 +161,10 @@ class ContactSection(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        alone = sorted(self.model_fields_set & {"rule", "gap", "band", "solve_limit", "cut"})
+        alone = sorted(self.model_fields_set & {"rule", "gap", "band", "solve_limit", "cut", "friction"})
         if self.law == "locked" and alone:
             raise ValueError(f'{alone[0]} goes with law = "unilateral" only, got it with a locked contact')
+        self._check_friction()
         if math.isinf(self.stiffness):
             self._check_rigid()
         if self.rule == "energy-conserving" and any(self.band):
@@ -166,6 +172,17 @@ class ContactSection(Section):
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self
+
+    def _check_friction(self) -> None:
+        alone = sorted(self.model_fields_set & {"cohesion", "rules"})
+        if self.friction is None and alone:
+            raise ValueError(f"{alone[0]} goes with friction only, got it without one")
+        if self.friction is not None and self.shear_stiffness == 0:
+            raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
+        if self.friction is not None and self.rule == "energy-conserving":
+            raise ValueError(f'friction goes with rule = "newmark" or "implicit", got it with {self.rule!r}')
+        if self.rules == "lagged" and self.rule != "newmark":
+            raise ValueError(f'rules = "lagged" goes with rule = "newmark" only, got it with {self.rule!r}')
 
     def _check_rigid(self) -> None:
         if self.law == "locked" or self.rule == "energy-conserving":
@@ -189,6 +206,7 @@ class LoadSection(Section):
     eccentricity: Real = 0.0  # m, shift towards +x of the middle of the pressed part, whose length is L - 2 |e|
     traction: Real = 0.0  # Pa, towards +x on the whole top edge
     gravity: Real = 0.0  # m/s2, downwards
+    slope: Angle = 0.0  # deg: gravity is turned to g (sin, -cos) in x and y, so that the block stands on its incline
     base_motion: str | None = None  # CSV file with the header time,x or time,y or time,x,y (s, m)
 
     @model_validator(mode="after")
@@ -197,6 +215,8 @@ class LoadSection(Section):
             raise ValueError("one of pressure, traction, gravity or base_motion is required, got none")
         if self.eccentricity != 0 and self.pressure == 0:
             raise ValueError(f"eccentricity goes with a pressure only, got {self.eccentricity:g} without one")
+        if self.slope != 0 and self.gravity == 0:
+            raise ValueError(f"slope goes with gravity only, got {self.slope:g} without it")
         return self
 
     @property
@@ -290,6 +310,14 @@ class RunSection(Section):
 
     solvers: Words = ("dda", "fem", "bar")
     columns: Words = ("displacement", "contact_pressure")
+    geometry: Literal["small", "updated"] = "small"  # updated: outline, contact points, directions anew at every step
+    rotation: Literal["exact", "first-order"] = "exact"  # of an updated outline; first-order is that of older programs
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.geometry == "small" and self.rotation != "exact":
+            raise ValueError(f'rotation goes with geometry = "updated" only, got {self.rotation!r} without it')
+        return self
 
 
 class GateSection(Section):
