@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fem_reference.contact.points import ContactModel, build
+from fem_reference.contact.shear import Friction
 from fem_reference.contact.stepper import ContactState, ContactStepper
 from fem_reference.history.opening_columns import COUNTS, LOSSES, UNILATERAL_COLUMNS, Observer, observers
 from fem_reference.history.opening_losses import Losses
@@ -36,9 +37,11 @@ class Unilateral:
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
     rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
+    friction: Friction | None = None  # limit of the forces of glued points; none if absent
 
     def __post_init__(self) -> None:
         for name, rule, good in (
+            ("friction", "goes with shear = 'glued' only", self.friction is None or self.shear == "glued"),
             ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
             ("velocity", "must be a finite number", math.isfinite(self.velocity)),
             ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
@@ -84,7 +87,7 @@ def solve_unilateral(
     Parameters
     ----------
     problem, scheme
-        What is solved and how it is integrated. The base may not move.
+        What is solved and how it is integrated. A base that moves begins where the block stands.
     steps
         Number of steps, at least 1.
     contact
@@ -99,17 +102,17 @@ def solve_unilateral(
     Raises
     ------
     ValueError
-        If the block cannot be meshed, its base moves, `steps` is below one or a column is unknown.
+        If the block cannot be meshed, its base is displaced at t = 0, `steps` is below one or a column is unknown.
     """
     if steps < 1:
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
     contact = Unilateral() if contact is None else contact
     began = time.perf_counter()
     model = build(problem, full)
-    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule)
+    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule, contact.friction)
     state = stepper.start(contact.gap, contact.velocity)
     ready = time.perf_counter()
-    watched = _Watched(stepper, problem.base_length, tuple(dict.fromkeys(columns)), every_point)
+    watched = _Watched(stepper, tuple(dict.fromkeys(columns)), every_point)
     rows, outcome = _run(stepper, state, steps, contact, watched)
     ended = time.perf_counter()
     observed = np.array([row.observed for row in rows]).reshape(len(rows), len(watched.columns)).T
@@ -158,8 +161,8 @@ class _Row:
 class _Watched:
     """What is kept of every step."""
 
-    def __init__(self, stepper: ContactStepper, length: float, asked: tuple[str, ...], every_point: bool) -> None:
-        self.observers: list[Observer] = observers(stepper.model, length, asked)
+    def __init__(self, stepper: ContactStepper, asked: tuple[str, ...], every_point: bool) -> None:
+        self.observers: list[Observer] = observers(stepper.model, asked)
         self.counted = [name for name in COUNTS if name in asked]
         lost = any(name in asked for name in LOSSES)
         self.losses = Losses(stepper.model, stepper.scheme.start == "consistent", stepper.rule) if lost else None
