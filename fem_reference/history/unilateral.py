@@ -18,6 +18,8 @@ from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
 COMPLETED, OVERFLOW = "completed", "overflow"
+POINTWISE = ("normal", "gap", "shear", "states", "slid")
+"""What is kept of every point where it is asked for."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,9 @@ class UnilateralResult:
     stepping_seconds: float  # time for the steps [s]
     normal: Array | None = None  # normal force of each point at each step [N], shape (rows, points), where asked for
     gap: Array | None = None  # gap of each point at each step [m], shape (rows, points), where asked for
+    shear: Array | None = None  # tangential force of each point at each step [N], where asked for
+    states: Array | None = None  # 0 open, 1 held, 2 or -2 sliding towards +x or -x, of each point, where asked for
+    slid: Array | None = None  # way that each point has slid while closed [m], where asked for
 
 
 def solve_unilateral(
@@ -95,7 +100,7 @@ def solve_unilateral(
     full
         Solve the whole block where one column of elements would do.
     every_point
-        Keep the forces and gaps of every point.
+        Keep forces, gap, state and sliding of every point.
     columns
         Columns of the history, among `fem_reference.history.opening_columns.UNILATERAL_COLUMNS`.
 
@@ -116,7 +121,6 @@ def solve_unilateral(
     rows, outcome = _run(stepper, state, steps, contact, watched)
     ended = time.perf_counter()
     observed = np.array([row.observed for row in rows]).reshape(len(rows), len(watched.columns)).T
-    kept = (len(rows), len(model.share))
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
         columns=dict(zip(watched.columns, observed, strict=True)),
@@ -129,9 +133,16 @@ def solve_unilateral(
         notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
-        normal=np.array([row.normal for row in rows]).reshape(kept) if every_point else None,
-        gap=np.array([row.gap for row in rows]).reshape(kept) if every_point else None,
+        **_of_points(rows, len(model.share) if every_point else 0),
     )
+
+
+def _of_points(rows: list[_Row], points: int) -> dict[str, Array]:
+    """What is kept of every point, shape (rows, points) each."""
+    if not points:
+        return {}
+    kept = [[getattr(row.state, name) for row in rows] for name in POINTWISE]
+    return {name: np.array(values, float).reshape(-1, points) for name, values in zip(POINTWISE, kept, strict=True)}
 
 
 def _saving(model: ContactModel) -> tuple[str, ...]:
@@ -154,8 +165,7 @@ def _ramp(problem: Problem) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class _Row:
     observed: list[float]
-    normal: Array | None
-    gap: Array | None
+    state: ContactState | None  # where every point is kept
 
 
 class _Watched:
@@ -175,7 +185,7 @@ class _Watched:
         observed = [watch(state) for watch in self.observers]
         observed += [] if self.losses is None else self.losses.values.tolist()
         observed += [float(getattr(step, name)) for name in self.counted]
-        return _Row(observed, *((state.normal, state.gap) if self.every_point else (None, None)))
+        return _Row(observed, state if self.every_point else None)
 
 
 def _run(
