@@ -54,7 +54,12 @@ def test_full_gives_the_same_numbers(scene_file: Path, tmp_path: Path) -> None:
 
 BAD = [
     (["run", "nonsense"], "nonsense: must be a study"),
-    (["run", "missing.toml"], "missing.toml: no such scene file; built-in scenes: "),
+    (["run", "missing.toml"], "missing.toml: no such scene file;"),
+    (
+        ["run", "figure8"],
+        "figure8: must be a study, a built-in scene or a scene file ending in .toml; did you mean fig",
+    ),
+    (["solve", "figures34.toml"], "figures34.toml: no such scene file; did you mean figures-3-4"),
     (["run", "core", "--set", "time.step=1"], "--set: goes with a scene, got the study 'core'"),
     (["run", "figure-8", "--set", "time.step"], "--set: must be key=value, got 'time.step'"),
     (["run", "figure-8", "--set", "time.stop=1"], "figure-8: time.stop: unknown key, got 1"),

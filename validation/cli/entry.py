@@ -9,7 +9,7 @@ import typer
 
 from validation.cli import compare, contact, damping, report, run, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
-from validation.cli.output import prepare, silence
+from validation.cli.printing.output import prepare, silence
 from validation.cli.signals import caught, end
 from validation.errors import InputError
 from validation.runs.text import printable

@@ -50,3 +50,8 @@ def console() -> Console:
             raise
 
     return Plain(width=None if sys.stdout.isatty() else PAGE)
+
+
+def width() -> int:
+    """Return the characters of a line: those of the terminal, or `PAGE` where the output is none."""
+    return console().width
