@@ -50,29 +50,22 @@ def list_command(
         str | None, typer.Argument(help="metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
     ] = None,
 ) -> None:
-    """List studies, built-in scenes, solvers and metrics, or one of the four with units, needs and descriptions.
+    """List studies, built-in scenes, solvers and metrics, or one of the four in full.
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
-    from validation.cli.printing.listing import LISTS, in_columns
+    from validation.cli.printing.listing import LISTS, in_columns, short
+    from validation.cli.printing.output import terminal_width
     from validation.errors import InputError
-    from validation.metrics.catalogue import METRICS
-    from validation.scenes.scene import load_scene, scene_names
-    from validation.solvers.registry import solver_names
-    from validation.studies.catalogue import STUDIES, get_study
 
     if what is not None and what not in LISTS:
         raise InputError(f"list: must be one of {', '.join(sorted(LISTS))}, got {what!r}")
     if what is not None:
-        typer.echo(in_columns(LISTS[what]()))
+        typer.echo(in_columns(LISTS[what](), terminal_width()))
         return
-    typer.echo("studies")
-    for name in STUDIES:
-        typer.echo(f"  {name:<18} {get_study(name).title}")
-    typer.echo("scenes")
-    for name in scene_names():
-        typer.echo(f"  {name:<18} {load_scene(name).title}")
-    typer.echo(f"solvers\n  {', '.join(solver_names())}\nmetrics\n  {', '.join(METRICS)}")
+    for title, lines in short().items():
+        typer.echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
+    typer.echo("dda-validate list NAME shows one of the four in full, dda-validate show SCENE a scene and its numbers")
 
 
 @app.command()

@@ -55,3 +55,8 @@ def console() -> Console:
 def width() -> int:
     """Return the characters of a line: those of the terminal, or `PAGE` where the output is none."""
     return console().width
+
+
+def terminal_width() -> int | None:
+    """Return the characters of a line of the terminal; None where the output is none, and lines are not broken."""
+    return console().width if sys.stdout.isatty() else None
