@@ -166,10 +166,3 @@ def test_an_end_of_a_file_is_no_interruption(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("validation.studies.catalogue.get_study", torn)
     with pytest.raises(EOFError, match="too short"):
         typed("list")
-
-
-def test_help_has_an_example_everywhere() -> None:
-    for command in ("", "list", "run", "solve", "report", "figures"):
-        done = typed(*command.split(), "--help")
-        assert done.returncode == 0
-        assert "Example: " in done.stdout
