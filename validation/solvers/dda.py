@@ -18,6 +18,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.dda_opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.dda_rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
@@ -189,7 +190,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED}
+        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
         | features.LOADS
         | features.RULES
     )
@@ -202,11 +203,13 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
+        if features.ROTATION in own:
+            return rotation_apart(scene)
         if {features.SUB_BLOCKS, features.UNILATERAL, features.BASE_MOTION} <= own:
             return (
                 f"it does not handle {features.BASE_MOTION}, {features.UNILATERAL} and {features.SUB_BLOCKS} together"
@@ -227,6 +230,8 @@ class DDA(Solver):
             from validation.solvers.columns.blocks import BlockColumn
 
             return BlockColumn(scene, scheme_of(scene))
+        if features.ROTATION in features.of(scene):
+            return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):
             kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
             return kind(scene, scheme_of(scene), base_motion(scene), full)
