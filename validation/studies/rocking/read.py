@@ -27,6 +27,15 @@ def crossing(time: Array, values: Array, level: float) -> float:
     return float(time[n - 1] + share * (time[n] - time[n - 1]))
 
 
+def landing(time: Array, gap: Array) -> float:
+    """Return when a gap closes, on the straight line of the last two steps that it is open in [s]; NaN if never."""
+    closed = np.flatnonzero(gap <= 0)
+    if not len(closed) or closed[0] < 2:
+        return math.nan
+    n = closed[0]
+    return float(time[n - 1] + gap[n - 1] / (gap[n - 2] - gap[n - 1]) * (time[n - 1] - time[n - 2]))
+
+
 def settlement(scene: Scene) -> float:
     """Return the penetration m g / p of one corner that carries the block at rest [m]."""
     block = rectangle(scene)

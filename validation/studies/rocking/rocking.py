@@ -14,7 +14,7 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import cases
 from validation.studies.declaration import Study
-from validation.studies.rocking.read import crossing, rectangle, settlement
+from validation.studies.rocking.read import crossing, landing, rectangle, settlement
 
 LET_GO = ("rocking-release", "rocking-swing")
 PULSE = "rocking-pulse"
@@ -31,7 +31,7 @@ def swing(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     if history is None:
         return {}
     block, tilt = rectangle(scene), math.radians(scene.block.tilt)
-    landed = crossing(history.time, -history.columns["gap_n"], 0.0)
+    landed = landing(history.time, history.columns["gap_n"])
     other = max(0.0, -float(np.min(history.columns["rotation"])) - tilt)
     risen, fallen = (math.cos(block.alpha - angle) - math.cos(block.alpha) for angle in (other, tilt))
     return {
@@ -81,12 +81,12 @@ def swing_gates() -> Iterator[Gate]:
     """Yield the gates on blocks that are let go."""
     why = (
         "rigid block, by quadrature; below: the corner settles by up to 2 m g / p, which the tilt need not go back; "
-        "above: a straight line within a step, (dt / T)^2 / 4"
+        "above: a straight line beyond a step, (dt / T)^2"
     )
     falls = "delta = 1 gains no energy; how much an impact takes depends on step and springs and is no property of DDA"
     for case in cases(*LET_GO):
         block, tilt = rectangle(case), math.radians(case.block.tilt)
-        late = (case.time.step / block.quarter_period(tilt)) ** 2 / 4
+        late = (case.time.step / block.quarter_period(tilt)) ** 2
         early = settlement(case) / (block.width * tilt) + late
         yield Gate(case.name, (SWING,), "quarter period", 1 - early, 1 + late, why)
         yield Gate(case.name, (SWING,), "rate ratio", 0.0, 1.0, falls)

@@ -1,4 +1,4 @@
-"""The study `toppling`: the cases of the manuals of block codes as numbers, and what first-order rotation adds to an area.
+"""The study `toppling`: the cases of the manuals of block codes as numbers, and the growth by first-order rotation.
 
 A block on a slope stands, slides or topples: with friction a tenth of a degree above and below the slope, with half of
 the friction that it needs, and as a tower whose centroid stands beyond its lower corner.
@@ -55,7 +55,7 @@ def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
 def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return what the sliding identity leaves, and the run-out over that of a rigid block.
 
-    While both corners slip or are open u + tan(phi) v is a t^2 / 2, the free motion under a = g (sin b - tan(phi) cos b).
+    While both corners slip or are open u + tan(phi) v is a t^2 / 2, free motion under a = g (sin b - tan(phi) cos b).
     """
     history = finished.history(scene.name, "dda")
     if history is None:
@@ -156,7 +156,7 @@ def falling_gates() -> Iterator[Gate]:
     timed = "rigid block about its lower corner, by quadrature; the corner settles by up to 2 m g / p, seen from psi"
     kept = "exact rotation keeps the outline; band: the strain of four times the weight"
     product = "a step's first-order rotation multiplies the area by 1 + r^2; band: the strain of four times the weight"
-    growing = "dt times the integral of the squared rate of a rigid block; band: what that growth changes, twice its own share"
+    growing = "dt times the integral of the squared rate of a rigid block; band: twice that growth of it"
     for case in cases(*LET_GO):
         block, grown = rectangle(case), growth(case)
         exact = case.run.rotation == "exact"
