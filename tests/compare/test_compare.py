@@ -228,6 +228,7 @@ def test_a_history_of_finite_elements_is_named_so() -> None:
     assert answer.departure is None and answer.causes == []
 
 
+@pytest.mark.long
 def test_a_polygon_is_compared_with_the_linear_models() -> None:
     corners = [[0.0, 0.0], [2.0, 0.0], [1.7, 1.5], [0.2, 1.5]]
     s = load_scene("figures-3-4").with_values(
