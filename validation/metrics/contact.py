@@ -19,7 +19,7 @@ Part = Callable[[ContactRecord], Value]
 
 def count(m: Measurable) -> Value:
     """Openings and closings after t = 0, of all corners."""
-    return NOT_REPORTED if m.switches is None else float(len(m.switches))
+    return NOT_REPORTED if m.switches is None else float(sum(one.opens is not None for one in m.switches))
 
 
 def first(m: Measurable, opens: bool) -> Value:
