@@ -15,6 +15,7 @@ from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
+ON_MESH = ("fem",)  # solvers that step the scene's own mesh: with a slip they leave noise alone
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 APART = 3.0  # times more that every other cause must leave: a mesh error is no noise
 
@@ -53,11 +54,15 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     bars = [Bar.of(reading.displacement, reading.rounding)]
     spread = bars[0].allowed
     near = ranked + slipped(same, ranked[0].model, goal)
-    return _decided(scene, near, ranked, max(0.0 if ranked[0].model == exact else MESH, spread), below)
+    mesh = 0.0 if ranked[0].model == exact else MESH
+    allowed = spread if ranked[0].model in ON_MESH else max(mesh, spread)
+    return _decided(scene, near, ranked, max(mesh, spread), allowed, below)
 
 
-def _decided(scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: float, below: float) -> RivalVerdict:
-    """Return the verdict: the solver as it is, with one slip, or not explained."""
+def _decided(
+    scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: float, allowed: float, below: float
+) -> RivalVerdict:
+    """Return the verdict: the solver as it is below `bar`, with one slip below `allowed`, or not explained."""
     t = scene.time
     model = ranked[0].model
     own = next(r for r in ranked if r.model == model and (r.alpha, r.delta) in ((t.alpha, t.delta), (None, None)))
@@ -69,7 +74,7 @@ def _decided(scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: flo
     causes, values = _causes(scene, best)
     others = [r for r in ordered if _causes(scene, r)[0] != causes]
     clear = not others or others[0].misfit > APART * best.misfit
-    enough = best.misfit <= min(bar, max(SHARE * plain, 1e-12), below)
+    enough = best.misfit <= min(allowed, max(SHARE * plain, 1e-12), below)
     one = len(causes) <= 1
     return RivalVerdict(best, ranked, causes, values, own.unsoftened, clear and enough and one, best.misfit / plain)
 

@@ -18,6 +18,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.dda_opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.dda_rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
@@ -53,7 +54,7 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
-NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION}
+NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION, features.LAGGED}
 
 
 class OneBlock(Prepared):
@@ -189,7 +190,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION}
+        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
         | features.LOADS
         | features.RULES
     )
@@ -202,17 +203,21 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
+        if features.ROTATION in own:
+            return rotation_apart(scene)
         if {features.SUB_BLOCKS, features.UNILATERAL, features.BASE_MOTION} <= own:
             return (
                 f"it does not handle {features.BASE_MOTION}, {features.UNILATERAL} and {features.SUB_BLOCKS} together"
             )
         if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
+        if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
+            return "a corner that pulls within its band rubs under lagged rules only"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
@@ -225,6 +230,8 @@ class DDA(Solver):
             from validation.solvers.columns.blocks import BlockColumn
 
             return BlockColumn(scene, scheme_of(scene))
+        if features.ROTATION in features.of(scene):
+            return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):
             kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
             return kind(scene, scheme_of(scene), base_motion(scene), full)
