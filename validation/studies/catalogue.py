@@ -28,6 +28,8 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
+    "slopes": "validation.studies.slopes.sliding:STUDY",
+    "creep": "validation.studies.slopes.creep:STUDY",
     "waves": "validation.studies.waves.study:study",
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
