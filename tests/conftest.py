@@ -50,6 +50,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_kept_numbers",
     "test_paper_chapter",
     "test_report",
+    "test_site",
     "test_site_program",
     "test_walls",
     "test_work_precision",
