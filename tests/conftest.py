@@ -50,6 +50,8 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_kept_numbers",
     "test_paper_chapter",
     "test_report",
+    "test_rotation_orders",
+    "test_rotation_solver",
     "test_site",
     "test_site_program",
     "test_walls",

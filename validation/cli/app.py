@@ -73,8 +73,8 @@ def one_case(source: str, assignments: list[str] | None) -> Scene:
 
 
 @contextmanager
-def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
-    """Yield a callback that shows a progress bar once the work has taken two seconds."""
+def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -90,7 +90,7 @@ def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
     task = bar.add_task(title, label="")
 
     def show(done: int, total: int, label: str) -> None:
-        if time.monotonic() - start > SLOW and not bar.live.is_started:
+        if shown and time.monotonic() - start > SLOW and not bar.live.is_started:
             bar.start()
         bar.update(task, completed=done, total=total, label=label)
 

@@ -19,7 +19,7 @@ Part = Callable[[ContactRecord], Value]
 
 def count(m: Measurable) -> Value:
     """Openings and closings after t = 0, of all corners."""
-    return NOT_REPORTED if m.switches is None else float(len(m.switches))
+    return NOT_REPORTED if m.switches is None else float(sum(one.opens is not None for one in m.switches))
 
 
 def first(m: Measurable, opens: bool) -> Value:
@@ -156,11 +156,12 @@ def switching(record: ContactRecord) -> Value:
 def imbalance(record: ContactRecord) -> Value:
     """Largest defect of the energy balance, stored + lost = start, over the largest energy in it."""
     energy = total(record)
-    if energy is None or not set(LOST) <= set(record.energies):
+    losses = [name for name in LOST if name in record.energies or name != "friction"]  # without friction: not reported
+    if energy is None or not set(losses) <= set(record.energies):
         return NOT_REPORTED
-    parts = [record.energies[name] for name in (*STORED, *LOST)]
+    parts = [record.energies[name] for name in (*STORED, *losses)]
     size = max(record.start_energy, *map(largest, parts))
-    defect = energy - record.start_energy + sum(record.energies[name] for name in LOST)
+    defect = energy - record.start_energy + sum(record.energies[name] for name in losses)
     return largest(defect) / size if size else UNDEFINED
 
 
