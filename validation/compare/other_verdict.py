@@ -13,9 +13,9 @@ from validation.compare.other_solvers import Goal, Rival, rivals, slipped
 from validation.compare.readings import Reading
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
 
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
-ON_MESH = ("fem",)  # solvers that step the scene's own mesh: with a slip they leave noise alone
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 APART = 3.0  # times more that every other cause must leave: a mesh error is no noise
 
@@ -55,7 +55,8 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     spread = bars[0].allowed
     near = ranked + slipped(same, ranked[0].model, goal)
     mesh = 0.0 if ranked[0].model == exact else MESH
-    allowed = spread if ranked[0].model in ON_MESH else max(mesh, spread)
+    on_mesh = get_solver(ranked[0].model).meshed  # the scene's own: with the right slip it leaves noise alone
+    allowed = spread if on_mesh else max(mesh, spread)
     return _decided(scene, near, ranked, max(mesh, spread), allowed, below)
 
 
