@@ -11,7 +11,8 @@ import numpy as np
 from validation.runs.history import Array
 
 STORED = ("kinetic", "strain", "springs", "load")  # J; of the loads -F x
-LOST = ("algorithmic", "kinetic damping", "switching")  # J, summed from t = 0 on; negative where energy was gained
+# J, summed from t = 0 on; negative where energy was gained, as no friction does
+LOST = ("algorithmic", "kinetic damping", "switching", "friction")
 
 
 @dataclass(frozen=True)
