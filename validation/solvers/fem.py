@@ -269,7 +269,7 @@ class FiniteElements(Solver):
         return tuple(dict.fromkeys((*own, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or what does not go together with unilateral contact."""
+        """Return None, or what does not go together with damping."""
         return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
