@@ -54,7 +54,7 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
-NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION}
+NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION, features.LAGGED}
 
 
 class OneBlock(Prepared):
@@ -190,7 +190,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.ROTATION}
+        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
         | features.LOADS
         | features.RULES
     )
@@ -216,6 +216,8 @@ class DDA(Solver):
             )
         if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
+        if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
+            return "a corner that pulls within its band rubs under lagged rules only"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
