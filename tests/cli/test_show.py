@@ -102,9 +102,30 @@ def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
 def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
     scene_file.write_text(SCENE + "[damping]\nmass = 2.0\n[run]\nsolvers = ['dda']\n")
     text = typed("show", scene_file).stdout
-    for words in ("q = 5e+06 Pa", "2 x 2 m", "rho = 2700 kg/m3, E = 1e+09 Pa", "p = 1e+09 N/m at each corner; locked",
-                  "50 of dt = 0.002 s", "constant acceleration", "a0 = 2 1/s", "damping tables"):  # fmt: skip
+    for words in (
+        "q = 5e+06 Pa",
+        "2 m wide, 2 m high",
+        "rho = 2700 kg/m3, E = 1e+09 Pa",
+        "p = 1e+09 N/m at each corner",
+        "locked",
+        "50 of dt = 0.002 s",
+        "constant acceleration",
+        "a0 = 2 1/s",
+        "damping tables",
+    ):
         assert words in text
+
+
+def test_a_tower_is_drawn_as_one(scene_file: Path) -> None:
+    def inside(width: float) -> tuple[int, int]:
+        sets = ("--set", f"block.width={width}", "--set", "block.height=2.0")
+        walls = [line for line in typed("show", scene_file, *sets).stdout.splitlines() if line.startswith("  |")]
+        return walls[0].index("|", 3) - 3, len(walls)
+
+    assert inside(2.0)[0] == 2 * inside(2.0)[1] + 1 == 15
+    assert (
+        inside(0.5)[0] < inside(1.0)[0] + inside(0.5)[1] and inside(0.5)[0] < 10 < inside(4.0)[0] / inside(4.0)[1] * 3
+    )
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
