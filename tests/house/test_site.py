@@ -81,7 +81,7 @@ def test_the_tutorial_prints_what_it_says(tmp_path: Path, finished_cases: Path) 
         elif language == "text" and printed:
             assert_all(text, printed)
             checked += 1
-    assert checked == 3
+    assert checked == 4
 
 
 def assert_all(lines: str, printed: str) -> None:
