@@ -86,7 +86,8 @@ def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
     assert found["3: f10"] == pytest.approx(220 / (10 * 0.5), rel=1e-4)
     assert found["H/c"] == pytest.approx(15 / 500 + 10 / 350 + 8 / 220 + 5 / 150, rel=1e-4)
     assert found["reflected"] == pytest.approx(100 * (rock - lowest) / (rock + lowest))
-    assert shown("waves-glue")["numbers"]["blocks"] == {"low": 25.0, "high": 25.0, "unit": ""}
+    half = "column.layer=[{thickness=12.0, density=2000.0, young=2.0e9, blocks=24}]"
+    assert shown("waves-glue", "--set", half)["numbers"]["blocks"] == {"low": 50.0, "high": 50.0, "unit": ""}
 
 
 def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
