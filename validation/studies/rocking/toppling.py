@@ -181,5 +181,6 @@ STUDY = Study(
     scenes=(STATIC, SLIDE, *FROM_REST, *LET_GO),
     gates=gates,
     derived=derived,
+    measures=(),  # all gates are on the rows above
     pairs=(),
 )
