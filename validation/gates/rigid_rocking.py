@@ -47,6 +47,10 @@ class Rectangle:
         """Return the time from rest at a tilt [rad] until the base lies flat [s]."""
         return _time(lambda x: 2 * self.rate2 * _less(self.alpha - tilt, x), tilt)
 
+    def landing_rate(self, tilt: float) -> float:
+        """Return the rate at which the base of a block that was let go at a tilt comes down [rad/s]."""
+        return math.sqrt(2 * self.rate2 * float(_less(self.alpha - tilt, np.array(tilt))))
+
     def fall_time(self, start: float, turned: float) -> float:
         """Return the time from rest at psi = `start` until it has turned by `turned` [rad], in s."""
         return _time(lambda x: 2 * self.rate2 * _less(start, x), turned)
