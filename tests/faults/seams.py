@@ -120,6 +120,7 @@ ROLLING_SETTING = Seam(rolling_model.RollingModel, rolling_model.RollingModel.se
 ROLLING_START = Seam(rolling_model.RollingModel, rolling_model.RollingModel.start)
 ROLLING_ADVANCE = Seam(rolling, rolling.advance)
 ROLLING_BASE = Seam(rolling.Rolling, rolling.Rolling._base)
+ROLLING_OBSERVED = Seam(rolling, rolling.observed)
 ROLLING_TURN = Seam(rolling_step, rolling_step.turn)
 ROLLING_LATE = Seam(rolling_step, rolling_step.late_share)
 

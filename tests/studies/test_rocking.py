@@ -80,6 +80,14 @@ def grown_twice(sound: Callable[..., Any]) -> Callable[..., Any]:
     return faulty
 
 
+def doubled(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def faulty(*given: Any) -> Any:
+        columns = sound(*given)
+        return columns | {"rotation": 2 * columns["rotation"]}
+
+    return faulty
+
+
 def moved(factor: float) -> Wrapper:
     return lambda sound: lambda *given: factor * sound(*given)
 
@@ -100,6 +108,7 @@ FAULTS = {
         QUICK,
         Fault("velocities 5 % more in every step", DDA, seams.ROLLING_ADVANCE, quicker(0.05)),
         TILTED,
+        Fault("rotation reported twice its size", DDA, seams.ROLLING_OBSERVED, doubled),
         Fault("forces at the end of the step", DDA, seams.ROLLING_LATE, lambda sound: lambda delta: 1.0),
         Fault("base moves 2 % more", DDA, seams.ROLLING_BASE, moved(1.02)),
         Fault("base moves 30 % more", DDA, seams.ROLLING_BASE, moved(1.3)),
