@@ -30,6 +30,8 @@ STUDIES = {
     "impacts": "validation.studies.contact.impacts:STUDY",
     "rocking": "validation.studies.rocking.rocking:STUDY",
     "toppling": "validation.studies.rocking.toppling:STUDY",
+    "slopes": "validation.studies.slopes.sliding:STUDY",
+    "creep": "validation.studies.slopes.creep:STUDY",
     "waves": "validation.studies.waves.study:study",
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
