@@ -184,6 +184,21 @@ def test_the_small_quarter_period_and_the_rate_ratio_are_the_textbook_ones() -> 
         assert block.housner == pytest.approx(housner, abs=5e-4)
 
 
+def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
+    page = (Path(__file__).parents[2] / "docs/rotation.md").read_text(encoding="utf-8")
+    blocks = [Rectangle(2.0, height, 9.81) for height in (2.0, 4.0, 8.0)]
+    rows = [line.split("|")[2:5] for line in page.splitlines() if line.startswith("|")]
+    times, constant, ratios = ([float(word) for word in row] for row in rows[2:5])
+    assert times == [round(block.quarter_period(1e-3), 5) for block in blocks]
+    small = [math.sqrt(2e-3 * (b.width**2 + b.height**2) / 3 / (b.gravity * b.width / 2)) for b in blocks]
+    assert constant == [round(value, 5) for value in small]
+    assert ratios == [round(block.housner, 3) for block in blocks]
+    (growing,), standing = cases("toppling-growth"), [case.load.slope for case in cases("toppling-threshold")]
+    assert "by 0.51 % at dt = 20 ms" in page and growing.time.step == 0.02 and standing == [21.6, 22.0]
+    assert toppling.growth(growing) == pytest.approx(0.0051, abs=1e-4)  # DDA's is gated beside it
+    assert f"tan(b) = a/h at {math.degrees(math.atan(10 / 25)):.2f} deg" in page
+
+
 @pytest.mark.parametrize("size", [0.9, 1.02])
 def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
     block, duration = Rectangle(1.0, 4.0, 9.81), 0.36
