@@ -144,8 +144,9 @@ def energy_gates() -> Iterator[Gate]:
             yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
     for case in cases(SLIDING):
         pressed = friction.mass(case) * friction.across(case)
-        lost = friction.coefficient(case) * pressed * friction.run_out(case, case.time.duration)
-        why = "tan(phi) m g cos b times the way; band: the swinging of the normal force at first, 1e-3"
+        held = friction.coefficient(case) * pressed + friction.mass(case) * friction.adhesion(case)
+        lost = held * friction.run_out(case, case.time.duration)
+        why = "tan(phi) m g cos b + c a times the way; band: the swinging of the normal force at first, 1e-3"
         yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
 
 
