@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import typer
 
-from validation.cli import compare, contact, damping, report, run, show, verdicts, waves, work
+from validation.cli import compare, contact, damping, gallery, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import prepare, silence
 from validation.cli.signals import caught, end
@@ -18,6 +18,7 @@ COMMANDS = (
     run,
     show,
     report,
+    gallery,
     damping,
     contact,
     compare,

@@ -28,6 +28,8 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
+    "rocking": "validation.studies.rocking.rocking:STUDY",
+    "toppling": "validation.studies.rocking.toppling:STUDY",
     "slopes": "validation.studies.slopes.sliding:STUDY",
     "creep": "validation.studies.slopes.creep:STUDY",
     "waves": "validation.studies.waves.study:study",
