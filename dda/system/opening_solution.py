@@ -11,10 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.points import Found
 from dda.one_block.solution import Result, at_corner, check_request, step_times
-from dda.one_block.unilateral import COMPLETED, FLOOR, OVERFLOW, UnilateralOptions, check_scheme
+from dda.one_block.unilateral import COMPLETED, OVERFLOW, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_energy import ENERGIES
 from dda.one_block.unilateral_step import NEWMARK
+from dda.scheme.cutting import Interval, Lengths, in_parts
 from dda.scheme.newmark import Scheme
 from dda.system.opening import Length, OpeningSystem, SystemState, start_state
 from dda.system.opening_energy import SystemLedger
@@ -115,8 +117,8 @@ class SystemStepping:
         self, opening: OpeningSystem, scheme: Scheme, options: UnilateralOptions, columns: Sequence[str]
     ) -> None:
         self.opening, self.scheme, self.options, self.names = opening, scheme, options, tuple(columns)
-        self.outcome, self.factorisations = COMPLETED, 0
-        self.lengths: dict[float, Length] = {}
+        self.outcome = COMPLETED
+        self.length = Lengths(lambda ratio: Length(opening, scheme, ratio), _LENGTHS)
         self.observers = opening.equations.rows(columns)[0]
         self.pressed = (
             np.array([name == "contact_pressure" for name in columns], dtype=float)[:, None]
@@ -128,14 +130,15 @@ class SystemStepping:
         """Yield the steps that are reached; `outcome` says how it ended."""
         state = start_state(self.opening, self.scheme)
         for _ in range(steps):
-            reached, solves, cuts = self._interval(state)
-            if reached is None:
+            made = self._interval(state)
+            if made.failure is not None:
+                self.outcome = made.failure
                 return
-            if not np.isfinite(reached.D).all():
+            state = made.parts[-1][2]
+            if not np.isfinite(state.D).all():
                 self.outcome = OVERFLOW
                 return
-            state = reached
-            yield self._row(state, solves, cuts)
+            yield self._row(state, made.solves, made.cuts)
 
     def _row(self, state: SystemState, solves: int, cuts: int) -> Row:
         p = state.points
@@ -146,36 +149,17 @@ class SystemStepping:
             seen, p.normal, p.shear, p.gap, p.closed, self.opening.tangents @ state.D, momentum, solves, cuts, kept
         )
 
-    def _interval(self, state: SystemState) -> tuple[SystemState | None, int, int]:
-        """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
-        left = ratio = 1.0
-        solves = cuts = 0
-        while True:
-            length = self.length(ratio)
-            after, found = length.advance(state, self.options.solve_limit)
-            solves += found.solves
-            if after is None:
-                if ratio <= FLOOR:
-                    self.outcome = str(found.failure)
-                    return None, solves, cuts
-                ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
-                continue
-            if self.ledger:
-                self.ledger.add(length, state, after)
-            state = after
-            if ratio == left:
-                return state, solves, cuts
-            left -= ratio
-            ratio = left
+    def _interval(self, state: SystemState) -> Interval[SystemState]:
+        """Return one step of the scheme, whole or in parts."""
 
-    def length(self, ratio: float) -> Length:
-        """Return what depends on the step's length, factorised once for each."""
-        if ratio not in self.lengths:
-            if len(self.lengths) >= _LENGTHS:
-                self.lengths = {1.0: self.lengths[1.0]}
-            self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
-            self.factorisations += 1
-        return self.lengths[ratio]
+        def attempt(state: SystemState, begun: float, ratio: float) -> tuple[SystemState | None, Found]:
+            return self.length(ratio).advance(state, self.options.solve_limit)
+
+        made = in_parts(attempt, state, self.options.cut)
+        if self.ledger:
+            for ratio, before, after in made.parts:
+                self.ledger.add(self.length(ratio), before, after)
+        return made
 
 
 def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float, float]) -> OpeningResult:
@@ -194,7 +178,7 @@ def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float,
         columns=dict(zip(stepping.names, history("columns", len(stepping.names)) + 0.0, strict=True)),
         unknowns=len(opening.equations.F),
         nonzeros=stepping.length(1.0).stepper.factor.nonzeros,
-        factorisations=stepping.factorisations,
+        factorisations=stepping.length.made,
         solves=sum(row.solves for row in rows),
         notes=("stepped: contact opens and closes", *ended),
         setup_seconds=seconds[0],
