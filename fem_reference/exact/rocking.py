@@ -31,6 +31,10 @@ ACCURACY = 1e-13
 """Relative tolerance of the integration."""
 STILL = 1e-9
 """Rate below which the block has come to rest, over p."""
+LONG = 60.0
+"""Time in which what is not at its balance to the last digit has left it, times p."""
+SWINGS = 10_000
+"""Greatest number of swings."""
 FALLEN = math.pi / 2
 """Rotation at which the block lies on its side and the motion ends [rad]."""
 
@@ -195,6 +199,8 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
     ------
     ValueError
         If `end` is not positive and finite or the tilt not below a right angle.
+    ArithmeticError
+        If the block comes down more than 10000 times.
     """
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
@@ -204,6 +210,8 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
     swings: list[Swing] = []
     impacts: list[float] = []
     while time < end and not fallen:
+        if len(swings) > SWINGS:
+            raise ArithmeticError(f"more than {SWINGS} swings by {time:g} s")
         if angle == 0 and abs(rate) < STILL * block.p:
             wakes = _wakes(block, pulse, time)
             swings.append(Swing(time, lambda t: np.zeros((2, len(t)))))
@@ -264,11 +272,9 @@ def overturns(block: RockingBlock, pulse: Pulse) -> bool:
         return True
     angle, rate = (float(x[0]) for x in motion.at([motion.end]))
     side = _sign(angle) or _sign(rate)
-    top, low = block.p**2, block.p**2 * math.cos(block.alpha)
-    energy = rate**2 / 2 + block.p**2 * math.cos(block.alpha - abs(angle))
-    if energy < top:
+    if rate**2 / 2 + block.p**2 * math.cos(block.alpha - abs(angle)) < block.p**2:
         return abs(angle) > block.alpha
-    return rate * side >= 0 or low + (energy - low) * block.ratio**2 >= top
+    return rate * side >= 0 or solve(block, pulse.duration + LONG / block.p, pulse=pulse).overturned
 
 
 def overturning_amplitude(block: RockingBlock, duration: float, shape: str = "half-sine") -> float:

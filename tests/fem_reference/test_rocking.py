@@ -101,6 +101,17 @@ def test_below_the_lifting_acceleration_nothing_moves() -> None:
     assert rocked.impacts
 
 
+@pytest.mark.parametrize("x", [1.2, 2.5])
+def test_the_work_of_a_rectangle_is_the_energy_of_the_block(x: float) -> None:
+    """With u = -rotation: u'^2 / 2 = p^2 (cos alpha - cos(alpha - u) + A / g (sin alpha - sin(alpha - u)))."""
+    motion = solve(BLOCK, 0.3, pulse=Pulse(x * BLOCK.lifting, 0.3, "rectangle"))
+    angle, rate = motion.at([0.1, 0.2, 0.3])
+    lean, alpha = BLOCK.alpha + angle, BLOCK.alpha
+    work = math.cos(alpha) - np.cos(lean) + x * BLOCK.lifting / 9.81 * (math.sin(alpha) - np.sin(lean))
+    assert rate**2 / 2 == pytest.approx(BLOCK.p**2 * work, rel=1e-10)
+    assert (angle < 0).all()
+
+
 def slender(x: float, pT: float, shape: str) -> float:
     """Positive where a slender block overturns, x = A / (g alpha)."""
     if shape == "rectangle":

@@ -120,7 +120,13 @@ def test_the_mirrored_slope_and_one_way() -> None:
     one, two = solve(SLOPE, base, 3.0), solve(replace(SLOPE, slope=-20.0), other, 3.0)
     assert one.at([1.0, 3.0])[0] == pytest.approx(-two.at([1.0, 3.0])[0], rel=1e-12)
     down = solve(replace(SLOPE, two_way=False), base, 3.0)
-    assert down.slip == pytest.approx(down.at([3.0])[0][0])
+    assert 0 < down.slip == pytest.approx(down.at([3.0])[0][0])
+    thrown = moved([0, 0.1, 0.2], [0, -0.02, 0.02])  # down the slope first, then up, where it is held
+    ways = {
+        held: {way for _, way in solve(replace(SLOPE, two_way=not held), thrown, 1.0).switches}
+        for held in (False, True)
+    }
+    assert ways == {False: {1, -1, 0}, True: {1, 0}}
     assert -1 in {way for _, way in one.switches}
     assert -1 not in {way for _, way in down.switches}
 
