@@ -102,10 +102,11 @@ def trace(words: str, case: Case, solver: str, color: str) -> Trace:
 
 
 def slip(case: Case) -> float | None:
-    """Return the way of the centroid, or the slip of a block that only creeps, in a second [m]."""
+    """Return the way of the corners in a second, of a block that slides far that of the centroid [m]."""
     if case.scene.contact.rules == "lagged":
         return case.number("dda", "horizontal.final")
-    return case.number("dda", "contact.slip")
+    history = case.histories.get("dda")
+    return None if history is None else float(study.slid(history.columns)[-1])
 
 
 def over_step(words: str, own: list[Case], color: str) -> Trace:
