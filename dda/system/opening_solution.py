@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.points import Found
+from dda.contact.rubbing_points import states
+from dda.contact.unilateral import CONSISTENT, LAGGED
 from dda.one_block.solution import Result, at_corner, check_request, step_times
 from dda.one_block.unilateral import COMPLETED, OVERFLOW, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_energy import ENERGIES
@@ -37,7 +39,9 @@ class OpeningResult(Result):
     shear: Array  # (points, steps) T, along the base from M to N [N]
     gap: Array  # (points, steps) w, negative when pressed [m]
     closed: NDArray[np.bool_]  # (points, steps)
+    states: NDArray[np.int_]  # (points, steps) 0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M
     slide: Array  # (points, steps) displacement along the base [m]
+    slipped: Array  # (points, steps) change of the shear reference by slip in the step [m]
     velocity: Array  # of the centre of mass, upwards [m/s]
     horizontal_velocity: Array  # of the centre of mass [m/s]
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
@@ -45,14 +49,9 @@ class OpeningResult(Result):
     energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
 
     @property
-    def states(self) -> NDArray[np.int_]:
-        """State of the points, (points, steps): 0 open, 1 closed."""
-        return self.closed.astype(int)
-
-    @property
     def slip(self) -> Array:
         """Largest sum of what the reference of a point moved while it was pressed, (steps,) [m]."""
-        return np.zeros(len(self.time))
+        return np.asarray(np.abs(np.cumsum(self.slipped, axis=1)).max(axis=0))
 
     # of the first and the last point alone
     normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", -1)  # N, away from the base [N]
@@ -71,7 +70,9 @@ class Row(NamedTuple):
     shear: Array
     gap: Array
     closed: NDArray[np.bool_]
+    states: NDArray[np.int_]
     slide: Array
+    slipped: Array
     momentum: Array  # dt times the momentum in x and y
     solves: int
     cuts: int
@@ -100,6 +101,8 @@ def solve_opening_system(
     options = options or UnilateralOptions()
     if options.rule != NEWMARK:
         raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    if opening.law.rules == LAGGED:
+        raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
     check_scheme(opening.law, scheme)
     began = perf_counter()
     stepping = SystemStepping(opening, scheme, options, columns)
@@ -138,16 +141,16 @@ class SystemStepping:
             if not np.isfinite(state.D).all():
                 self.outcome = OVERFLOW
                 return
-            yield self._row(state, made.solves, made.cuts)
+            slipped = sum((after.points.slipped for _, _, after in made.parts if after.points.slipped is not None), 0.0)
+            yield self._row(state, slipped + np.zeros(len(self.opening.normals)), made.solves, made.cuts)
 
-    def _row(self, state: SystemState, solves: int, cuts: int) -> Row:
+    def _row(self, state: SystemState, slipped: Array, solves: int, cuts: int) -> Row:
         p = state.points
         seen = self.observers @ state.D + self.pressed @ np.array([np.sum(p.normal)])
         momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
         kept = self.ledger.row(state) if self.ledger else ()
-        return Row(
-            seen, p.normal, p.shear, p.gap, p.closed, self.opening.tangents @ state.D, momentum, solves, cuts, kept
-        )
+        contact = (p.normal, p.shear, p.gap, p.closed, states(p), self.opening.tangents @ state.D, slipped)
+        return Row(seen, *contact, momentum, solves, cuts, kept)
 
     def _interval(self, state: SystemState) -> Interval[SystemState]:
         """Return one step of the scheme, whole or in parts."""
@@ -188,6 +191,8 @@ def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float,
         shear=history("shear", points),
         gap=history("gap", points),
         closed=history("closed", points) > 0,
+        states=history("states", points).astype(int),
+        slipped=history("slipped", points),
         slide=history("slide", points),
         velocity=velocity[1],
         horizontal_velocity=velocity[0],

@@ -9,10 +9,18 @@ from oracles.frictional import KNOWN, cases, held, sliding, square
 
 import dda.contact.friction as friction
 import dda.contact.glued as glued
+import dda.contact.rubbing_points as rubbing_points
 import dda.contact.rules as rules
 import dda.one_block.unilateral as unilateral
 import dda.one_block.unilateral_step as step
-from dda import Scheme, Unilateral, UnilateralModel, solve_unilateral
+from dda import (
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    opening_subdivided,
+    solve_opening_system,
+    solve_unilateral,
+)
 from dda.contact.iteration import NONE, Iteration
 from dda.contact.lagged import lagged
 from dda.contact.unilateral import OPEN, SLIP
@@ -65,7 +73,17 @@ def cutting():
     assert result.velocity == pytest.approx([-0.8 * 0.9, -0.8 * 0.81, -0.8 * 0.729], rel=1e-14)
 
 
-CHECKS = (invariants, events, identity, cutting)
+def points():
+    """One sub-block, whose points are solved by another code, is the block."""
+    scheme = Scheme(0.5, 1.0, 1.0, 2e-4)
+    model = KNOWN["rubbing"].model
+    block = solve_unilateral(model, scheme, 150)
+    one = solve_opening_system(opening_subdivided(model, 1, 1, 1e15), scheme, 150)
+    assert np.max(np.abs(one.shear - block.shear)) < 1e-9 * np.max(np.abs(block.shear))
+    assert np.max(np.abs(one.slip - block.slip)) < 1e-9 * np.max(block.slip)
+
+
+CHECKS = (invariants, events, identity, cutting, points)
 
 
 def notices(check):
@@ -202,6 +220,23 @@ def gap_of_the_increment(monkeypatch):
     monkeypatch.setattr(rules, "rubbing", faulty)
 
 
+def points_without_coupling(monkeypatch):
+    """T of a slipping point is set, but N is found as if there were none."""
+    sliding_points = rubbing_points.__dict__[rubbing_points._Rubbing.__name__]
+    monkeypatch.setattr(sliding_points, "drag", lambda self, A, b, rows: None)
+
+
+def points_any_direction(monkeypatch):
+    """A point goes on slipping in its direction, wherever it moves."""
+    real = rubbing_points.agreeing
+
+    def faulty(law, tried):
+        along = np.abs(tried.slipped) * np.sign(tried.state)
+        return real(law, replace(tried, slipped=along))
+
+    monkeypatch.setattr(rubbing_points, "agreeing", faulty)
+
+
 FAULTS = {
     of_the_solve_before: [invariants, events, identity],
     outside_the_test: [invariants, events],
@@ -213,6 +248,8 @@ FAULTS = {
     pushed_along: [invariants, identity],
     forgotten_coupling: [invariants],
     gap_of_the_increment: [invariants],
+    points_without_coupling: [points],
+    points_any_direction: [points],
     damped_again: [cutting],
     velocity_twice: [cutting],
 }
