@@ -17,6 +17,8 @@ CHAPTERS: dict[str, str] = {
     "toppling": "validation.report.chapters.turning:toppling_chapter",
     "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
+    "slopes": "validation.report.chapters.slopes.sliding:chapter",
+    "creep": "validation.report.chapters.slopes.creeping:chapter",
     "waves": "validation.report.chapters.waves:chapter",
     "response": "validation.report.chapters.vibrations.response:chapter",
     "stiff-contact": "validation.report.chapters.limits.stiff_contact:contact_chapter",
