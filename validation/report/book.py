@@ -43,13 +43,17 @@ def build(results: Results, out: Path) -> Path:
 
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters.front import front_matter, provenance
+    from validation.report.appendix.pages import appendix
+    from validation.report.front.found import found_scenes
+    from validation.report.front.pages import front_pages
 
     chapters: list[Block] = []
     for study in studies:
         chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
-    with _told(results, "the first and the last page"):
-        return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
+    with _told(results, "the first and the last pages"):
+        found, verdicts = found_scenes(results, studies), results.verdicts()
+        front = front_pages(found, verdicts, studies, figures)
+        return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, studies)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:

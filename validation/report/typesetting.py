@@ -13,7 +13,7 @@ from typing import Any
 import typst
 
 from validation.errors import InputError
-from validation.report.blocks import Block
+from validation.report.blocks import Beside, Block
 from validation.report.names import unescaped
 from validation.runs.files import write_atomically
 
@@ -44,7 +44,7 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation on the two-block model",
-        "blocks": [{"block": type(block).__name__} | _shown(asdict(block)) for block in blocks],
+        "blocks": [_record(block) for block in blocks],
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
     try:
@@ -52,6 +52,14 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     except typst.TypstError as error:
         raise InputError(f"the report cannot be set: {' '.join(str(error).split())}") from error
     return bytes(pdf)
+
+
+def _record(block: Block) -> dict[str, Any]:
+    """Return a block as plain data with the name of its kind, those within it as well."""
+    data: dict[str, Any] = {"block": type(block).__name__} | _shown(asdict(block))
+    if isinstance(block, Beside):
+        data |= {"left": [_record(part) for part in block.left], "right": [_record(part) for part in block.right]}
+    return data
 
 
 def _shown(data: Any) -> Any:
