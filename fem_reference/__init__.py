@@ -13,6 +13,7 @@ from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
+    from fem_reference.contact.shear import Friction
     from fem_reference.exact.bar import Bar, applicable
     from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, solve_adaptive
     from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "ADAPTIVE_COLUMNS": "history.adaptive",
     "Bar": "exact.bar",
+    "Friction": "contact.shear",
     "applicable": "exact.bar",
     "assemble": "mesh.model",
     "highest_frequency": "scheme.eigen",
@@ -42,6 +44,7 @@ __all__ = [
     "COLUMNS",
     "UNILATERAL_COLUMNS",
     "Bar",
+    "Friction",
     "Mode",
     "Motion",
     "Problem",

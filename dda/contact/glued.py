@@ -47,29 +47,36 @@ def glued(law: Unilateral, before: Corners, free: Free, closed: tuple[bool, ...]
     """Return the corners at the end of the step if these are closed; with NaN where no crossing is found."""
     shut = [i for i, now in enumerate(closed) if now]
     closing = [k for k, i in enumerate(shut) if not before.closed[i]]
-    system = _System(law, before, free, shut)
+    system = ClosedContacts(law, before, free, shut)
     if not closing:
         return system.corners(closed, *system.held())
-    beta = np.ones(len(shut))
-    tried = system.solve(beta)
-    for _ in range(CROSSING_STEPS):
-        shares = [slipped_share(law, before.gap[shut[k]], float(tried.normal[k])) for k in closing]
-        rates = np.array([rate for _, rate in shares])
-        J = np.eye(len(closing)) - rates[:, None] * tried.slope[np.ix_(closing, closing)]
-        change = np.linalg.solve(J, np.array([share for share, _ in shares]) - beta[closing])
-        beta[closing] = np.clip(beta[closing] + change, 0.0, 1.0)
-        tried = system.solve(beta)
-        if np.all(np.abs(change) <= CROSSING_CHANGE * beta[closing]):
-            return system.corners(closed, tried.normal.tolist(), tried.shear.tolist())
-    nothing = [math.nan] * len(shut)
-    return system.corners(closed, nothing, nothing)
+    return system.corners(closed, *system.crossed(np.ones(len(shut)), closing))
 
 
-class _System:
-    """The equations of the closed contacts, `shut`."""
+class ClosedContacts:
+    """The equations of the closed contacts, `shut`; of those that are held in shear T is unknown."""
 
     def __init__(self, law: Unilateral, before: Corners, free: Free, shut: list[int]) -> None:
         self.law, self.before, self.free, self.shut = law, before, free, shut
+        self.loose = np.array([*free.gap, *free.slide])  # without the unknown forces
+
+    def crossed(self, beta: Array, closing: list[int]) -> tuple[list[float], list[float]]:
+        """Return N and T, those of `closing` held from their crossings on; NaN where none is found."""
+        tried = self.solve(beta)
+        for _ in range(CROSSING_STEPS):
+            before = [self.before.gap[self.shut[k]] for k in closing]
+            shares = [slipped_share(self.law, w, float(tried.normal[k])) for w, k in zip(before, closing, strict=True)]
+            rates = np.array([rate for _, rate in shares])
+            J = np.eye(len(closing)) - rates[:, None] * tried.slope[np.ix_(closing, closing)]
+            change = np.linalg.solve(J, np.array([share for share, _ in shares]) - beta[closing])
+            beta[closing] = np.clip(beta[closing] + change, 0.0, 1.0)
+            tried = self.solve(beta)
+            if np.all(np.abs(change) <= CROSSING_CHANGE * beta[closing]):
+                return tried.normal.tolist(), tried.shear.tolist()
+        return [math.nan] * len(beta), [math.nan] * len(beta)
+
+    def drag(self, A: Array, rows: Array) -> None:
+        """Add to the matrix what T does that follows N; nothing where all closed contacts are held."""
 
     def _rows(self, active: list[int], soft: Array) -> tuple[Array, Array]:
         """Return the unknown forces as rows over (w, slides), and T of the active contacts from the last of them.
@@ -87,8 +94,8 @@ class _System:
             rows[row, n:] = SLIDES[n][self.shut[k]]
         return rows, np.eye(len(active))
 
-    def _matrix(self, beta: Array, active: list[int]) -> tuple[Array, Array, Array, Array]:
-        """Return the matrix, its scale (symmetric: a stiff direction keeps its digits), the rows and W."""
+    def matrix(self, beta: Array, active: list[int]) -> tuple[Array, Array, Array, Array]:
+        """Return the matrix, its scale (a stiff direction keeps its digits), the rows and W."""
         m = len(self.shut)
         soft = 1 / (self.law.shear * beta[active])
         rows, W = self._rows(active, soft)
@@ -96,13 +103,14 @@ class _System:
         A[range(m), range(m)] += self.law.compliance
         A[m:, m:] += (W.T * soft) @ W
         scale = 1 / np.sqrt(np.diag(A))
+        self.drag(A, rows)
         return A * scale * scale[:, None], scale, rows, W
 
     def solve(self, beta: Array) -> _Tried:
         """Return the forces with the springs in shear that beta makes softer."""
         m, active = len(self.shut), [k for k, share in enumerate(beta) if share > 0]
-        scaled, scale, rows, W = self._matrix(beta, active)
-        b = -(rows @ np.array([*self.free.gap, *self.free.slide]))
+        scaled, scale, rows, W = self.matrix(beta, active)
+        b = -(rows @ self.loose)
         b[m:] -= W.T @ np.array([self.before.stretch[self.shut[k]] for k in active])
         forces = np.linalg.solve(scaled, b * scale) * scale
         shear, slope = np.zeros(m), np.zeros((m, m))
@@ -131,7 +139,7 @@ class _System:
 
     def _gain(self) -> list[list[float]]:
         """Return the inverse of the matrix of contacts that stay closed."""
-        scaled, scale, _, _ = self._matrix(np.ones(len(self.shut)), list(range(len(self.shut))))
+        scaled, scale, _, _ = self.matrix(np.ones(len(self.shut)), list(range(len(self.shut))))
         gain: list[list[float]] = (np.linalg.inv(scaled) * scale * scale[:, None]).tolist()
         return gain
 

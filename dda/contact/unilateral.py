@@ -9,6 +9,13 @@ contact cannot remember tension. With the gap w_n > 0 before and w_{n+1} < 0 aft
 
 is the tangential displacement at the crossing. What is carried is the stretch s - r, not s and r, whose
 difference would lose digits.
+
+With friction a closed corner holds no more than Coulomb's limit, |T| <= tan(phi) N + c. Beyond it slips, in the
+direction sigma = +-1, against T:
+
+    T = -sigma (tan(phi) N + c),    r = s + T/p_s at the end of the step,    sigma (r_{n+1} - r_n) >= 0.
+
+Cohesion c acts on every closed corner, on one that closes again too; an open one has none.
 """
 
 from __future__ import annotations
@@ -18,10 +25,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+CONSISTENT, LAGGED = "consistent", "lagged"
+OPEN, STICK, SLIP = 0, 1, 2  # of a corner with friction; SLIP towards M to N, -SLIP against it
+
 
 @dataclass(frozen=True)
 class Unilateral:
-    """No-tension corners: a penalty spring each, or a rigid stop; frictionless, or glued in shear while closed.
+    """No-tension corners: a penalty spring each, or a rigid stop; frictionless, glued in shear, or with friction.
 
     An open corner closes if its gap falls below -band[0]; a closed one opens if its gap exceeds band[1], so
     that with a band a closed corner may pull with up to p band[1]. Other programs have such bands; here
@@ -37,6 +47,9 @@ class Unilateral:
     shear: float = 0.0  # p_s of each closed corner [N/m]; 0 is frictionless
     gap: float = 0.0  # g0 under both corners at t = 0 [m]
     band: tuple[float, float] = (0.0, 0.0)  # dead band of closing and of opening [m]
+    friction: float | None = None  # tan(phi) [-]; None is glued
+    cohesion: float = 0.0  # c of each closed corner, beside the friction [N]
+    rules: str = CONSISTENT  # or "lagged": friction of the iteration before, as common programs have it
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -50,6 +63,27 @@ class Unilateral:
             raise ValueError(f"band: must be two finite lengths that are not negative, got {self.band!r}")
         if math.isinf(self.stiffness) and self.band[1] > 0:
             raise ValueError(f"band: a rigid stop must open at once (band[1] = 0), got {self.band!r}")
+        self._check_friction()
+
+    def _check_friction(self) -> None:
+        if not (math.isfinite(self.cohesion) and self.cohesion >= 0):
+            raise ValueError(f"cohesion: must be finite and not negative, got {self.cohesion!r}")
+        if self.rules not in (CONSISTENT, LAGGED):
+            raise ValueError(f"rules: must be {CONSISTENT} or {LAGGED}, got {self.rules!r}")
+        if self.friction is None:
+            if self.cohesion or self.rules == LAGGED:
+                raise ValueError(f"friction: must be given with cohesion or {LAGGED} rules, got None")
+            return
+        if not (math.isfinite(self.friction) and self.friction >= 0):
+            raise ValueError(f"friction: must be finite and not negative, got {self.friction!r}")
+        if self.shear == 0:
+            raise ValueError("shear: must be positive with friction, got 0")
+        if self.band[1] > 0 and self.rules == CONSISTENT:
+            raise ValueError(f"band: a corner that pulls rubs under {LAGGED} rules only, got {self.band!r}")
+
+    def limit(self, N: float) -> float:
+        """Greatest shear force tan(phi) N + c under the normal force N [N]; of a glued corner there is none."""
+        return math.inf if self.friction is None else self.friction * max(N, 0.0) + self.cohesion
 
     @property
     def compliance(self) -> float:
@@ -85,6 +119,8 @@ class Corners(NamedTuple):
     reference: tuple[float, ...]  # r [m]; of an open one s itself
     normal: tuple[float, ...]  # N [N], on the block, away from the base
     shear: tuple[float, ...]  # T [N], on the block, along the base
+    state: tuple[int, ...] = ()  # with friction: OPEN, STICK, or SLIP in its direction; empty: sticks where closed
+    slipped: tuple[float, ...] = ()  # change of r by slip in the step [m]; empty: none
 
 
 def at_rest(law: Unilateral, contacts: int) -> Corners:

@@ -55,6 +55,7 @@ class Load:
     traction: float = 0.0  # towards +x, on the whole top edge [Pa]
     gravity: float = 0.0  # g, downwards [m/s^2]
     motion: BaseMotion | None = None  # of the springs' base ends
+    slope: float = 0.0  # by which gravity is turned, so that the block stands on its incline [deg]
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -62,10 +63,23 @@ class Load:
             value = getattr(self, field)
             if not math.isfinite(value):
                 raise ValueError(f"{field}: must be finite, got {value!r}")
+        if not -90 < self.slope < 90:
+            raise ValueError(f"slope: must be between -90 and 90 degrees, got {self.slope!r}")
+
+    @property
+    def falling(self) -> tuple[float, float]:
+        """Direction of gravity, (sin b, -cos b) for the slope b."""
+        return falling(self.slope)
 
     def size(self, weight: float) -> float:
         """Return the largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
         return max(abs(self.pressure), abs(self.traction), abs(weight * self.gravity))
+
+
+def falling(slope: float) -> tuple[float, float]:
+    """Return the direction of gravity on a slope [deg]."""
+    angle = math.radians(slope)
+    return math.sin(angle), -math.cos(angle)
 
 
 def pressed_part(start: Array, end: Array, eccentricity: float) -> tuple[Array, Array]:

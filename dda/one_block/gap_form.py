@@ -104,7 +104,7 @@ def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) ->
         UNKNOWNS,
         block.material.density * _inertia(integrals, c),
         _stiffness(block.material, contact, integrals.area, a),
-        _load(local, top, tangent, c, load) + _gravity(integrals, weight, tangent, c),
+        _load(local, top, tangent, c, load) + _gravity(integrals, weight, load.falling, tangent, c),
         _translation(tangent, load),
         Q,
         _observers(Q, contact, a),
@@ -185,9 +185,10 @@ def _edge(ends: tuple[Array, ...], extent: Array, traction: Array, c: float) -> 
     return np.array([fx, fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
 
 
-def _gravity(i: AreaIntegrals, weight: float, tangent: Array, c: float) -> Array:
-    """Return the load of a weight per area [N/m^3] in global -y."""
-    fx, fy = -weight * tangent[1], -weight * tangent[0]
+def _gravity(i: AreaIntegrals, weight: float, falling: tuple[float, float], tangent: Array, c: float) -> Array:
+    """Return the load of a weight per area [N/m^3] in the direction `falling`."""
+    right, up = falling
+    fx, fy = weight * (right * tangent[0] + up * tangent[1]), weight * (up * tangent[0] - right * tangent[1])
     x, y = i.x, i.y
     return np.array([i.area * fx, i.area * fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.springs import Contact, contact_stiffness
 from dda.model.block import Block
-from dda.model.load import BaseMotion, Load, pressed_part
+from dda.model.load import BaseMotion, Load, falling, pressed_part
 from dda.one_block.gap_form import GapForm, gap_form
 
 Array = NDArray[np.float64]
@@ -41,6 +41,7 @@ class TwoBlockModel:
     traction: float = 0.0  # towards +x, on the whole top edge [Pa]
     gravity: float = 0.0  # downwards, switched on at t = 0 [m/s^2]
     motion: BaseMotion | None = None  # of the springs' base ends
+    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
         """Check the load and the edges."""
@@ -56,7 +57,7 @@ class TwoBlockModel:
     @cached_property
     def applied(self) -> Load:
         """All loads."""
-        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion)
+        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion, self.slope)
 
     @cached_property
     def load_size(self) -> float:
@@ -78,7 +79,9 @@ class TwoBlockModel:
         """Constant load F in D, 6 entries: eq. (29) with (0, -q), the traction and the weight."""
         pressed = pressed_part(*self.block.edge(self.top), self.eccentricity)
         weight = np.zeros(6)
-        weight[1] = -self.block.material.density * self.block.section.area * self.gravity
+        weight[:2] = (
+            self.block.material.density * self.block.section.area * self.gravity * np.array(falling(self.slope))
+        )
         traction = self.block.edge_load(self.top, (self.traction, 0.0))
         return self.block.segment_load(*pressed, (0.0, -self.pressure)) + traction + weight
 
@@ -91,7 +94,7 @@ class TwoBlockModel:
         unit = Load(1.0, self.eccentricity, motion=self.motion)
         if size := self.load_size:
             constant = (self.pressure / size, self.eccentricity, self.traction / size, self.gravity / size)
-            unit = Load(*constant, self.motion)
+            unit = Load(*constant, self.motion, self.slope)
         return gap_form(self.block, self.contact, self.base, self.top, unit)
 
     def static(self) -> dict[str, float]:

@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from dda.contact.springs import base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
-from dda.model.load import Load, pressed_part
+from dda.model.load import BaseMotion, Load, pressed_part
 from dda.one_block.solution import check_request, step_times
+from dda.one_block.two_block import carried
 from dda.one_block.unilateral_energy import CutStep, Ledger, energies
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
 from dda.one_block.unilateral_history import (
@@ -66,6 +67,8 @@ class UnilateralModel:
     traction: float = 0.0  # towards +x, on the whole top edge [Pa]
     gravity: float = 0.0  # downwards [m/s^2]
     velocity: float = 0.0  # of the block at t = 0, upwards positive [m/s]
+    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
+    motion: BaseMotion | None = None  # of the base, from where the block stands at t = 0
 
     def __post_init__(self) -> None:
         """Check the numbers and the edges."""
@@ -78,11 +81,13 @@ class UnilateralModel:
         if not math.isfinite(self.velocity):
             raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
         pressed_part(*self.block.edge(self.top), self.applied.eccentricity)
+        if self.motion is not None and np.any(start := self.motion.at([0.0])[0]):
+            raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
 
     @cached_property
     def applied(self) -> Load:
         """All loads."""
-        return Load(self.pressure, self.eccentricity, self.traction, self.gravity)
+        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion, self.slope)
 
     @cached_property
     def reduced(self) -> UnilateralForm:
@@ -180,6 +185,19 @@ def check_scheme(law: Unilateral, scheme: Scheme) -> None:
         raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
 
 
+class Carry:
+    """What a moving base does to a block whose unknowns count from it."""
+
+    def __init__(self, form: UnilateralForm, motion: BaseMotion, step: float) -> None:
+        self.MR, self.motion, self.step = form.M @ form.translation, motion, step
+
+    def momentum(self, begun: float, ratio: float) -> list[float]:
+        """Return M R (y1 - y) of a part of a step, `begun` in steps [kg m]."""
+        y, y1 = self.motion.at([begun * self.step, (begun + ratio) * self.step])
+        moved: list[float] = (self.MR @ (y1 - y)).tolist()
+        return moved
+
+
 class Stepping:
     """The history of one block: step by step where contacts switch, many at once between."""
 
@@ -193,6 +211,7 @@ class Stepping:
         self.phases: dict[tuple[bool, ...], Phase | str] = {}
         self.history = History(self.form.layout)
         self.cut_steps: dict[int, CutStep] = {}  # for their energies
+        self.carry = None if model.motion is None else Carry(self.form, model.motion, scheme.step)
         self.start = start_state(self.form, self.law, scheme, model.velocity, options.rule)
 
     def run(self, steps: int) -> None:
@@ -205,11 +224,11 @@ class Stepping:
             reached = self._interval(state)
             if reached is None:
                 return
-            state, solves, cuts = reached
+            state, made = reached
             if not math.isfinite(sum(state.D)):
                 self.outcome = OVERFLOW
                 return
-            self.history.add(Step(vector(state), state.corners.closed, solves, cuts))
+            self.history.add(made)
             waiting -= 1
 
     def _ahead(self, state: State, steps: int) -> tuple[State, int]:
@@ -245,16 +264,22 @@ class Stepping:
                 return "all savings off"
             if self.options.rule != NEWMARK:
                 return f"the rule {self.options.rule}"
+            if self.model.motion is not None:
+                return "the base moves"
+            if self.law.friction is not None:
+                return "friction"
             self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
         return self.phases[closed]
 
-    def _interval(self, state: State) -> tuple[State, int, int] | None:
-        """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
+    def _interval(self, state: State) -> tuple[State, Step] | None:
+        """Return the state after one step of the scheme, whole or in parts, and what is kept of it."""
         left = ratio = 1.0
         solves = cuts = 0
+        slipped: tuple[float, ...] = ()
         while True:
             length = self._length(ratio)
-            after, found = advance(self.law, length, state, self.options.solve_limit)
+            carried = None if self.carry is None else self.carry.momentum(self.history.steps + 1 - left, ratio)
+            after, found = advance(self.law, length, state, self.options.solve_limit, carried)
             solves += found.solves
             if after is None:
                 if ratio <= FLOOR:
@@ -264,9 +289,10 @@ class Stepping:
                 continue
             if cuts and self.options.energies:
                 self.cut_steps.setdefault(self.history.steps, []).append((length, state, after))
-            state = after
+            state, own = after, after.corners.slipped
+            slipped = tuple(map(sum, zip(slipped, own, strict=True))) if slipped and own else slipped or own
             if ratio == left:
-                return state, solves, cuts
+                return state, Step(vector(state), state.corners.closed, solves, cuts, state.corners.state, slipped)
             left -= ratio
             ratio = left
 
@@ -283,9 +309,12 @@ class Stepping:
 def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: float) -> UnilateralResult:
     form, model, history = stepping.form, stepping.model, stepping.history
     values = observed(form, history, base_directions(model.block, model.base)[2], columns)
+    for name, way in carried(model.motion, step_times(stepping.scheme, history.steps)).items():
+        if name in values:
+            values[name] = values[name] + way
 
     def balance() -> dict[str, Array]:
-        ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule)
+        ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule, model.motion)
         return energies(ledger, history, stepping.start, stepping.cut_steps)
 
     ended = perf_counter()

@@ -8,7 +8,8 @@ c = alpha - delta/2 and V the velocity after gg,
 
 [ ] the change over the step and U = N^2/(2 p) + T^2/(2 p_s). A contact that keeps its state is part of the
 algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Energy-conserving contact does
-the work U0 - U1 itself and loses nothing.
+the work U0 - U1 itself and loses nothing. Of what a corner loses that slips, friction takes -T1 (r1 - r0), never
+negative. Where the base moves by y the loads work on x = D + R y, and its own work -lambda' B R y is counted as theirs.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.unilateral import SLIDES, Unilateral
+from dda.model.load import BaseMotion
 from dda.one_block.unilateral_form import UnilateralForm
 from dda.one_block.unilateral_history import History
 from dda.one_block.unilateral_step import CONSERVING, NEWMARK, State, StepLength
@@ -26,7 +28,7 @@ from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
 
-ENERGIES = ("kinetic", "strain", "springs", "load", "algorithmic", "kinetic damping", "switching")
+ENERGIES = ("kinetic", "strain", "springs", "load", "algorithmic", "kinetic damping", "switching", "friction")
 
 
 class Instants(NamedTuple):
@@ -39,12 +41,11 @@ class Instants(NamedTuple):
     shear: Array  # (k, c) [N]
     gap: Array  # (k, c) [m]
     closed: NDArray[np.bool_]  # (k, c)
+    slipped: Array  # (k, c) change of the shear reference in the step [m]
 
     def after(self, start: Instants) -> Instants:
         """Return the states with which the steps to these begin."""
-        names = self._fields[:-1]
-        earlier = {name: np.concatenate([getattr(start, name), getattr(self, name)[:-1]]) for name in names}
-        return Instants(**earlier, closed=np.concatenate([start.closed, self.closed[:-1]]))
+        return Instants(*(np.concatenate([first, made[:-1]]) for first, made in zip(start, self, strict=True)))
 
 
 CutStep = list[tuple[StepLength, State, State]]  # the parts of a step that was cut
@@ -61,11 +62,18 @@ def energies(ledger: Ledger, history: History, start: State, cut_steps: dict[int
     dt = ledger.scheme.step
     made = _made(ledger, history)
     before = made.after(instants([start], dt))
-    losses = ledger.losses(ledger.scheme, before, made)
+    base = ledger.base(np.arange(history.steps + 1.0))
+    losses = ledger.losses(ledger.scheme, before, made, np.diff(base, axis=0))
     for number, parts in cut_steps.items():
-        pieces = [ledger.losses(at.scheme, instants([x], dt), instants([y], dt)) for at, x, y in parts]
+        pieces, begun = [], float(number)
+        for at, x, y in parts:
+            way = np.diff(ledger.base(np.array([begun, begun + at.ratio])), axis=0)
+            pieces.append(ledger.losses(at.scheme, instants([x], dt), instants([y], dt), way))
+            begun += at.ratio
         losses[number : number + 1] = np.sum(pieces, axis=0)  # nothing, if the step was not reached
-    kept = np.column_stack([ledger.present(made), np.cumsum(losses, axis=0)])
+    lost = np.cumsum(losses, axis=0)
+    kept = np.column_stack([ledger.present(made), lost[:, :-1]])
+    kept[:, ENERGIES.index("load")] -= base[1:] @ (ledger.form.translation.T @ ledger.form.F) + lost[:, -1]
     return dict(zip(ENERGIES, kept.T, strict=True))
 
 
@@ -74,7 +82,8 @@ def instants(states: list[State], dt: float) -> Instants:
     D, P, f = (np.array([state[part] for state in states]) for part in range(3))
     corners = [state.corners for state in states]
     N, T, w = (np.array([getattr(c, name) for c in corners]) for name in ("normal", "shear", "gap"))
-    return Instants(D, P / dt, f / dt**2, N, T, w, np.array([c.closed for c in corners]))
+    slipped = np.array([c.slipped or (0.0,) * len(c.gap) for c in corners])
+    return Instants(D, P / dt, f / dt**2, N, T, w, np.array([c.closed for c in corners]), slipped)
 
 
 def _made(ledger: Ledger, history: History) -> Instants:
@@ -87,16 +96,22 @@ def _made(ledger: Ledger, history: History) -> Instants:
     if ledger.rule == NEWMARK:
         R = R + ledger.forces(N, T)
     closed = np.column_stack([history.closed(i) for i in range(place.contacts)])
-    return Instants(D, V, R, N, T, w, closed)
+    return Instants(D, V, R, N, T, w, closed, history.slipped().T)
 
 
 class Ledger:
     """What a step of one block keeps and loses."""
 
-    def __init__(self, form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str) -> None:
-        self.form, self.law, self.scheme, self.rule = form, law, scheme, rule
+    def __init__(
+        self, form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, motion: BaseMotion | None
+    ) -> None:
+        self.form, self.law, self.scheme, self.rule, self.motion = form, law, scheme, rule, motion
         self.inverse = np.linalg.inv(form.M)
         self.slides = form.B[form.contacts :]
+
+    def base(self, steps: Array) -> Array:
+        """Return the displacement of the base after so many steps, (len(steps), 2) [m]."""
+        return np.zeros((len(steps), 2)) if self.motion is None else self.motion.at(steps * self.scheme.step)
 
     def present(self, at: Instants) -> Array:
         """Return kinetic, strain, spring and load energy, (k, 4)."""
@@ -104,11 +119,18 @@ class Ledger:
         load = -(at.D - self.form.start) @ self.form.F
         return np.column_stack([self._kinetic(at.V), strain, self._springs(at).sum(axis=1), load])
 
-    def losses(self, scheme: Scheme, before: Instants, after: Instants) -> Array:
-        """Return what steps of one length lose by the algorithm, by gg and by switching, (k, 3)."""
+    def losses(self, scheme: Scheme, before: Instants, after: Instants, way: Array) -> Array:
+        """Return what steps of one length lose by the algorithm, gg, switching, friction and give the base, (k, 5)."""
+        rubbed = -self.form.multiplicity * np.sum(after.shear * after.slipped, axis=1)
         kept, switched = self._contacts(scheme, before, after)
         damped = (1 - scheme.gg**2) * self._kinetic(before.V)
-        return np.column_stack([self._bulk(scheme, before, after) + kept, damped, switched])
+        carried = way @ self.form.translation.T
+        bulk = self._bulk(scheme, before, after, carried)
+        # what the springs take from the block on the way of the base comes from the base
+        late = scheme.delta if self.rule == NEWMARK else 1.0
+        held = [self.forces(at.normal, at.shear) for at in (before, after)]
+        given = np.sum(((1 - late) * held[0] + late * held[1]) * carried, axis=1)
+        return np.column_stack([bulk + kept, damped, switched, rubbed, given])
 
     def _kinetic(self, momentum: Array) -> Array:
         kinetic: Array = np.einsum("ki,ij,kj->k", momentum, self.inverse, momentum) / 2
@@ -120,7 +142,7 @@ class Ledger:
         energy: Array = self.form.multiplicity * (at.normal**2 * self.law.compliance + shear) / 2
         return energy
 
-    def _bulk(self, scheme: Scheme, before: Instants, after: Instants) -> Array:
+    def _bulk(self, scheme: Scheme, before: Instants, after: Instants, carried: Array) -> Array:
         """Return the loss of the block itself, with what the first step's A0 adds where M A0 was not F - K0 D0."""
         form, moved = self.form, after.D - before.D
         c, over = scheme.alpha - scheme.delta / 2, scheme.delta - 0.5
@@ -128,7 +150,7 @@ class Ledger:
         missing = form.F - form.K * before.D - before.R
         if self.rule == NEWMARK:
             missing = missing + self.forces(before.normal, before.shear)
-        loss += (1 - scheme.delta) * np.sum(moved * missing, axis=1)
+        loss += (1 - scheme.delta) * np.sum((moved + carried) * missing, axis=1)
         if c:
             h2 = scheme.step**2
             stored = self._kinetic(after.R) - self._kinetic(before.R)
@@ -153,6 +175,7 @@ class Ledger:
         N = (1 - late) * before.normal + late * after.normal
         T = (1 - late) * before.shear + late * after.shear
         work = N * (after.gap - before.gap) + T * self._slid(after.D - before.D)
+        work = work - after.shear * after.slipped
         lost = self._springs(before) - self._springs(after) - self.form.multiplicity * work
         same = before.closed == after.closed
         return np.sum(lost * same, axis=1), np.sum(lost * ~same, axis=1)

@@ -77,6 +77,7 @@ class UnilateralForm:
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
     observers: dict[str, Array]  # displacement column -> (n,) row over x - start
+    slide: Array  # (2, n) displacement of M and N along the base by x
 
     @property
     def layout(self) -> Layout:
@@ -93,6 +94,8 @@ def unilateral_form(
     R = np.zeros((6, 2))
     R[:2] = [[tangent[0], tangent[1]], [-tangent[1], tangent[0]]]
     pushed = form.F + velocity * (form.M @ R[:, 1])
+    if load.motion is not None:
+        pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
     reached = _reached(form, pushed)
     if not full and not reached[0] and not reached[2] and not reached[5]:
         kept = [i for i in _SYMMETRIC if reached[i] or i != 3]
@@ -135,6 +138,7 @@ def _symmetric(block: Block, law: Unilateral, form: GapForm, a: float, R: Array,
         multiplicity=2.0,
         start=np.array([law.gap if i == 1 else 0.0 for i in kept]),
         observers=_observers(form, np.eye(6)[:, index]),
+        slide=np.array([[side * a / 2 if i == 3 else 0.0 for i in kept] for side in (-1, 1)]),
     )
 
 
@@ -160,6 +164,7 @@ def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, R: Arra
         multiplicity=1.0,
         start=np.array([0.0, 0.0, 0.0, 0.0, law.gap, law.gap]),
         observers=_observers(form, T),
+        slide=np.array([[-a / 2, 0.0, 0.0, 1.0, 0.0, 0.0], [a / 2, 0.0, 0.0, 1.0, 0.0, 0.0]]),
     )
 
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.unilateral import SLIDES, Corners, Unilateral, slide_forces
-from dda.one_block.solution import Result
+from dda.contact.unilateral import SLIDES, SLIP, Corners, Unilateral, slide_forces
+from dda.one_block.solution import Result, at_corner
 from dda.one_block.unilateral_form import Layout, UnilateralForm
 from dda.one_block.unilateral_phase import BLOCK, Phase
 from dda.one_block.unilateral_step import State
@@ -32,6 +32,8 @@ class Step(NamedTuple):
     closed: tuple[bool, ...]
     solves: int
     cuts: int
+    state: tuple[int, ...] = ()  # of contacts with friction
+    slipped: tuple[float, ...] = ()  # of contacts with friction [m]
 
 
 class Glide(NamedTuple):
@@ -154,6 +156,20 @@ class History:
             out[part.first : part.first + part.steps] = part.closed[contact]
         return out
 
+    def states(self, contact: int) -> NDArray[np.int_]:
+        """Return OPEN, STICK or SLIP of a contact in its direction at every step."""
+        numbers, found, _ = self.single
+        out = self.closed(contact).astype(int)
+        out[numbers] = [step.state[contact] if step.state else step.closed[contact] for step in found]
+        return out
+
+    def slipped(self) -> Array:
+        """Return the change of every contact's reference by slip in every step, (contacts, steps) [m]."""
+        numbers, found, _ = self.single
+        out = np.zeros((self.layout.contacts, self.steps))
+        out[:, numbers] = np.array([step.slipped or (0.0,) * self.layout.contacts for step in found]).T
+        return out
+
     def contacts(self, compliance: float) -> Array:
         """Return normal forces, shear forces and gaps, (3, contacts, steps); a closed contact has the gap -N/p."""
         place = self.layout
@@ -229,67 +245,47 @@ class UnilateralResult(Result):
         return self._contacts["gap"]
 
     @property
+    def shear(self) -> Array:
+        """T at M and N, (2, steps) [N]."""
+        return self._contacts["shear"]
+
+    @property
+    def stretch(self) -> Array:
+        """Stretch s - r of the shear springs at M and N, 0 where open, (2, steps) [m]."""
+        return 0.0 - self.shear / self.law.shear if self.law.shear else np.zeros_like(self.shear)
+
+    @cached_property
     def closed(self) -> NDArray[np.bool_]:
-        """State of M and N, (2, steps)."""
-        return np.array([self.closed_m, self.closed_n])
-
-    @property
-    def normal_force_m(self) -> Array:
-        """N at M [N], away from the base."""
-        return self._of("normal", 0)
-
-    @property
-    def normal_force_n(self) -> Array:
-        """N at N [N]."""
-        return self._of("normal", 1)
-
-    @property
-    def shear_force_m(self) -> Array:
-        """T at M [N], along the base from M to N."""
-        return self._of("shear", 0)
-
-    @property
-    def shear_force_n(self) -> Array:
-        """T at N [N]."""
-        return self._of("shear", 1)
-
-    @property
-    def gap_m(self) -> Array:
-        """W at M [m], negative when pressed."""
-        return self._of("gap", 0)
-
-    @property
-    def gap_n(self) -> Array:
-        """W at N [m]."""
-        return self._of("gap", 1)
-
-    @property
-    def shear_m(self) -> Array:
-        """Stretch s - r of the shear spring at M [m], 0 where open."""
-        return self._stretch(0)
-
-    @property
-    def shear_n(self) -> Array:
-        """Stretch s - r at N [m]."""
-        return self._stretch(1)
-
-    def _of(self, name: str, corner: int) -> Array:
-        values: Array = self._contacts[name][corner]
-        return values
-
-    def _stretch(self, corner: int) -> Array:
-        shear = self._contacts["shear"][corner]
-        return 0.0 - shear / self.law.shear if self.law.shear else np.zeros_like(shear)
+        """Whether M and N are closed, (2, steps)."""
+        return np.array([self.history.closed(i) for i in (0, self.history.layout.contacts - 1)])
 
     @cached_property
-    def closed_m(self) -> NDArray[np.bool_]:
-        """State of M."""
-        return self.history.closed(0)
+    def states(self) -> NDArray[np.int_]:
+        """State of M and N, (2, steps): 0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M."""
+        c = self.history.layout.contacts
+        both = np.array([self.history.states(0), self.history.states(c - 1)])
+        return both if c == 2 else np.array([np.where(np.abs(both[0]) == SLIP, -both[0], both[0]), both[1]])
 
     @cached_property
-    def closed_n(self) -> NDArray[np.bool_]:
-        """State of N."""
-        return self.history.closed(self.history.layout.contacts - 1)
+    def slide(self) -> Array:
+        """Displacement s of M and N along the base, from M to N, less that of the base, (2, steps) [m]."""
+        place = self.history.layout
+        rows = np.zeros((2, place.size))
+        rows[:, place.D] = self.form.slide
+        return self.history.observe(rows)
+
+    @cached_property
+    def slip(self) -> Array:
+        """Largest sum of what the reference of a corner moved while it was pressed, (steps,) [m]."""
+        return np.asarray(np.abs(np.cumsum(self.history.slipped(), axis=1)).max(axis=0))
+
+    normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", 1)  # N, away from the base [N]
+    shear_force_m, shear_force_n = at_corner("shear", 0), at_corner("shear", 1)  # T, from M to N [N]
+    gap_m, gap_n = at_corner("gap", 0), at_corner("gap", 1)  # w, negative when pressed [m]
+    slide_m, slide_n = at_corner("slide", 0), at_corner("slide", 1)  # s [m]
+    shear_m, shear_n = at_corner("stretch", 0), at_corner("stretch", 1)  # s - r [m]
+    closed_m, closed_n = at_corner("closed", 0), at_corner("closed", 1)
+    state_m, state_n = at_corner("states", 0), at_corner("states", 1)
 
     @cached_property
     def _velocities(self) -> Array:

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from dda.contact.conserving import conserving
 from dda.contact.glued import Free
 from dda.contact.iteration import Iteration, open_close
+from dda.contact.rules import find_states
 from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
@@ -133,20 +134,25 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
     return State(form.start.tolist(), P.tolist(), f.tolist(), at_rest(law, form.contacts))
 
 
-def advance(law: Unilateral, length: StepLength, state: State, limit: int) -> tuple[State | None, Iteration]:
-    """Return the state one step later, or None where the contacts have no single state; `state` stays as it is."""
+def advance(
+    law: Unilateral, length: StepLength, state: State, limit: int, carried: Vector | None = None
+) -> tuple[State | None, Iteration]:
+    """Return the state one step later, or None where the contacts have no single state; `state` stays as it is.
+
+    Unknowns count from a moving base: x = D + R y with K0 R = 0, so that its way in the step enters as the momentum
+    M R (y1 - y), `carried`.
+    """
     D, P, f = state.D, state.P, state.f
     if length.ratio != 1:
         P, f = _scaled(P, length.ratio), _scaled(f, length.ratio * length.ratio)
     scheme, k, F = length.scheme, length.k, length.F
-    x = length.factor.solve(
-        [momentum_balance(scheme, *given) for given in zip(F, k, D, P, f, strict=True)],
-    )
+    b = [momentum_balance(scheme, *given) for given in zip(F, k, D, P, f, strict=True)]
+    x = length.factor.solve(b if carried is None else [own - way for own, way in zip(b, carried, strict=True)])
     free = _free(length, D, x)
     found = (
         conserving(law, state.corners, free)
         if length.rule == CONSERVING
-        else open_close(law, state.corners, free, limit)
+        else find_states(law, state.corners, free, limit)
     )
     if found.corners is None:
         return None, found
@@ -198,6 +204,8 @@ def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) ->
     """
     local = [sum(b * d for b, d in zip(row, D, strict=True)) for row in length.slides]
     stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
+    if after.slipped:
+        stays = [kept and not way for kept, way in zip(stays, after.slipped, strict=True)]
     where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
     if len(stays) == 2 and any(stays):
         glued = zip(before.reference, after.stretch, where, stays, strict=True)

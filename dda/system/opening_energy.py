@@ -20,7 +20,7 @@ class SystemLedger:
     """Keeps the energies [J] after every step, the losses summed from t = 0 on."""
 
     def __init__(self, opening: OpeningSystem, dt: float) -> None:
-        self.opening, self.dt, self.losses = opening, dt, np.zeros(3)
+        self.opening, self.dt, self.losses = opening, dt, np.zeros(4)
         e = opening.equations
         self.inverse, self.elastic = e.blockwise(inverses(e.mass)), e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
@@ -41,7 +41,7 @@ class SystemLedger:
         lost = self._springs(old) - self._springs(new) - N * (new.gap - old.gap) - T * slid
         same = old.closed == new.closed
         damped = (1 - scheme.gg**2) * self._kinetic(before.P / self.dt)
-        self.losses += (self._bulk(length, before, after) + np.sum(lost[same]), damped, np.sum(lost[~same]))
+        self.losses += (self._bulk(length, before, after) + np.sum(lost[same]), damped, np.sum(lost[~same]), 0.0)
 
     def _bulk(self, length: Length, before: SystemState, after: SystemState) -> float:
         """Return the loss of the sub-blocks, with what A0 adds where M A0 was not F - K0 D0."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.one_block.solution import Result, check_request, step_times
+from dda.one_block.solution import Result, at_corner, check_request, step_times
 from dda.one_block.unilateral import COMPLETED, FLOOR, OVERFLOW, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_energy import ENERGIES
 from dda.one_block.unilateral_step import NEWMARK
@@ -35,6 +35,7 @@ class OpeningResult(Result):
     shear: Array  # (points, steps) T, along the base from M to N [N]
     gap: Array  # (points, steps) w, negative when pressed [m]
     closed: NDArray[np.bool_]  # (points, steps)
+    slide: Array  # (points, steps) displacement along the base [m]
     velocity: Array  # of the centre of mass, upwards [m/s]
     horizontal_velocity: Array  # of the centre of mass [m/s]
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
@@ -42,44 +43,22 @@ class OpeningResult(Result):
     energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
 
     @property
-    def gap_m(self) -> Array:
-        """W at M [m]."""
-        return np.asarray(self.gap[0])
+    def states(self) -> NDArray[np.int_]:
+        """State of the points, (points, steps): 0 open, 1 closed."""
+        return self.closed.astype(int)
 
     @property
-    def gap_n(self) -> Array:
-        """W at N [m]."""
-        return np.asarray(self.gap[-1])
+    def slip(self) -> Array:
+        """Largest sum of what the reference of a point moved while it was pressed, (steps,) [m]."""
+        return np.zeros(len(self.time))
 
-    @property
-    def normal_force_m(self) -> Array:
-        """N of the point at M alone [N]."""
-        return np.asarray(self.normal[0])
-
-    @property
-    def normal_force_n(self) -> Array:
-        """N of the point at N alone [N]."""
-        return np.asarray(self.normal[-1])
-
-    @property
-    def shear_force_m(self) -> Array:
-        """T of the point at M alone [N]."""
-        return np.asarray(self.shear[0])
-
-    @property
-    def shear_force_n(self) -> Array:
-        """T of the point at N alone [N]."""
-        return np.asarray(self.shear[-1])
-
-    @property
-    def closed_m(self) -> NDArray[np.bool_]:
-        """State of the point at M."""
-        return np.asarray(self.closed[0])
-
-    @property
-    def closed_n(self) -> NDArray[np.bool_]:
-        """State of the point at N."""
-        return np.asarray(self.closed[-1])
+    # of the first and the last point alone
+    normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", -1)  # N, away from the base [N]
+    shear_force_m, shear_force_n = at_corner("shear", 0), at_corner("shear", -1)  # T, from M to N [N]
+    gap_m, gap_n = at_corner("gap", 0), at_corner("gap", -1)  # w, negative when pressed [m]
+    slide_m, slide_n = at_corner("slide", 0), at_corner("slide", -1)  # s [m]
+    closed_m, closed_n = at_corner("closed", 0), at_corner("closed", -1)
+    state_m, state_n = at_corner("states", 0), at_corner("states", -1)
 
 
 class Row(NamedTuple):
@@ -90,6 +69,7 @@ class Row(NamedTuple):
     shear: Array
     gap: Array
     closed: NDArray[np.bool_]
+    slide: Array
     momentum: Array  # dt times the momentum in x and y
     solves: int
     cuts: int
@@ -162,7 +142,9 @@ class SystemStepping:
         seen = self.observers @ state.D + self.pressed @ np.array([np.sum(p.normal)])
         momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
         kept = self.ledger.row(state) if self.ledger else ()
-        return Row(seen, p.normal, p.shear, p.gap, p.closed, momentum, solves, cuts, kept)
+        return Row(
+            seen, p.normal, p.shear, p.gap, p.closed, self.opening.tangents @ state.D, momentum, solves, cuts, kept
+        )
 
     def _interval(self, state: SystemState) -> tuple[SystemState | None, int, int]:
         """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
@@ -222,6 +204,7 @@ def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float,
         shear=history("shear", points),
         gap=history("gap", points),
         closed=history("closed", points) > 0,
+        slide=history("slide", points),
         velocity=velocity[1],
         horizontal_velocity=velocity[0],
         step_solves=np.array([row.solves for row in rows], dtype=int),

@@ -72,6 +72,7 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         model.gravity,
         model.motion,
         base_normal=(float(normal[0]), float(normal[1])),
+        slope=model.slope,
     )
 
 

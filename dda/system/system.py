@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.model.block import Block
-from dda.model.load import BaseMotion
+from dda.model.load import BaseMotion, falling
 from dda.system.joint_solver import saddle
 from dda.system.joints import FIXED, Joint, gap_groups
 
@@ -58,6 +58,7 @@ class BlockSystem:
     motion: BaseMotion | None = None  # of all that is fixed
     fixed: frozenset[int] = frozenset()  # blocks that do not move by themselves
     base_normal: tuple[float, float] = (0.0, 1.0)  # unit normal of the supports, into the blocks
+    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
         """Check that every block that is named exists."""
@@ -108,7 +109,7 @@ class BlockSystem:
         """Return surface loads and weights, six for each block."""
         F = np.zeros((len(blocks), 6))
         for i, block in enumerate(blocks):
-            F[i, 1] = -block.material.density * block.section.area * self.gravity
+            F[i, :2] = block.material.density * block.section.area * self.gravity * np.array(falling(self.slope))
         for load in self.loads:
             i = place[load.block]
             if i != FIXED:

@@ -24,6 +24,10 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from fem_reference.problem.problem import Array
 
 Flags = NDArray[np.bool_]
+States = NDArray[np.int8]
+OPEN, STICK, SLIP = 0, 1, 2
+"""States of a point: open; closed, its shear spring held; closed and sliding towards +x (-SLIP: towards -x)."""
+NONE, SEVERAL = "no consistent contact state", "several consistent contact states"
 KEPT = 64
 """Greatest number of sets of closed points whose factors are kept."""
 
@@ -35,6 +39,7 @@ class Trial:
     normal: Array  # normal force N of each point on the block [N], zero where open, shape (points,)
     shear: Array  # tangential force T of each point on the block [N], shape (points,)
     gap: Array  # gap w_f + C N of each point [m], shape (points,)
+    slip: Array  # slip of each point beyond its reference at the start of the step [m]; zero without shear
     settled: bool = True  # whether the forces are those of the states, which may themselves ask for an iteration
 
 
@@ -43,36 +48,42 @@ class Contact:
     """Converged contact of a step, or why there is none."""
 
     trial: Trial | None  # forces and gaps; None where no states are consistent, or more than one set may be
-    closed: Flags  # closed points, shape (points,)
+    states: States  # state of each point, shape (points,)
     solves: int  # solutions for the forces of given states [-]; a fallback counts as one
     failure: str = ""  # why `trial` is None, in words: none was found, or several were
 
 
-def corrected(trial: Trial, closed: Flags) -> Flags:
-    """States that the forces and gaps ask for; a point that is neither pressed nor lifted keeps its state."""
-    states: Flags = np.where(closed, trial.normal >= 0, trial.gap < 0)
-    return states
+def corrected(trial: Trial, states: States) -> States:
+    """STICK where the forces and gaps ask for a closed point; what is neither pressed nor lifted stays as it is."""
+    return np.where(states != OPEN, trial.normal >= 0, trial.gap < 0).astype(np.int8)
 
 
-def iterate(forces: Callable[[Flags], Trial], closed: Flags, limit: int) -> Contact:
+def iterate(
+    forces: Callable[[States], Trial],
+    states: States,
+    limit: int,
+    asked: Callable[[Trial, States], States] = corrected,
+) -> Contact:
     """Correct all states at once until none changes, with at most `limit` solutions.
 
     Parameters
     ----------
     forces
         The forces and gaps of given states.
-    closed
+    states
         States to begin with, shape (points,).
     limit
         Greatest number of solutions.
+    asked
+        The states that forces ask for, from those that they were found with.
     """
     for solves in range(1, limit + 1):
-        trial = forces(closed)
-        following = corrected(trial, closed)
-        if np.array_equal(following, closed) and trial.settled:
-            return Contact(trial, closed, solves)
-        closed = following
-    return Contact(None, closed, limit, "no consistent contact state")
+        trial = forces(states)
+        following = asked(trial, states)
+        if np.array_equal(following, states) and trial.settled:
+            return Contact(trial, states, solves)
+        states = following
+    return Contact(None, states, limit, NONE)
 
 
 class FrictionlessBase:
@@ -90,23 +101,23 @@ class FrictionlessBase:
         self.C, self.A = C, C + np.diag(compliance)
         self._factors: dict[bytes, tuple[NDArray[np.int64], Array]] = {}
 
-    def contact(self, free: Array, closed: Flags, limit: int) -> Contact:
-        """Contact for gaps without forces `free` [m]; `closed` and `limit` as in `iterate`."""
-        found = iterate(lambda states: self.forces(free, states), closed, limit)
+    def contact(self, free: Array, states: States, limit: int) -> Contact:
+        """Contact for gaps without forces `free` [m]; `states` and `limit` as in `iterate`."""
+        found = iterate(lambda guess: self.forces(free, guess), states, limit)
         if found.trial is not None:
             return found
-        closed = complementary(self.A, free) > 0
-        return Contact(self.forces(free, closed), closed, limit + 1)
+        states = (complementary(self.A, free) > 0).astype(np.int8)
+        return Contact(self.forces(free, states), states, limit + 1)
 
-    def forces(self, free: Array, states: Flags) -> Trial:
+    def forces(self, free: Array, states: States) -> Trial:
         """Forces and gaps for given states, A N = -free on the closed points."""
         N, none = np.zeros(len(free)), np.zeros(len(free))
         rows, factor = self._factor(states)
         if len(rows):
             N[rows] = dpotrs(factor, -free[rows])[0]
-        return Trial(N, none, free + self.C @ N)
+        return Trial(N, none, free + self.C @ N, none)
 
-    def _factor(self, states: Flags) -> tuple[NDArray[np.int64], Array]:
+    def _factor(self, states: States) -> tuple[NDArray[np.int64], Array]:
         """Closed points and the Cholesky factor of their part of A."""
         key = states.tobytes()
         if key not in self._factors:

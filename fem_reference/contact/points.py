@@ -19,6 +19,7 @@ from skfem.models.poisson import mass as line_mass
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies
+from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array, Problem
 
 SAME_PLACE = 1e-9
@@ -40,6 +41,9 @@ class ContactModel:
     upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
     observers: dict[str, Array]  # rows that give v, u and the rotation at the centroid, shape (unknowns,)
     kind: str  # ``"whole"`` or ``"column"``
+    length: float  # length a of the base [m]
+    axes: Array  # unit vectors normal to the base, into the block, and along it, shape (2, 2)
+    motion: Motion | None  # motion of the base
 
 
 def build(problem: Problem, full: bool = False) -> ContactModel:
@@ -55,10 +59,10 @@ def build(problem: Problem, full: bool = False) -> ContactModel:
     Raises
     ------
     ValueError
-        If the block cannot be meshed, or its base moves.
+        If the block cannot be meshed, or its base is not where the block stands at t = 0.
     """
-    if problem.motion is not None:
-        raise ValueError("motion: the base of a block that may lift off must be at rest, got a moving one")
+    if problem.motion is not None and np.any(start := problem.motion(np.zeros(1))[0]):
+        raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
     return column(problem) if column_applies(problem) and not full else whole(problem)
 
 
@@ -83,7 +87,7 @@ def column(problem: Problem) -> ContactModel:
     return ContactModel(
         M=M,
         K=K,
-        F=-problem.pressure * width * top[0] - problem.gravity * (M @ upwards),
+        F=-problem.pressure * width * top[0] + problem.pull[1] * (M @ upwards),
         normal=csr_array(base),
         tangential=csr_array((1, basis.N)),
         share=np.ones(1),
@@ -96,6 +100,9 @@ def column(problem: Problem) -> ContactModel:
             "rotation": none,
         },
         kind="column",
+        length=width,
+        axes=np.array([problem.normal, problem.tangent]),
+        motion=problem.motion,
     )
 
 
@@ -126,6 +133,9 @@ def whole(problem: Problem) -> ContactModel:
         upwards=elasticity.components(basis),
         observers={name: row for name, row in assembled.observers.items() if name != "contact_pressure"},
         kind="whole",
+        length=problem.base_length,
+        axes=np.array([n, t]),
+        motion=problem.motion,
     )
 
 

@@ -9,6 +9,7 @@ With S = M + alpha dt^2 K of the block without the base's springs, factorised on
 
 so that M A1 = F - K D1 + B' (N, T) without a division by alpha dt^2. The gaps at the end are those of the free
 block plus C N, C = alpha dt^2 B S^-1 B'. Nothing depends on the contact states but the small problem of the forces.
+Where the base moves its own way is taken from the gaps and slips.
 
 With implicit contact (Kane, Repetto, Ortiz and Marsden, 1999) A is the block's own, M A1 = F - K D1, under average
 acceleration, and the forces of the step's end throw it besides, D by dt^2 / 2 and V by dt times Q = M^-1 B' (N, T)::
@@ -24,9 +25,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from fem_reference.contact.glued import GluedBase, GluedStep, glued
-from fem_reference.contact.open_close import Contact, Flags, FrictionlessBase
+from fem_reference.contact.open_close import OPEN, SLIP, STICK, Contact, Flags, FrictionlessBase, States, Trial
 from fem_reference.contact.points import ContactModel
+from fem_reference.contact.shear import Friction, ShearBase, ShearStep, sheared
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_acceleration, predictor, velocity
 
@@ -50,7 +51,17 @@ class ContactState:
     reference: Array  # slip r at which the shear spring of each point is unstrained [m]
     normal: Array  # normal force N of each point on the block [N]
     shear: Array  # tangential force T of each point on the block [N]
-    closed: Flags  # points that the last step found closed
+    states: States  # state of each point that the last step found
+    slid: Array  # sum of what the reference of each point has moved while it was closed [m]
+    time: float  # time of the state [s]
+    base: Array  # way of the base's points since t = 0, normal to it and along it [m], shape (2,)
+    given: float  # work that the moving base has done on the block since t = 0 [J]
+
+    @property
+    def closed(self) -> Flags:
+        """Points that are closed."""
+        closed: Flags = self.states != OPEN
+        return closed
 
 
 @dataclass(frozen=True)
@@ -61,7 +72,7 @@ class _Matrices:
     solve: Callable[[Array], Array]
     response: Array | None  # S^-1 B', shape (unknowns, forces); None for many forces, where steps solve twice
     C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
-    small: FrictionlessBase | GluedBase  # the problem of the forces
+    small: FrictionlessBase | ShearBase  # the problem of the forces
 
 
 @dataclass
@@ -71,7 +82,7 @@ class ContactStepper:
     Raises
     ------
     ValueError
-        If `shear` or `rule` is unknown, `limit` is below one, or the scheme is not that of the rule.
+        If `shear` or `rule` is unknown, `limit` is below one, friction has no springs, or the scheme is not the rule's.
     """
 
     model: ContactModel
@@ -79,6 +90,7 @@ class ContactStepper:
     shear: str = "frictionless"  # ``"frictionless"``, or ``"glued"``: shear springs hold the closed points
     limit: int = 6  # greatest number of solutions of the open-close iteration [-]
     rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the block
+    friction: Friction | None = None  # limit of the forces of glued points; none if absent
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
@@ -86,6 +98,8 @@ class ContactStepper:
             raise ValueError(f"shear: must be one of {SHEARS}, got {self.shear!r}")
         if self.rule not in RULES:
             raise ValueError(f"rule: must be one of {RULES}, got {self.rule!r}")
+        if self.friction is not None and self.shear != "glued":
+            raise ValueError(f"friction: goes with shear = 'glued' only, got it with {self.shear!r}")
         if self.limit < 1:
             raise ValueError(f"limit: must be at least 1, got {self.limit!r}")
         both = vstack([self.model.normal, self.model.tangential])
@@ -107,7 +121,8 @@ class ContactStepper:
         zero, none = np.zeros_like(self.model.F), np.zeros(len(self.model.share))
         mass = self.work.factor(self.model.M) if self.scheme.start == "consistent" else None
         motion = State(zero, speed * self.model.upwards, initial_acceleration(self.model.F, mass))
-        return ContactState(motion, none + gap, none, none, none, none, np.full(len(none), gap == 0))
+        states = np.full(len(none), STICK if gap == 0 else OPEN, dtype=np.int8)
+        return ContactState(motion, none + gap, none, none, none, none, states, none, 0.0, np.zeros(2), 0.0)
 
     def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Contact]:
         """One step, of a shorter `length` [s] where that is given.
@@ -123,23 +138,42 @@ class ContactStepper:
         residual = model.F - model.K @ ahead
         free = own.solve(residual)
         moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
+        way = self._way(state.time + scheme.step) - state.base
+        moved -= np.repeat(way, len(model.share))[: len(moved)]
         contact = self._contact(state, own, moved)
         if contact.trial is None:
             return None, contact
         N, T = contact.trial.normal, contact.trial.shear
         forces = np.concatenate([N, T]) if self.shear == "glued" else N
         A = free
-        if contact.closed.any() and own.response is not None:
+        if contact.states.any() and own.response is not None:
             A = free + own.response @ forces
-        elif contact.closed.any():
+        elif contact.states.any():
             A = own.solve(residual + self._weight * (self._B.T @ forces))
         motion = self._moved(old, ahead, A, forces, scheme)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
-        gap = np.where(contact.closed, -N / self.model.stiffness, contact.trial.gap)
-        slip, reference = state.slip, state.reference
+        gap = np.where(contact.states != OPEN, -N / self.model.stiffness, contact.trial.gap)
+        slip, reference, slid = state.slip, state.reference, state.slid
         if self.shear == "glued":
-            slip, reference = self._slipped(state, contact.closed, T, moved + own.C @ forces)
-        return ContactState(motion, gap, slip, reference, N, T, contact.closed), contact
+            slip, reference, slid = self._slipped(state, contact.states, contact.trial, moved + own.C @ forces)
+        given = state.given + self._given(state, contact.trial, way)
+        time = state.time + scheme.step
+        return ContactState(
+            motion, gap, slip, reference, N, T, contact.states, slid, time, state.base + way, given
+        ), contact
+
+    def _way(self, time: float) -> Array:
+        """Way of the base since t = 0, normal to it and along it [m]."""
+        if self.model.motion is None:
+            return np.zeros(2)
+        way: Array = self.model.axes @ self.model.motion(np.array([time]))[0]
+        return way
+
+    def _given(self, state: ContactState, trial: Trial, way: Array) -> float:
+        """Work of the base on the block in a step, from the forces at both its ends [J]."""
+        late = 1.0 if self.rule == "implicit" else self.scheme.delta
+        before, after = (np.array([of.normal.sum(), of.shear.sum()]) for of in (state, trial))
+        return float(way @ ((1 - late) * before + late * after))
 
     def _moved(self, old: State, ahead: Array, A: Array, forces: Array, scheme: Scheme) -> State:
         """Motion at the end of a step from the accelerations that D1 = D* + alpha dt^2 A holds."""
@@ -158,17 +192,25 @@ class ContactStepper:
         points = len(self.model.share)
         free = state.gap + moved[:points]
         if isinstance(own.small, FrictionlessBase):
-            return own.small.contact(free, state.closed, self.limit)
+            return own.small.contact(free, state.states, self.limit)
         slip = state.slip - state.reference + moved[points:]
-        return glued(GluedStep(own.small, free, slip, state.gap, state.closed), self.limit)
+        return sheared(ShearStep(own.small, free, slip, state.gap, state.closed), state.states, self.limit)
 
-    def _slipped(self, state: ContactState, closed: Flags, T: Array, moved: Array) -> tuple[Array, Array]:
-        """Slips and references of a glued base at the end of a step; `moved` holds gaps, then slips."""
-        slip = state.slip + moved[len(closed) :]
-        k_t = self.model.shear_stiffness
-        crossing = slip + np.divide(T, k_t, out=np.zeros_like(T), where=k_t > 0)
-        held = np.where(state.closed, state.reference, crossing)
-        return slip, np.where(closed, held, slip)
+    def _slipped(self, state: ContactState, states: States, trial: Trial, moved: Array) -> tuple[Array, Array, Array]:
+        """Slips, references and sums of sliding at the end of a step; `moved` holds gaps, then slips."""
+        slip = state.slip + moved[len(states) :]
+        T, k_t = trial.shear, self.model.shear_stiffness
+        sheared = slip + np.divide(T, k_t, out=np.zeros_like(T), where=k_t > 0)
+        held = np.where(state.closed, state.reference, sheared)
+        sliding = np.abs(states) == SLIP
+        reference = np.where(states == STICK, held, np.where(sliding, sheared, slip))
+        # it has slid from its reference, or from where it closed
+        depth, above = trial.normal / self.model.stiffness, np.maximum(state.gap, 0.0)
+        way = depth + above
+        crossing = state.slip + (slip - state.slip) * np.divide(above, way, out=np.zeros_like(way), where=way > 0)
+        slid = reference - np.where(state.closed, state.reference, crossing)
+        onward = sliding & (slid * states > 0)
+        return slip, reference, state.slid + np.where(onward, slid, 0.0)
 
     def _matrices(self, length: float) -> _Matrices:
         if length not in self._lengths:
@@ -181,10 +223,17 @@ class ContactStepper:
             if response is not None:
                 response *= self._weight
             C, compliance = self._weight * scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
-            glue = self.shear == "glued"
-            small = GluedBase(C, compliance, self.model.shear_stiffness) if glue else FrictionlessBase(C, compliance)
+            glued = self.shear == "glued"
+            small = self._sheared(C, compliance) if glued else FrictionlessBase(C, compliance)
             self._lengths[length] = _Matrices(scheme, solve, response, C, small)
         return self._lengths[length]
+
+    def _sheared(self, C: Array, compliance: Array) -> ShearBase:
+        k_t, friction = self.model.shear_stiffness, self.friction
+        if friction is None:
+            return ShearBase(C, compliance, k_t)
+        cohesion = friction.cohesion * self.model.length * self.model.share
+        return ShearBase(C, compliance, k_t, friction.tangent, cohesion)
 
     def _responses(self, solve: Callable[[Array], Array]) -> tuple[Array | None, Array]:
         """S^-1 B', where it is kept, and B S^-1 B'."""

@@ -1,4 +1,7 @@
-"""One piece of the block's motion: between two switches the block is linear and its modes are in closed form."""
+"""One piece of the block's motion: between two switches the block is linear, in closed form.
+
+Where no corner slips, in its modes; where one slips the stiffness is not symmetric, and a power series is summed.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,17 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.events.block_model import BlockModel
+from fem_reference.events.block_model import LEFT, RIGHT, BlockModel, States
+from fem_reference.events.block_rows import Corner, Row, State
 from fem_reference.events.decimals import ZERO, Matrix, Vector, dot, eigen, small, split
-from fem_reference.events.oscillation import Oscillation
+from fem_reference.events.oscillation import Oscillation, Smooth
+from fem_reference.events.series import ANGLE, Series, Stepper, terms
 from fem_reference.problem.problem import Array
 
 GUARD = 15
 """Digits that a sum may lose before what is left of it counts as zero."""
-Closed = tuple[bool, bool]
+SPAN = 60
+"""Longest piece as an angle of its fastest mode [rad]; the sines of longer pieces would lose digits in floats."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +32,10 @@ class Modes:
     shapes: Matrix  # mode shapes over the unknowns, one a row
 
     @classmethod
-    def of(cls, model: BlockModel, closed: Closed) -> Modes:
+    def of(cls, model: BlockModel, states: States) -> Modes:
         """Modes of M^(-1/2) K M^(-1/2)."""
         roots = [m.sqrt() for m in model.mass]
-        K = model.stiffness(closed)
+        K = model.stiffness(states)
         values, vectors = eigen([[K[i][j] / (roots[i] * roots[j]) for j in range(6)] for i in range(6)])
         floor = small(GUARD) * max(values)
         squares = [value if value > floor else ZERO for value in values]
@@ -37,48 +43,75 @@ class Modes:
 
 
 @dataclass(frozen=True)
-class State:
-    """An instant of the motion."""
-
-    time: Decimal  # instant [s]
-    displacement: Vector  # unknowns (u, v, ux, uy, vx, vy) [m, -]
-    velocity: Vector  # their rates [m/s, 1/s]
-    closed: Closed  # which of the corners M and N are closed from now on
-    references: tuple[Decimal, Decimal]  # shear stretch at which each corner closed last [m]
-    released: Decimal  # energy of the shear springs lost by opening until now [J]
-
-
-@dataclass(frozen=True)
 class Piece:
     """The motion from a state on, as long as no corner switches."""
 
     model: BlockModel
-    modes: Modes
     state: State
+
+    @property
+    def longest(self) -> Decimal | None:
+        """Time for which the closed form keeps its digits [s]; None if it always does."""
+        raise NotImplementedError
+
+    def observe(self, row: Row) -> Smooth:
+        """A linear function of the unknowns or of their rates, over the time since the state."""
+        raise NotImplementedError
+
+    def after(self, s: Decimal) -> tuple[Vector, Vector]:
+        """Unknowns and their rates a time s after the state."""
+        raise NotImplementedError
+
+    def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
+        """A scale of time [s], frequencies, and for each row the coefficients of (s / scale)^k, cosines and sines."""
+        raise NotImplementedError
+
+    def corner(self, index: int) -> Corner:
+        """One of the corners."""
+        return Corner(self.model, self.state, index)
+
+    @property
+    def forces(self) -> tuple[Vector, Vector]:
+        """Forces F0 + F1 s that do not depend on the block."""
+        return self.model.forces(self.state.states, self.state.references, self.state.base)
+
+
+@dataclass(frozen=True)
+class ModalPiece(Piece):
+    """A piece in which no corner slips."""
+
+    modes: Modes
 
     @cached_property
     def coordinates(self) -> list[Oscillation]:
         """The modal coordinates q as functions of the time since the state."""
         mass = self.model.mass
-        F = self.model.force(self.state.closed, self.state.references)
+        F0, F1 = self.forces
         found = []
         for square, shape in zip(self.modes.squares, self.modes.shapes, strict=True):
             weighted = [m * x for m, x in zip(mass, shape, strict=True)]
             q, rate = dot(weighted, self.state.displacement), dot(weighted, self.state.velocity)
-            f = dot(shape, F)
+            f = dot(shape, F0)
             if square:
-                w = square.sqrt()
-                found.append(Oscillation((f / square, ZERO, ZERO), ((w, q - f / square, rate / w),)))
-            else:
+                w, drift = square.sqrt(), dot(shape, F1) / square
+                wave = w, q - f / square, (rate - drift) / w
+                found.append(Oscillation((f / square, drift, ZERO), (wave,)))
+            else:  # no spring holds a rigid mode, so that the base does not move it either
                 found.append(Oscillation((q, rate, f / 2), ()))
         return found
 
-    def observe(self, row: Vector, constant: Decimal = ZERO) -> Oscillation:
-        """A linear function of the unknowns, row x + constant, over the time since the state."""
-        c: Vector = [constant, ZERO, ZERO]
-        size, waves = abs(constant), []
+    @property
+    def longest(self) -> Decimal | None:
+        """Time for which sines keep their digits in floats [s]; None without modes."""
+        fastest = max(q.fastest for q in self.coordinates)
+        return SPAN / fastest if fastest else None
+
+    def observe(self, row: Row) -> Oscillation:
+        """A linear function of the unknowns over the time since the state."""
+        c: Vector = [row.constant, row.drift, ZERO]
+        size, waves = abs(row.constant), []
         for shape, q in zip(self.modes.shapes, self.coordinates, strict=True):
-            share = dot(row, shape)
+            share = dot(row.weights, shape)
             c = [old + share * new for old, new in zip(c, q.polynomial, strict=True)]
             size += abs(share * q.polynomial[0])
             waves += [(w, share * A, share * B) for w, A, B in q.waves]
@@ -87,9 +120,12 @@ class Piece:
         first = c[0] if abs(c[0]) > small(GUARD) * size else ZERO
         return Oscillation((first, c[1], c[2]), kept)
 
-    def gap(self, corner: int) -> Oscillation:
-        """Gap of a corner [m]."""
-        return self.observe(self.model.normal[corner], self.model.gap)
+    def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
+        """A scale of time of 1 s, frequencies, and for each row the coefficients of powers, cosines and sines."""
+        functions = [self.observe(row) for row in rows]
+        frequencies = sorted({w for f in functions for w, _, _ in f.waves})
+        coefficients = np.array([_coefficients(f, frequencies) for f in functions])
+        return 1.0, np.array([float(w) for w in frequencies]), coefficients
 
     def after(self, s: Decimal) -> tuple[Vector, Vector]:
         """Unknowns and their rates a time s after the state."""
@@ -101,33 +137,123 @@ class Piece:
         return x, rate
 
 
+@dataclass(frozen=True)
+class SlippingPiece(Piece):
+    """A piece in which a corner slips."""
+
+    stepper: Stepper
+
+    @cached_property
+    def longest(self) -> Decimal:
+        """Length of the series [s]."""
+        return ANGLE / Decimal(self.stepper.rate)
+
+    @cached_property
+    def coefficients(self) -> Matrix:
+        """Coefficients of the powers of the time since the state over `longest`."""
+        start = self.state.displacement, self.state.velocity
+        return self.stepper.coefficients(start, self.forces, self.longest, terms())
+
+    def observe(self, row: Row) -> Series:
+        """A linear function of the unknowns or of their rates, over the time since the state."""
+        weights = [(i, w) for i, w in enumerate(row.weights) if w]
+        c = [sum((w * x[i] for i, w in weights), ZERO) for x in self.coefficients]
+        if row.of_rates:
+            c = [k * x / self.longest for k, x in enumerate(c)][1:]
+        c[0] += row.constant
+        c[1] += row.drift * self.longest
+        return Series(self.longest, tuple(c))
+
+    def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
+        """The length of the series as scale of time [s], no frequencies, and the coefficients of the powers."""
+        coefficients = [[float(c) for c in self.observe(row).coefficients] for row in rows]
+        return float(self.longest), np.zeros(0), np.array(coefficients)
+
+    def after(self, s: Decimal) -> tuple[Vector, Vector]:
+        """Unknowns and their rates a time s after the state."""
+        rows = [Series(self.longest, tuple(column))(s) for column in zip(*self.coefficients, strict=True)]
+        return [value for value, _, _ in rows], [slope for _, slope, _ in rows]
+
+
+class Pieces:
+    """The pieces of one block; what a state of the corners needs is prepared once."""
+
+    def __init__(self, model: BlockModel) -> None:
+        self.model = model
+        self._modes: dict[States, Modes] = {}
+        self._steppers: dict[States, Stepper] = {}
+
+    def __call__(self, state: State) -> Piece:
+        """The piece that begins with a state."""
+        own = state.states
+        if LEFT in own or RIGHT in own:
+            return SlippingPiece(self.model, state, self.stepper(own))
+        if own not in self._modes:
+            self._modes[own] = Modes.of(self.model, own)
+        return ModalPiece(self.model, state, self._modes[own])
+
+    def stepper(self, states: States) -> Stepper:
+        """What the power series of a state of the corners needs."""
+        if states not in self._steppers:
+            self._steppers[states] = Stepper.of(self.model.mass, self.model.stiffness(states))
+        return self._steppers[states]
+
+
 class FloatPiece:
     """A piece in floating point, for many instants at once.
 
     Its coefficients are rounded after everything that cancels has been added up in decimal arithmetic.
     """
 
-    def __init__(self, piece: Piece) -> None:
-        model, state = piece.model, piece.state
+    def __init__(self, piece: Piece, before: FloatPiece | None) -> None:
+        state, corners = piece.state, [piece.corner(c) for c in (0, 1)]
         self.start = split(state.time)
         self.released = float(state.released)
-        self.closed = np.array(state.closed, dtype=float)
-        rows = [piece.observe(_unit(i)) for i in range(6)]
-        rows += [piece.gap(c) for c in (0, 1)]
-        rows += [piece.observe(model.shear[c], -state.references[c]) for c in (0, 1)]
-        frequencies = sorted({w for row in rows for w, _, _ in row.waves})
-        self.frequencies: Array = np.array([float(w) for w in frequencies])
-        self.coefficients: Array = np.array([_coefficients(row, frequencies) for row in rows])
+        self.states = np.array(state.states, dtype=float)
+        self.references = np.array([float(x) for x in state.references])
+        self.slipped = np.array([float(x) for x in state.slipped])
+        rows = [Row(_unit(i)) for i in range(6)]
+        rows += [corner.gap for corner in corners] + [corner.stretch for corner in corners]
+        rows += [corner.slide for corner in corners]
+        self.scale, self.frequencies, self.coefficients = piece.table(rows)
+        self.loss = self._loss(float(piece.model.ps))
+        if before is not None:
+            self.loss[0] = before.dissipated(np.array([self.start[0]]))[0]
 
     def values(self, times: Array) -> tuple[Array, Array]:
-        """Unknowns, gaps and shear stretches, each of shape (10, times), and their rates."""
+        """Unknowns, gaps, stretches s - r and slides, each of shape (12, times), and their rates."""
         s = (times - self.start[0]) - self.start[1]
         angle = np.outer(self.frequencies, s)
         w = self.frequencies[:, None]
-        one, zero = np.ones_like(s), np.zeros_like(s)
-        basis = np.vstack([one, s, s * s, np.cos(angle), np.sin(angle)])
-        rates = np.vstack([zero, one, 2 * s, -w * np.sin(angle), w * np.cos(angle)])
+        count = self.coefficients.shape[1] - 2 * len(self.frequencies)
+        powers = np.vander(s / self.scale, count, increasing=True).T
+        slopes = np.vstack([np.zeros_like(s), powers[:-1] * np.arange(1, count)[:, None] / self.scale])
+        basis = np.vstack([powers, np.cos(angle), np.sin(angle)])
+        rates = np.vstack([slopes, -w * np.sin(angle), w * np.cos(angle)])
         return self.coefficients @ basis, self.coefficients @ rates
+
+    def contacts(self, times: Array, values: Array) -> Array:
+        """States, movements of the references, and energies lost by opening and by friction, shape (6, times)."""
+        slipping = np.abs(self.states) == RIGHT
+        moved = slipping[:, None] * (values[10:12] - values[8:10] - self.references[:, None])
+        ones = np.ones_like(times)
+        states, slipped = np.outer(self.states, ones), self.slipped[:, None] + moved
+        return np.vstack([states, slipped, self.released * ones, self.dissipated(times)])
+
+    def dissipated(self, times: Array) -> Array:
+        """Energy lost by friction until some instants of the piece [J]."""
+        z = ((times - self.start[0]) - self.start[1]) / self.scale
+        return np.asarray(np.polynomial.polynomial.polyval(z, self.loss))
+
+    def _loss(self, ps: float) -> Array:
+        """Coefficients of the integral of -T r', T = -p_s (s - r), over (s / scale)^k; zero where no corner slips."""
+        total = np.zeros(2 * self.coefficients.shape[1])
+        for c in np.flatnonzero(np.abs(self.states) == RIGHT):
+            stretch, slide = self.coefficients[8 + c], self.coefficients[10 + c]
+            moved = (slide - stretch)[1:] * np.arange(1, len(slide))
+            power = np.convolve(ps * stretch, moved)
+            total[1 : len(power) + 1] += power / np.arange(1, len(power) + 1)
+        return total
 
 
 def _unit(i: int) -> Vector:

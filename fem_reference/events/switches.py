@@ -11,7 +11,7 @@ class Switch:
 
     time: float  # instant [s]
     corner: str  # ``"M"`` at (0, 0) or ``"N"`` at (a, 0) of a block, ``"base"`` of a bar
-    kind: str  # ``"opens"`` or ``"closes"``
+    kind: str  # ``"opens"``, ``"closes"``, and with friction ``"sticks"`` or ``"slips"``
 
 
 class NoContactStateError(ArithmeticError):

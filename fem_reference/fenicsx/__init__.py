@@ -8,14 +8,14 @@ reads one JSON object a line from standard input and answers each with one line 
     python3 fem_reference/fenicsx < requests.jsonl
     mpirun -n 2 python3 fem_reference/fenicsx < requests.jsonl
 
-A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness,
-shear_stiffness, pressure, eccentricity, traction, gravity, moved (displacements (x, y) of the base at t = 0, dt, ...
-or null), last (where the base comes to rest), degree, foundation, patch_width, elements and
-cells ("quadrilaterals" or "triangles"; or points and cells of a mesh file), alpha,
-delta, gg, step, start, steps, columns, law ("locked" or "unilateral", then gap, velocity, solve_limit and cut too). An
-answer holds outcome, time, columns, static (or pressed, whether the base was, for each step), unknowns, nonzeros,
-factorisations, solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes), version; or "refused" (bad
-input), "inapplicable" or "raised" with a sentence.
+A request holds, in SI units: vertices, base, top, density, young, poisson, hypothesis, stiffness, shear_stiffness,
+pressure, eccentricity, traction, gravity, slope (deg), moved (displacements (x, y) of the base at t = 0, dt, ... or
+null), last (where the base comes to rest), degree, foundation, patch_width, elements and cells ("quadrilaterals" or
+"triangles"; or points and cells of a mesh file), alpha, delta, gg, step, start, steps, columns, law ("locked" or
+"unilateral", then gap, velocity, friction (deg or null), cohesion, record (instants, x and y of the base, or null),
+solve_limit and cut too). An answer holds outcome, time, columns, static (or pressed, whether the base was, for each
+step), unknowns, nonzeros, factorisations, solves, setup_seconds, stepping_seconds, memory (peak of all ranks, bytes),
+version; or "refused" (bad input), "inapplicable" or "raised" with a sentence.
 
 Runs with dolfinx 0.5 and with the interface of 0.7 to 0.10 (basix elements, another order of arguments).
 """

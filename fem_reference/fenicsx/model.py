@@ -186,9 +186,10 @@ class Block:
         self.M = assembled(ufl.dot(u, v) * dx)
         self.M.scale(r["density"])
         self.K = assembled(elastic + springs, self._corner_springs if r["foundation"] == "corner" else None)
-        down, right, weight = (constant(mesh, r[name]) for name in ("pressure", "traction", "gravity"))
-        rho = constant(mesh, r["density"])
-        load = right * v[0] * ds((TOP, PRESSED)) - down * v[1] * ds(PRESSED) - rho * weight * v[1] * dx
+        down, right = (constant(mesh, r[name]) for name in ("pressure", "traction"))
+        angle = np.radians(r["slope"])
+        weight = constant(mesh, r["density"] * r["gravity"] * np.array([np.sin(angle), -np.cos(angle)]))
+        load = right * v[0] * ds((TOP, PRESSED)) - down * v[1] * ds(PRESSED) + ufl.dot(weight, v) * dx
         self.F = self._vector(load)
         self.pushes = [self._push(kn, kt, n, t, v, np.eye(2)[i]) for i in (0, 1)]
         self.pressure = self._vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))

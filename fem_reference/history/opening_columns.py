@@ -10,7 +10,7 @@ from fem_reference.contact.points import ContactModel
 from fem_reference.contact.stepper import ContactState
 from fem_reference.problem.problem import Array
 
-LOSSES = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+LOSSES = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
 COUNTS = ("solves", "cuts")
 UNILATERAL_COLUMNS = (
     "displacement",
@@ -22,6 +22,7 @@ UNILATERAL_COLUMNS = (
     "open_share",
     "largest_gap",
     "largest_penetration",
+    "largest_slide",
     "kinetic_energy",
     "strain_energy",
     "spring_energy",
@@ -31,21 +32,20 @@ UNILATERAL_COLUMNS = (
 )
 """Columns of a history, one row a step: v at the centroid [m]; sum of N over the base's length [Pa]; u and rotation at
 the centroid [m, 1]; velocity of the centre of mass upwards [m/s]; sum of T over the base's length [Pa]; share of the
-base with a positive gap [-]; largest gap and penetration [m]; energies [J], of the loads -F'D; energies lost from t = 0
-on [J], negative where gained; solutions of the open-close iteration and cuts of the step [-]."""
+base with a positive gap [-]; largest gap and penetration, and largest way that a point has slid while closed, there
+less back [m]; energies [J], of the loads -F'D less the work of a moving base; energies lost from t = 0 on [J], negative
+where gained, by friction never; solutions of the open-close iteration and cuts of the step [-]."""
 
 Observer = Callable[[ContactState], float]
 
 
-def observers(model: ContactModel, length: float, columns: tuple[str, ...]) -> list[Observer]:
+def observers(model: ContactModel, columns: tuple[str, ...]) -> list[Observer]:
     """Functions of a state, one for each column but `LOSSES` and `COUNTS`.
 
     Parameters
     ----------
     model
         The block on its points.
-    length
-        Length of the base [m].
     columns
         Names among `UNILATERAL_COLUMNS`.
 
@@ -57,12 +57,12 @@ def observers(model: ContactModel, length: float, columns: tuple[str, ...]) -> l
     for name in columns:
         if name not in UNILATERAL_COLUMNS:
             raise ValueError(f"columns: must be among {UNILATERAL_COLUMNS}, got {name!r}")
-    known = _known(model, length)
+    known = _known(model)
     return [known[name] for name in columns if name in known]
 
 
-def _known(model: ContactModel, length: float) -> dict[str, Observer]:
-    seen, share, up = model.observers, model.share, model.upwards
+def _known(model: ContactModel) -> dict[str, Observer]:
+    seen, share, up, length = model.observers, model.share, model.upwards, model.length
     momentum = model.M @ up
     mass = float(up @ momentum)
     return {
@@ -75,10 +75,11 @@ def _known(model: ContactModel, length: float) -> dict[str, Observer]:
         "open_share": lambda s: float(share @ (s.gap > 0)),
         "largest_gap": lambda s: float(np.max(s.gap, initial=0.0)),
         "largest_penetration": lambda s: float(np.max(-s.gap, initial=0.0)),
+        "largest_slide": lambda s: float(np.max(np.abs(s.slid), initial=0.0)),
         "kinetic_energy": lambda s: kinetic(model, s),
         "strain_energy": lambda s: float(s.motion.D @ (model.K @ s.motion.D) / 2),
         "spring_energy": lambda s: float(springs(model, s).sum()),
-        "load_energy": lambda s: float(-model.F @ s.motion.D),
+        "load_energy": lambda s: float(-model.F @ s.motion.D) - s.given,
     }
 
 

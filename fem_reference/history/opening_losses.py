@@ -7,8 +7,9 @@ d( ) the change over the step, the sum E of the energies of motion, strain, spri
          + sum over the points of dU + dw [(1 - delta) N0 + delta N1] + ds [(1 - delta) T0 + delta T1]
 
 A start with A0 = 0 is out of balance by F0 = F - K D0 + B' lambda0, which adds -(1 - delta) dD' F0 to the first step.
-What a point adds while it keeps its state belongs to the scheme's own loss, what it adds while it opens or closes is
-the loss by switching, and gg takes (1 - gg^2) of the energy of motion. With implicit contact N1 and T1 count alone.
+-T1 dr of the points that slide, whose references move by dr against T1, is the loss by friction. What a point adds
+beside it while it stays closed belongs to the scheme's own loss, what it adds while it opens or closes is the loss by
+switching, and gg takes (1 - gg^2) of the energy of motion. With implicit contact N1 and T1 count alone.
 """
 
 from __future__ import annotations
@@ -26,13 +27,14 @@ class Losses:
 
     def __init__(self, model: ContactModel, balanced: bool, rule: str = "newmark") -> None:
         self.model, self._balanced, self._implicit = model, balanced, rule == "implicit"
-        self.values = np.zeros(3)
+        self.values = np.zeros(4)
 
     def add(self, scheme: Scheme, before: ContactState, after: ContactState) -> None:
         """Add the losses of an accepted step, whose scheme holds its own length and gg."""
-        kept, switched = self._points(scheme, before, after)
+        friction = -after.shear * (after.slid - before.slid)
+        kept, switched = self._points(scheme, before, after, friction)
         damped = (1 - scheme.gg**2) * kinetic(self.model, before)
-        self.values += (self._block(scheme, before, after) + kept, damped, switched)
+        self.values += (self._block(scheme, before, after) + kept, damped, switched, float(friction.sum()))
 
     def _block(self, scheme: Scheme, before: ContactState, after: ContactState) -> float:
         """Loss of the scheme in the block itself."""
@@ -54,12 +56,14 @@ class Losses:
         forces: Array = self.model.normal.T @ state.normal + self.model.tangential.T @ state.shear
         return forces
 
-    def _points(self, scheme: Scheme, before: ContactState, after: ContactState) -> tuple[float, float]:
-        """Losses of the points that keep their state and of those that change it."""
+    def _points(
+        self, scheme: Scheme, before: ContactState, after: ContactState, friction: Array
+    ) -> tuple[float, float]:
+        """Losses beside friction of the points that stay open or closed and of those that change it."""
         late = 1.0 if self._implicit else scheme.delta
         early = 1 - late
         work = (after.gap - before.gap) * (early * before.normal + late * after.normal)
         work += (after.slip - before.slip) * (early * before.shear + late * after.shear)
-        lost = springs(self.model, before) - springs(self.model, after) - work
+        lost = springs(self.model, before) - springs(self.model, after) - work - friction
         switched = before.closed != after.closed
         return float(lost[~switched].sum()), float(lost[switched].sum())

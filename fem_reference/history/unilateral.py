@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fem_reference.contact.points import ContactModel, build
+from fem_reference.contact.shear import Friction
 from fem_reference.contact.stepper import ContactState, ContactStepper
 from fem_reference.history.opening_columns import COUNTS, LOSSES, UNILATERAL_COLUMNS, Observer, observers
 from fem_reference.history.opening_losses import Losses
@@ -17,6 +18,8 @@ from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
 COMPLETED, OVERFLOW = "completed", "overflow"
+POINTWISE = ("normal", "gap", "shear", "states", "slid")
+"""What is kept of every point where it is asked for."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +39,11 @@ class Unilateral:
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
     rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
+    friction: Friction | None = None  # limit of the forces of glued points; none if absent
 
     def __post_init__(self) -> None:
         for name, rule, good in (
+            ("friction", "goes with shear = 'glued' only", self.friction is None or self.shear == "glued"),
             ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
             ("velocity", "must be a finite number", math.isfinite(self.velocity)),
             ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
@@ -68,6 +73,9 @@ class UnilateralResult:
     stepping_seconds: float  # time for the steps [s]
     normal: Array | None = None  # normal force of each point at each step [N], shape (rows, points), where asked for
     gap: Array | None = None  # gap of each point at each step [m], shape (rows, points), where asked for
+    shear: Array | None = None  # tangential force of each point at each step [N], where asked for
+    states: Array | None = None  # 0 open, 1 held, 2 or -2 sliding towards +x or -x, of each point, where asked for
+    slid: Array | None = None  # way that each point has slid while closed [m], where asked for
 
 
 def solve_unilateral(
@@ -84,7 +92,7 @@ def solve_unilateral(
     Parameters
     ----------
     problem, scheme
-        What is solved and how it is integrated. The base may not move.
+        What is solved and how it is integrated. A base that moves begins where the block stands.
     steps
         Number of steps, at least 1.
     contact
@@ -92,28 +100,27 @@ def solve_unilateral(
     full
         Solve the whole block where one column of elements would do.
     every_point
-        Keep the forces and gaps of every point.
+        Keep forces, gap, state and sliding of every point.
     columns
         Columns of the history, among `fem_reference.history.opening_columns.UNILATERAL_COLUMNS`.
 
     Raises
     ------
     ValueError
-        If the block cannot be meshed, its base moves, `steps` is below one or a column is unknown.
+        If the block cannot be meshed, its base is displaced at t = 0, `steps` is below one or a column is unknown.
     """
     if steps < 1:
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
     contact = Unilateral() if contact is None else contact
     began = time.perf_counter()
     model = build(problem, full)
-    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule)
+    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule, contact.friction)
     state = stepper.start(contact.gap, contact.velocity)
     ready = time.perf_counter()
-    watched = _Watched(stepper, problem.base_length, tuple(dict.fromkeys(columns)), every_point)
+    watched = _Watched(stepper, tuple(dict.fromkeys(columns)), every_point)
     rows, outcome = _run(stepper, state, steps, contact, watched)
     ended = time.perf_counter()
     observed = np.array([row.observed for row in rows]).reshape(len(rows), len(watched.columns)).T
-    kept = (len(rows), len(model.share))
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
         columns=dict(zip(watched.columns, observed, strict=True)),
@@ -126,9 +133,16 @@ def solve_unilateral(
         notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
-        normal=np.array([row.normal for row in rows]).reshape(kept) if every_point else None,
-        gap=np.array([row.gap for row in rows]).reshape(kept) if every_point else None,
+        **_of_points(rows, len(model.share) if every_point else 0),
     )
+
+
+def _of_points(rows: list[_Row], points: int) -> dict[str, Array]:
+    """What is kept of every point, shape (rows, points) each."""
+    if not points:
+        return {}
+    kept = [[getattr(row.state, name) for row in rows] for name in POINTWISE]
+    return {name: np.array(values, float).reshape(-1, points) for name, values in zip(POINTWISE, kept, strict=True)}
 
 
 def _saving(model: ContactModel) -> tuple[str, ...]:
@@ -151,15 +165,14 @@ def _ramp(problem: Problem) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class _Row:
     observed: list[float]
-    normal: Array | None
-    gap: Array | None
+    state: ContactState | None  # where every point is kept
 
 
 class _Watched:
     """What is kept of every step."""
 
-    def __init__(self, stepper: ContactStepper, length: float, asked: tuple[str, ...], every_point: bool) -> None:
-        self.observers: list[Observer] = observers(stepper.model, length, asked)
+    def __init__(self, stepper: ContactStepper, asked: tuple[str, ...], every_point: bool) -> None:
+        self.observers: list[Observer] = observers(stepper.model, asked)
         self.counted = [name for name in COUNTS if name in asked]
         lost = any(name in asked for name in LOSSES)
         self.losses = Losses(stepper.model, stepper.scheme.start == "consistent", stepper.rule) if lost else None
@@ -172,7 +185,7 @@ class _Watched:
         observed = [watch(state) for watch in self.observers]
         observed += [] if self.losses is None else self.losses.values.tolist()
         observed += [float(getattr(step, name)) for name in self.counted]
-        return _Row(observed, *((state.normal, state.gap) if self.every_point else (None, None)))
+        return _Row(observed, state if self.every_point else None)
 
 
 def _run(

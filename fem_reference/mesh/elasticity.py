@@ -5,7 +5,7 @@ With the Lame parameter lam of the plane problem and the shear modulus G::
     mass       rho (u, v)
     stiffness  lam (div u, div v) + 2 G (eps(u), eps(v))
     springs    sum of weight_n (n.u)(n.v) + weight_t (t.u)(t.v) over the points of a rule on the base
-    load       -q (1, v_y) + tau (1, v_x) on the top, -rho g (1, v_y) in the block
+    load       -q (1, v_y) + tau (1, v_x) on the top, rho g (sin b (1, v_x) - cos b (1, v_y)) in the block
 
 The foundation, distributed, over patches or at the corners, is a quadrature rule on the base; its
 intervals end where a patch ends, so that it is integrated exactly on any mesh.
@@ -226,7 +226,7 @@ def load(basis: Basis, problem: Problem, top: NDArray[np.int64], M: csr_array) -
     if problem.traction != 0:
         F = F + problem.traction * edge_load(basis, problem, top, (-np.inf, np.inf))[0]
     if problem.gravity != 0:
-        F = F - problem.gravity * (M @ translation(basis)[:, 1])
+        F = F + M @ (translation(basis) @ np.array(problem.pull))
     return F
 
 

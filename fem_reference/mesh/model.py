@@ -158,7 +158,7 @@ def column(problem: Problem) -> Model:
     }
     M, K = (csr_array(block_diag(pair)) for pair in ((B, B), (K_u, K_v)))
     unit = problem.unit
-    F_v = -unit.pressure * width * top - unit.gravity * (B @ np.ones(basis.N))
+    F_v = -unit.pressure * width * top + unit.pull[1] * (B @ np.ones(basis.N))
     force, pressure = np.zeros((2 * basis.N, 2)), np.zeros(2)
     if problem.motion is not None:
         force[basis.N :, 1] = 2 * problem.stiffness * base

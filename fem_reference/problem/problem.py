@@ -68,8 +68,9 @@ class Problem:
     cells: str = "quadrilaterals"  # or "triangles", each cut from lower left to upper right, of a structured mesh
     eccentricity: float = 0.0  # shift towards +x of the middle of the pressed part of the top, L - 2 |e| long [m]
     traction: float = 0.0  # traction towards +x on the whole top edge [Pa]
-    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
+    gravity: float = 0.0  # acceleration of gravity g [m/s2], downwards where there is no slope
     motion: Motion | None = None  # motion of the fixed side of the foundation
+    slope: float = 0.0  # angle b of the incline that the block stands on [deg]: gravity is g (sin b, -cos b) in x, y
 
     def __post_init__(self) -> None:
         self._check_polygon()
@@ -102,8 +103,9 @@ class Problem:
         _require(self.poisson > -1 and below, "poisson", rule, self.poisson)
 
     def _check_loads(self) -> None:
-        for field in ("pressure", "eccentricity", "traction", "gravity"):
+        for field in ("pressure", "eccentricity", "traction", "gravity", "slope"):
             _finite(field, getattr(self, field))
+        _require(abs(self.slope) < 90, "slope", "must be between -90 and 90", self.slope)
         inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
         rule = f"must be below half the top edge, {self.top_length / 2:g}"
         _require(inside, "eccentricity", rule, self.eccentricity)
@@ -174,9 +176,15 @@ class Problem:
         return replace(self, pressure=self.pressure / size, traction=self.traction / size, gravity=self.gravity / size)
 
     @property
+    def pull(self) -> tuple[float, float]:
+        """Acceleration of gravity in x and y, g (sin b, -cos b) [m/s2]."""
+        angle = math.radians(self.slope)
+        return self.gravity * math.sin(angle), -self.gravity * math.cos(angle)
+
+    @property
     def vertical(self) -> bool:
         """Whether all loads are uniform in x and act along y, so that the response may be symmetric."""
-        level = self.eccentricity == 0 and self.traction == 0
+        level = self.eccentricity == 0 and self.traction == 0 and self.pull[0] == 0
         return level and not (self.motion is not None and self.motion.sideways)
 
     @cached_property

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from conftest import typed
 
+from validation.cli.printing.listing import in_columns
 from validation.metrics.catalogue import CATALOGUE, KIND, METRICS, Metric
 from validation.scenes.scene import load_scene, scene_names
 from validation.solvers import registry
@@ -12,6 +13,10 @@ from validation.solvers.registry import get_solver, solver_names
 from validation.studies.catalogue import STUDIES, get_study
 
 PAGE = Path(__file__).parents[2] / "docs" / "metrics.md"
+
+
+def listed_plain() -> str:
+    return typed("list").stdout
 
 
 def listed(word: str) -> list[str]:
@@ -24,10 +29,31 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
     heads, *lines = listed("metrics")
     assert heads.split() == ["metric", "unit", "needs", "meaning"]
     starts = [heads.index(word) for word in heads.split()]
-    assert len(lines) == len(METRICS)
-    for line, metric in zip(lines, CATALOGUE.values(), strict=True):
+    shown = [line for line in lines if line]
+    assert len(shown) == len(METRICS)
+    found = {}
+    for line in shown:
         cells = [line[a:b].strip() for a, b in zip(starts, [*starts[1:], None], strict=True)]
-        assert cells == [metric.id, metric.unit, ", ".join(sorted(metric.needs)), metric.says]
+        found[cells[0]] = cells[1:]
+    for metric in CATALOGUE.values():
+        assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
+
+
+def test_metrics_stand_in_groups_one_for_each_first_part() -> None:
+    for word in ("metrics", None):
+        text = "\n".join(listed(word) if word else listed_plain().partition("metrics\n")[2].splitlines()[:-2])
+        groups = [[line.split()[0].partition(".")[0] for line in group.splitlines()] for group in text.split("\n\n")]
+        names = [set(group) - {"metric"} for group in groups]
+        assert all(len(name) == 1 for name in names) and len(set.union(*names)) == len(names) > 5
+
+
+def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> None:
+    lines = [("name", "meaning"), ("a" * 10, "word " * 30), (), ("b", "short")]
+    assert in_columns(lines).splitlines()[1] == "a" * 10 + "  " + ("word " * 30).strip()
+    beside = in_columns(lines, 60, "  ").splitlines()
+    assert max(map(len, beside)) <= 60 and beside[2].startswith(" " * 14 + "word")
+    below = in_columns(lines, 40).splitlines()
+    assert max(map(len, below)) <= 40 and below[2].startswith("    word")
 
 
 def test_studies_scenes_and_solvers_have_a_line_each() -> None:
@@ -48,7 +74,7 @@ def test_studies_scenes_and_solvers_have_a_line_each() -> None:
 def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "entry_points", lambda: {"theirs": "their_package.adapter:solve"})
     last = listed("solvers")[-1].split()
-    assert (last[0], last[1], last[-1]) == ("theirs", "other", "their_package.adapter:solve")
+    assert last == ["theirs", "other", "their_package.adapter:solve", "decides", "itself"]
 
 
 def test_the_plain_list_names_all_four() -> None:

@@ -228,6 +228,7 @@ def test_a_history_of_finite_elements_is_named_so() -> None:
     assert answer.departure is None and answer.causes == []
 
 
+@pytest.mark.long
 def test_a_polygon_is_compared_with_the_linear_models() -> None:
     corners = [[0.0, 0.0], [2.0, 0.0], [1.7, 1.5], [0.2, 1.5]]
     s = load_scene("figures-3-4").with_values(
@@ -266,3 +267,19 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     missing = typed("compare", "figures-3-4", tmp_path / "none.csv", "--set", "time.step=0.002")
     assert missing.returncode == 2
     assert missing.stderr.count("\n") == 1 and "cannot be read" in missing.stderr
+
+
+@pytest.mark.parametrize(
+    ("changes", "cause", "factor"),
+    [
+        ({"block.young": 0.9e9}, "young-factor", 0.9),
+        pytest.param({"contact.stiffness": 5e8}, "springs-factor", 0.5, marks=pytest.mark.long),
+    ],
+)
+def test_a_slip_in_finite_elements_is_that_slip(changes: dict[str, float], cause: str, factor: float) -> None:
+    """A softer spring is near a softer block: on the scene's own mesh the right one leaves nothing."""
+    s = scene(time__steps=60).with_values({"fem.elements": 8, "fem.degree": 1, "block.poisson": 0.25})
+    run_ = solve(s.with_values(changes), "fem")
+    answer = compare(s, Foreign(run_.time, run_.displacement, run_.contact_pressure))
+    assert answer.causes == [cause]
+    assert answer.values[cause] == pytest.approx(factor, rel=1e-4)

@@ -216,12 +216,12 @@ def failing(times):
     """Return an `advance` whose contacts have no state in the first calls, and the states it was given."""
     given = []
 
-    def stubborn(law, length, state, limit):
+    def stubborn(law, length, state, limit, carried=None):
         given.append((length.ratio, state, [list(part) for part in state[:3]], state.corners))
         if len(given) <= times:
-            advance(law, length, state, limit)
+            advance(law, length, state, limit, carried)
             return None, Iteration(None, limit, NONE)
-        return advance(law, length, state, limit)
+        return advance(law, length, state, limit, carried)
 
     return stubborn, given
 

@@ -64,9 +64,9 @@ def cutting():
     """The first trials fail: the step is repeated, shorter, from the state that was saved."""
     real, calls = unilateral.advance, []
 
-    def stubborn(law, length, state, limit):
+    def stubborn(law, length, state, limit, carried=None):
         calls.append(([*map(list, state[:3])], state.corners))
-        after, found = real(law, length, state, limit)
+        after, found = real(law, length, state, limit, carried)
         return (None, iteration.Iteration(None, limit, iteration.NONE)) if len(calls) <= 2 else (after, found)
 
     unilateral.advance = stubborn
@@ -161,8 +161,8 @@ def velocity_twice(monkeypatch):
     """A step that is repeated begins with the velocity of the failed one."""
     real = unilateral.advance
 
-    def faulty(law, length, state, limit):
-        after, found = real(law, length, state, limit)
+    def faulty(law, length, state, limit, carried=None):
+        after, found = real(law, length, state, limit, carried)
         if length.ratio == 1 and after is not None:
             state.P[:] = after.P
         return after, found
@@ -172,7 +172,7 @@ def velocity_twice(monkeypatch):
 
 def kept_shear(monkeypatch):
     """A corner that opens goes on pulling along the base."""
-    real = step.open_close
+    real = step.find_states
 
     def faulty(law, before, free, limit):
         found = real(law, before, free, limit)
@@ -184,18 +184,18 @@ def kept_shear(monkeypatch):
         )
         return found._replace(corners=found.corners._replace(shear=shear))
 
-    monkeypatch.setattr(step, "open_close", faulty)
+    monkeypatch.setattr(step, "find_states", faulty)
 
 
 def incremental_gap(monkeypatch):
     """A force is the sum of p times increments: a corner that closes is pressed by the whole step's approach."""
-    real = step.open_close
+    real = step.find_states
 
     def faulty(law, before, free, limit):
         start = [0.0 if shut else w for shut, w in zip(before.closed, before.gap, strict=True)]
         return real(law, before, free._replace(gap=[w - w0 for w, w0 in zip(free.gap, start, strict=True)]), limit)
 
-    monkeypatch.setattr(step, "open_close", faulty)
+    monkeypatch.setattr(step, "find_states", faulty)
 
 
 def remembered_tension(monkeypatch):
@@ -331,4 +331,4 @@ def test_a_known_slip_is_noticed(monkeypatch, fault):
 
 
 def test_the_corners_of_the_faults_are_those_of_the_package():
-    assert Corners._fields == ("closed", "gap", "stretch", "reference", "normal", "shear")
+    assert Corners._fields == ("closed", "gap", "stretch", "reference", "normal", "shear", "state", "slipped")

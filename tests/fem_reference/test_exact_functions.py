@@ -5,6 +5,7 @@ from decimal import Decimal, localcontext
 import mpmath
 import numpy as np
 import pytest
+from conftest import thinned
 
 from fem_reference.events.decimals import cos_sin, dot, eigen, split, working
 from fem_reference.events.exponential import Exponential
@@ -58,7 +59,7 @@ def first_fall(values: np.ndarray, grid: np.ndarray) -> float | None:
     return float(grid[below[0]]) if len(below) else None
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", thinned(range(40), 10))
 def test_the_first_fall_of_an_oscillation(seed: int) -> None:
     rng = np.random.default_rng(seed)
     waves = [(rng.uniform(0.5, 20), rng.normal(), rng.normal()) for _ in range(3)]
@@ -76,7 +77,7 @@ def test_the_first_fall_of_an_oscillation(seed: int) -> None:
         assert 0 <= float(found) - expected <= grid[1]
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", thinned(range(40), 10))
 def test_the_first_fall_of_an_exponential(seed: int) -> None:
     rng = np.random.default_rng(100 + seed)
     kappa, count = rng.uniform(0.3, 30), rng.integers(1, 9)

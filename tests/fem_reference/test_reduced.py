@@ -72,7 +72,7 @@ def test_no_scene_is_worse_than_it_says():
 RATIOS, SCHEMES = [1e-3, 1.0, 1e4, 1e8, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
 
 
-@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 3))
+@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 7))
 def test_nine_digits_whatever_the_springs(ratio, scheme):
     from validation import load_scene
     from validation import solve as run_scene

@@ -8,7 +8,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import Motion, Scheme, Unilateral, assemble, solve, solve_unilateral
+from fem_reference import Friction, Scheme, Unilateral, assemble, solve, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
 from fem_reference.events.bar_model import BarProblem
 
@@ -295,6 +295,8 @@ def test_bad_requests_are_refused_by_name():
         solve_unilateral(make(elements=2), CONSTANT, 1, Unilateral(rule="implicit"))
     with pytest.raises(ValueError, match=r"^steps: "):
         solve_unilateral(make(elements=2), CONSTANT, 0)
-    moving = replace(make(elements=2), motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))
-    with pytest.raises(ValueError, match=r"^motion: "):
-        solve_unilateral(moving, CONSTANT, 1)
+    with pytest.raises(ValueError, match=r"^friction: goes with shear"):
+        Unilateral(friction=Friction(30.0))
+    for angle, cohesion, field in ((-1.0, 0.0, "friction"), (90.0, 0.0, "friction"), (30.0, -1.0, "cohesion")):
+        with pytest.raises(ValueError, match=f"^{field}: "):
+            Friction(angle, cohesion)

@@ -123,7 +123,7 @@ def test_the_energies_of_a_base_that_stays_closed_add_up_to_nothing():
     assert np.abs(energies.sum(axis=0)).max() <= 1e-12 * np.abs(energies).max()
 
 
-LOSSES = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+LOSSES = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
 
 
 @pytest.mark.parametrize(

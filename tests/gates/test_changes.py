@@ -129,6 +129,7 @@ def test_a_pack_is_complete(pack: Path) -> None:
     assert all(f".{name}`" in readme for name in named), "every metric of a band is explained"
 
 
+@pytest.mark.long
 def test_scenes_of_a_pack_give_its_histories(pack: Path) -> None:
     for path in sorted((pack / "scenes").glob("*.toml")):
         history = solve(load_scene(path), "dda").history

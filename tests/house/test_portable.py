@@ -30,6 +30,7 @@ def test_the_lowest_versions_are_those_that_are_declared(portable: ModuleType) -
     assert any(text.startswith("numpy>=") for text in newest)
 
 
+@pytest.mark.long
 def test_the_rounds_reach_every_kernel_version_and_the_wheel(portable: ModuleType, tmp_path: Path) -> None:
     names = [one.name for one in (*portable.versions(False, tmp_path), *portable.wheel(False, tmp_path))]
     assert names[0].startswith("lowest versions") and names[1].startswith("newest versions") and "wheel" in names[-1]

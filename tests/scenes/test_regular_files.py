@@ -40,7 +40,7 @@ def pipe(tmp_path: Path) -> Path:
             ("solve {scene} --set load.base_motion={pipe}", "load: base_motion: "),
             ("solve {scene} --solver fem --set fem.mesh={pipe}", "fem: mesh: "),
         ],
-        2,
+        6,
     ),
 )
 def test_a_pipe_is_refused_and_not_waited_for(command: str, field: str, pipe: Path, scene_file: Path) -> None:

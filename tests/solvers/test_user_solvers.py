@@ -98,6 +98,7 @@ def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
     assert sorted(seen) == ["own dda", "own my_solver:solve", "own my_solver:solve"]
 
 
+@pytest.mark.long
 def test_an_entry_point_is_a_name_everywhere(scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "site/my_package-1.0.dist-info"
     package.mkdir(parents=True)

@@ -70,6 +70,7 @@ def test_orders_carry_their_sign():
     assert order(sizes, [1 / s for s in sizes]) == pytest.approx(-1)
 
 
+@pytest.mark.long
 def test_front_and_cheapest(results):
     assert front([(1, 5), (2, 6), (3, 1), (2, 2), (4, 1)]) == [(1, 5), (2, 2), (3, 1)]
     found = points(results, results.manifest("work-precision"), "work-average")

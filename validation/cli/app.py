@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
 SLOW = 2.0  # seconds after which progress is shown
 app: typer.Typer = typer.Typer(
-    add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
@@ -58,6 +57,23 @@ BaselineOption = Annotated[
 RESULTS: Path = Path("reports/results")
 
 
+def known_scenes(incomplete: str) -> list[str]:
+    """Return the built-in scenes that a shell may complete a word to."""
+    from validation.scenes.scene import scene_names
+
+    return [name for name in scene_names() if name.startswith(incomplete)]
+
+
+def known_targets(incomplete: str) -> list[str]:
+    """Return the studies and built-in scenes that a shell may complete a word to."""
+    from validation.studies.catalogue import STUDIES
+
+    return [name for name in (*STUDIES, "all") if name.startswith(incomplete)] + known_scenes(incomplete)
+
+
+SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.", autocompletion=known_scenes)]
+
+
 def one_case(source: str, assignments: list[str] | None) -> Scene:
     """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
     from validation.errors import InputError
@@ -73,8 +89,8 @@ def one_case(source: str, assignments: list[str] | None) -> Scene:
 
 
 @contextmanager
-def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
-    """Yield a callback that shows a progress bar once the work has taken two seconds."""
+def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -90,7 +106,7 @@ def _progress(title: str) -> Iterator[Callable[[int, int, str], None]]:
     task = bar.add_task(title, label="")
 
     def show(done: int, total: int, label: str) -> None:
-        if time.monotonic() - start > SLOW and not bar.live.is_started:
+        if shown and time.monotonic() - start > SLOW and not bar.live.is_started:
             bar.start()
         bar.update(task, completed=done, total=total, label=label)
 

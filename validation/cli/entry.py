@@ -7,14 +7,25 @@ from collections.abc import Callable
 
 import typer
 
-from validation.cli import compare, contact, damping, report, run, verdicts, waves, work
+from validation.cli import compare, contact, damping, gallery, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
-from validation.cli.output import prepare, silence
+from validation.cli.printing.output import prepare, silence
 from validation.cli.signals import caught, end
 from validation.errors import InputError
 from validation.runs.text import printable
 
-COMMANDS = (run, report, damping, contact, compare, verdicts, waves, work)  # importing them declares their commands
+COMMANDS = (
+    run,
+    show,
+    report,
+    gallery,
+    damping,
+    contact,
+    compare,
+    verdicts,
+    waves,
+    work,
+)  # importing them declares their commands
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 

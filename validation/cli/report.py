@@ -35,7 +35,7 @@ def figures(
 ) -> None:
     """Write a study's figures as SVG and PNG.
 
-    Example: [bold]dda-validate figures core --out figures[/bold]
+    Example: [bold]dda-validate run figures-3-4 && dda-validate figures figures-3-4 --out figures[/bold]
     """
     from validation.report.book import figures as write_figures
     from validation.runs.results import Results

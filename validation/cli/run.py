@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
+import time
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,12 +15,15 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from validation.cli.printing.answer import Ran
+    from validation.engine.measured import Judged
     from validation.gates.gate import Verdict
-    from validation.runs.records import Judged
+    from validation.runs.records import Judged as Kept
     from validation.runs.results import Results
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Solver
+    from validation.studies.declaration import Study
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -28,12 +34,16 @@ from validation.cli.app import (
     FullOption,
     RanksOption,
     ResultsOption,
+    SceneArgument,
     SetOption,
     SummaryOption,
     _progress,
     app,
+    known_targets,
     one_case,
 )
+
+FEW = 12  # gates of a scene that are shown one by one unasked
 
 
 @app.command("list")
@@ -42,29 +52,22 @@ def list_command(
         str | None, typer.Argument(help="metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
     ] = None,
 ) -> None:
-    """List studies, built-in scenes, solvers and metrics, or one of the four with units, needs and descriptions.
+    """List studies, built-in scenes, solvers and metrics, or one of the four in full.
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
-    from validation.cli.listing import LISTS, in_columns
+    from validation.cli.printing.listing import LISTS, in_columns, short
+    from validation.cli.printing.output import terminal_width
     from validation.errors import InputError
-    from validation.metrics.catalogue import METRICS
-    from validation.scenes.scene import load_scene, scene_names
-    from validation.solvers.registry import solver_names
-    from validation.studies.catalogue import STUDIES, get_study
 
     if what is not None and what not in LISTS:
         raise InputError(f"list: must be one of {', '.join(sorted(LISTS))}, got {what!r}")
     if what is not None:
-        typer.echo(in_columns(LISTS[what]()))
+        typer.echo(in_columns(LISTS[what](), terminal_width()))
         return
-    typer.echo("studies")
-    for name in STUDIES:
-        typer.echo(f"  {name:<18} {get_study(name).title}")
-    typer.echo("scenes")
-    for name in scene_names():
-        typer.echo(f"  {name:<18} {load_scene(name).title}")
-    typer.echo(f"solvers\n  {', '.join(solver_names())}\nmetrics\n  {', '.join(METRICS)}")
+    for title, lines in short().items():
+        typer.echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
+    typer.echo("dda-validate list NAME shows one of the four in full, dda-validate show SCENE a scene and its numbers")
 
 
 @app.command()
@@ -72,7 +75,9 @@ def run(
     targets: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Studies, built-in scenes or scene files (default: core).", metavar="[STUDY|SCENE|FILE]..."
+            help="Studies, built-in scenes or scene files (default: core; all: every study).",
+            metavar="[STUDY|SCENE|FILE]...",
+            autocompletion=known_targets,
         ),
     ] = None,
     results: ResultsOption = RESULTS,
@@ -89,53 +94,128 @@ def run(
     ] = None,
     summary: SummaryOption = None,
     baseline: BaselineOption = None,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")] = False,
 ) -> None:
-    """Run studies or scenes, judge them and print one table of verdicts.
+    """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
     Finished cases are kept: the same command after an interruption goes on from there.
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.cli import tables
-    from validation.cli.output import heard
-    from validation.engine import measured
-    from validation.engine.cluster import executor
-    from validation.engine.run import run_study
+    from validation.cli.printing.output import heard
     from validation.runs.results import Results
-    from validation.scenes.scene import parse_assignment, scene_names
-    from validation.studies.catalogue import STUDIES, resolve
+    from validation.scenes.scene import parse_assignment
+    from validation.studies.catalogue import resolve
 
+    _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
     before = _checked(kept, required, summary, baseline)
-    workers, runs = jobs or os.cpu_count() or 1, []
-    with executor(scheduler) as pool:
-        for study in studies:
-            with _progress(study.name) as progress:
-                verdicts = run_study(
-                    study, kept, full=full, ranks=ranks, jobs=workers, executor=pool, progress=progress
-                )
-            runs.append(measured.Judged(study, verdicts, tables.outcomes(kept, study.name)))
-    names, verdicts = [study.name for study in studies], [verdict for run in runs for verdict in run.verdicts]
-    since = tables.after_run([v for name in names for v in kept.verdicts(name)], names, summary, before)
-    sentences = [*measured.complaints(runs), *measured.wanting(runs, required)]
-    worse = None if since is None else any(change.worse for change in since)
-    status = _status(verdicts, required, any(run.refused for run in runs), worse, sentences)
+    runs, seconds = _judged(studies, kept, Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler), not quiet)
+    ran = _answered(runs, seconds, kept, required, summary, before)
     with heard():
-        tables.print_verdicts(verdicts, kept, names)
-        tables.print_alarms(kept, names)
-        tables.print_failures(kept, names)
-        if since is not None:
-            tables.print_changes(since)
-        for sentence in (*measured.unjudged(runs), *sentences):
-            typer.echo(sentence)
-        for run in runs:
-            if not run.verdicts and run.study.name not in STUDIES:
-                tables.print_differences(kept, run.study.name, run.study.name not in scene_names())
-    raise typer.Exit(status)
+        if as_json:
+            _print_data(ran)
+        elif not quiet:
+            _print_answer(ran, verbose)
+    raise typer.Exit(ran.status)
 
 
-def _checked(kept: Results, required: list[str], summary: Path | None, baseline: Path | None) -> list[Judged] | None:
+def _one_of(options: dict[str, bool]) -> None:
+    """Refuse options that exclude each other."""
+    from validation.errors import InputError
+
+    given = [name for name, is_set in options.items() if is_set]
+    if len(given) > 1:
+        raise InputError(f"{given[0]}, {given[1]}: exclude each other, got both")
+
+
+@dataclass(frozen=True)
+class Machine:
+    """How cases are run: without savings, on so many ranks, processes, or on a cluster."""
+
+    full: bool
+    ranks: int
+    jobs: int
+    scheduler: str | None
+
+
+def _judged(studies: Sequence[Study], kept: Results, machine: Machine, shown: bool) -> tuple[list[Judged], list[float]]:
+    """Run the studies one after the other; return what was judged and the seconds of each."""
+    from validation.cli.printing.tables import outcomes
+    from validation.engine.cluster import executor
+    from validation.engine.measured import Judged
+    from validation.engine.run import run_study
+
+    runs, seconds = [], []
+    with executor(machine.scheduler) as pool:
+        for study in studies:
+            start = time.monotonic()
+            with _progress(study.name, shown) as progress:
+                verdicts = run_study(
+                    study,
+                    kept,
+                    full=machine.full,
+                    ranks=machine.ranks,
+                    jobs=machine.jobs,
+                    executor=pool,
+                    progress=progress,
+                )
+            runs.append(Judged(study, verdicts, outcomes(kept, study.name)))
+            seconds.append(time.monotonic() - start)
+    return runs, seconds
+
+
+def _answered(
+    runs: Sequence[Judged],
+    seconds: Sequence[float],
+    kept: Results,
+    required: list[str],
+    summary: Path | None,
+    before: Sequence[Kept] | None,
+) -> Ran:
+    """Write the summary, compare with the baseline, and return all there is to say with the exit status."""
+    from validation.cli.printing.answer import Ran
+    from validation.cli.printing.tables import after_run
+    from validation.engine.measured import complaints, wanting
+    from validation.studies.catalogue import STUDIES
+
+    names = [run.study.name for run in runs]
+    since = after_run([v for name in names for v in kept.verdicts(name)], names, summary, before)
+    worse = None if since is None else any(change.worse for change in since)
+    messages = [*complaints(runs), *wanting(runs, required)]
+    verdicts = [verdict for run in runs for verdict in run.verdicts]
+    status = _status(verdicts, required, any(run.refused for run in runs), worse, messages)
+    return Ran(runs, seconds, kept, messages, since, frozenset(names) - set(STUDIES), status)
+
+
+def _print_data(ran: Ran) -> None:
+    from validation.cli.printing.answer import as_data
+
+    typer.echo(json.dumps(as_data(ran), indent=1, allow_nan=False))
+
+
+def _print_answer(ran: Ran, verbose: bool) -> None:
+    """Print every gate where there are few or all are asked for, then the answer, then what to do with a scene."""
+    from validation.cli.printing import tables
+    from validation.cli.printing.answer import lines
+    from validation.cli.printing.output import width
+    from validation.scenes.scene import scene_names
+
+    if verbose or (ran.own and 0 < len(ran.verdicts) <= FEW):
+        tables.print_verdicts(ran.verdicts, ran.results, ran.names)
+    if verbose:
+        tables.print_ends(ran.results, ran.names)
+    tables.print_lines(lines(ran, width()))
+    if ran.changes is not None:
+        tables.print_changes(list(ran.changes))
+    for name in [run.study.name for run in ran.runs if run.study.name in ran.own and not run.verdicts]:
+        tables.print_differences(ran.results, name, name not in scene_names())
+
+
+def _checked(kept: Results, required: list[str], summary: Path | None, baseline: Path | None) -> list[Kept] | None:
     """Check before anything runs what would be refused at the end; return the baseline's verdicts."""
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
@@ -152,7 +232,7 @@ def _checked(kept: Results, required: list[str], summary: Path | None, baseline:
 
 @app.command()
 def solve(
-    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file.")],
+    scene: SceneArgument,
     solver: Annotated[str, typer.Option(help="Solver, see `dda-validate list`.", metavar="NAME")] = "dda",
     csv: Annotated[Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE")] = None,
     fields: Annotated[

@@ -19,8 +19,8 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
-    from validation.cli.output import heard
-    from validation.cli.tables import print_changes
+    from validation.cli.printing.output import heard
+    from validation.cli.printing.tables import print_changes
     from validation.gates.changes import changes, read_verdicts
 
     found = changes(read_verdicts(before), read_verdicts(after))

@@ -33,7 +33,7 @@ def rows(
 ) -> None:
     """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
 
-    Example: [bold]dda-validate rows work-precision --csv rows.csv[/bold]
+    Example: [bold]dda-validate run figures-3-4 && dda-validate rows figures-3-4 --csv rows.csv[/bold]
     """
     from validation.runs.files import write_atomically
 
@@ -57,7 +57,7 @@ def plot(
 ) -> None:
     """Draw one column of a study's table against another, both logarithmic, a line for each solver.
 
-    Example: [bold]dda-validate plot work-precision --x work.solves --y bar:pressure.l2 --out plot.svg[/bold]
+    Example: [bold]dda-validate run figures-3-4 && dda-validate plot figures-3-4 --y bar:pressure.l2[/bold]
     """
     from validation.errors import InputError
     from validation.report.figures.cost import columns_figure
@@ -86,7 +86,8 @@ def record(
 ) -> None:
     """Run the study work-precision and compare its errors and work counts with the committed record.
 
-    Example: [bold]dda-validate record --update-record --reason "fewer Krylov vectors"[/bold]
+    Example: [bold]dda-validate record[/bold] or, by intent, [bold]dda-validate record --update-record --reason
+    "fewer Krylov vectors"[/bold]
     """
     from validation.engine.run import finish
     from validation.errors import InputError

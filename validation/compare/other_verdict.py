@@ -13,6 +13,7 @@ from validation.compare.other_solvers import Goal, Rival, rivals, slipped
 from validation.compare.readings import Reading
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
 
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
@@ -53,11 +54,16 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     bars = [Bar.of(reading.displacement, reading.rounding)]
     spread = bars[0].allowed
     near = ranked + slipped(same, ranked[0].model, goal)
-    return _decided(scene, near, ranked, max(0.0 if ranked[0].model == exact else MESH, spread), below)
+    mesh = 0.0 if ranked[0].model == exact else MESH
+    on_mesh = get_solver(ranked[0].model).meshed  # the scene's own: with the right slip it leaves noise alone
+    allowed = spread if on_mesh else max(mesh, spread)
+    return _decided(scene, near, ranked, max(mesh, spread), allowed, below)
 
 
-def _decided(scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: float, below: float) -> RivalVerdict:
-    """Return the verdict: the solver as it is, with one slip, or not explained."""
+def _decided(
+    scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: float, allowed: float, below: float
+) -> RivalVerdict:
+    """Return the verdict: the solver as it is below `bar`, with one slip below `allowed`, or not explained."""
     t = scene.time
     model = ranked[0].model
     own = next(r for r in ranked if r.model == model and (r.alpha, r.delta) in ((t.alpha, t.delta), (None, None)))
@@ -69,7 +75,7 @@ def _decided(scene: Scene, tried: Sequence[Rival], ranked: list[Rival], bar: flo
     causes, values = _causes(scene, best)
     others = [r for r in ordered if _causes(scene, r)[0] != causes]
     clear = not others or others[0].misfit > APART * best.misfit
-    enough = best.misfit <= min(bar, max(SHARE * plain, 1e-12), below)
+    enough = best.misfit <= min(allowed, max(SHARE * plain, 1e-12), below)
     one = len(causes) <= 1
     return RivalVerdict(best, ranked, causes, values, own.unsoftened, clear and enough and one, best.misfit / plain)
 

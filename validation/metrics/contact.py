@@ -19,7 +19,7 @@ Part = Callable[[ContactRecord], Value]
 
 def count(m: Measurable) -> Value:
     """Openings and closings after t = 0, of all corners."""
-    return NOT_REPORTED if m.switches is None else float(len(m.switches))
+    return NOT_REPORTED if m.switches is None else float(sum(one.opens is not None for one in m.switches))
 
 
 def first(m: Measurable, opens: bool) -> Value:
@@ -35,6 +35,14 @@ def second(m: Measurable, opens: bool) -> Value:
         return NOT_REPORTED
     times = sorted({switch.time for switch in m.switches if switch.opens is opens})
     return times[1] if len(times) > 1 else UNDEFINED
+
+
+def state_changes(m: Measurable) -> Value:
+    """Changes of state from step to step, open, stick and slip either way, of both corners; from their columns."""
+    states = [m.history.columns.get(name) for name in ("state_m", "state_n")]
+    if any(state is None for state in states):
+        return NOT_REPORTED
+    return float(sum(np.count_nonzero(np.diff(state)) for state in states if state is not None))
 
 
 def reported(m: Measurable, part: Part) -> Value:
@@ -113,6 +121,20 @@ def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float])
     return float(part(found)) if found else UNDEFINED
 
 
+def slip(record: ContactRecord) -> Value:
+    """Way that a corner or point slips over the run, to and fro summed; the largest of any."""
+    return NOT_REPORTED if record.slip is None else float(record.slip[-1])
+
+
+def slip_rate(record: ContactRecord) -> Value:
+    """Slip per second over the second half of the run."""
+    if record.slip is None:
+        return NOT_REPORTED
+    half = len(record.time) // 2
+    passed = float(record.time[-1] - record.time[half])
+    return float(record.slip[-1] - record.slip[half]) / passed if passed > 0 else UNDEFINED
+
+
 def landing_speed(record: ContactRecord) -> Value:
     """Greatest rate at which a gap closes before a contact."""
     if record.rebounds is None:
@@ -156,11 +178,12 @@ def switching(record: ContactRecord) -> Value:
 def imbalance(record: ContactRecord) -> Value:
     """Largest defect of the energy balance, stored + lost = start, over the largest energy in it."""
     energy = total(record)
-    if energy is None or not set(LOST) <= set(record.energies):
+    losses = [name for name in LOST if name in record.energies or name != "friction"]  # without friction: not reported
+    if energy is None or not set(losses) <= set(record.energies):
         return NOT_REPORTED
-    parts = [record.energies[name] for name in (*STORED, *LOST)]
+    parts = [record.energies[name] for name in (*STORED, *losses)]
     size = max(record.start_energy, *map(largest, parts))
-    defect = energy - record.start_energy + sum(record.energies[name] for name in LOST)
+    defect = energy - record.start_energy + sum(record.energies[name] for name in losses)
     return largest(defect) / size if size else UNDEFINED
 
 
@@ -187,6 +210,8 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.mean_solves", "1", mean_solves),
     ("contact.most_solves", "1", most_solves),
     ("contact.cuts", "1", cuts),
+    ("contact.slip", "m", slip),
+    ("contact.slip_rate", "m/s", slip_rate),
     ("contact.landing_speed", "m/s", landing_speed),
     ("contact.restitution", "1", restitution),
     ("energy.given", "J", given),

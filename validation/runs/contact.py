@@ -11,7 +11,8 @@ import numpy as np
 from validation.runs.history import Array
 
 STORED = ("kinetic", "strain", "springs", "load")  # J; of the loads -F x
-LOST = ("algorithmic", "kinetic damping", "switching")  # J, summed from t = 0 on; negative where energy was gained
+# J, summed from t = 0 on; negative where energy was gained, as no friction does
+LOST = ("algorithmic", "kinetic damping", "switching", "friction")
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,8 @@ class ContactRecord:
         Kinetic energy at t = 0 [J]; that energy and what the loads put in statically, as the scale of changes [J].
     solves, cuts
         Solves of the open-close iteration and cuts of each step [-], shape (steps,).
+    slip
+        Largest movement of the shear reference of any corner or point, summed while it was pressed [m], shape (steps,).
     """
 
     time: Array
@@ -67,6 +70,7 @@ class ContactRecord:
     energies: Mapping[str, Array] = field(default_factory=dict)
     solves: Array | None = None
     cuts: Array | None = None
+    slip: Array | None = None
 
 
 def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:

@@ -57,8 +57,9 @@ def contact_index(modes: Sequence[Mode]) -> int | None:
 
 @dataclass(frozen=True)
 class Switch:
-    """One opening or closing of a contact."""
+    """One change of a contact: it opens or closes, or while closed it begins to slip or sticks."""
 
     time: float  # s
     corner: str
-    opens: bool  # else it closes
+    opens: bool | None  # else it closes; None: it stays closed
+    slips: bool | None = None  # else it sticks; None: it opens or closes

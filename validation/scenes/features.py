@@ -40,7 +40,9 @@ FEATURES = (
     Feature(FRICTION, lambda scene: scene.contact.friction is not None, linear=False),
     Feature(LAGGED, lambda scene: scene.contact.rules == "lagged", linear=False),
     Feature(SLOPE, lambda scene: scene.load.slope != 0),
-    Feature(ROTATION, lambda scene: scene.run.geometry == "updated", linear=False),
+    Feature(
+        ROTATION, lambda scene: scene.contact.law == "unilateral" and scene.run.geometry == "updated", linear=False
+    ),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),

@@ -6,6 +6,7 @@ A scene holds problem data only; no solver is imported here. Every defect of a s
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import json
 import math
@@ -316,8 +317,11 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except InputError:
         raise
     except FileNotFoundError:
-        known = ", ".join(scene_names())
-        raise InputError(f"{path}: no such scene file; built-in scenes: {known}") from None
+        near = ", ".join(difflib.get_close_matches(path.stem, scene_names(), cutoff=0.5))
+        meant = f" did you mean {near}?" if near else ""
+        raise InputError(
+            f"{path}: no such scene file;{meant} dda-validate list scenes names the built-in ones"
+        ) from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -17,7 +17,8 @@ from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.dda_opening import COUNTS, FORCES, GAPS, OpeningBlock, OpeningSubBlocks
+from validation.solvers.dda_opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.dda_rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
@@ -41,7 +42,7 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
     block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
     contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
     return dda.TwoBlockModel(
-        block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene)
+        block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene), q.slope
     )
 
 
@@ -51,6 +52,9 @@ def scheme_of(scene: Scene) -> dda.Scheme:
 
     t, d = scene.time, scene.damping
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+
+
+NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION, features.LAGGED}
 
 
 class OneBlock(Prepared):
@@ -186,7 +190,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING, features.ADAPTIVE}
+        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
         | features.LOADS
         | features.RULES
     )
@@ -199,15 +203,21 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *GAPS, *FORCES, *COUNTS, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
         own = set(features.of(scene))
-        if {features.UNILATERAL, features.BASE_MOTION} <= own:
-            return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-        if features.SUB_BLOCKS in own and (apart := own & (features.RULES | {features.RIGID})):
+        if features.ROTATION in own:
+            return rotation_apart(scene)
+        if {features.SUB_BLOCKS, features.UNILATERAL, features.BASE_MOTION} <= own:
+            return (
+                f"it does not handle {features.BASE_MOTION}, {features.UNILATERAL} and {features.SUB_BLOCKS} together"
+            )
+        if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
+        if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
+            return "a corner that pulls within its band rubs under lagged rules only"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
@@ -220,9 +230,11 @@ class DDA(Solver):
             from validation.solvers.columns.blocks import BlockColumn
 
             return BlockColumn(scene, scheme_of(scene))
+        if features.ROTATION in features.of(scene):
+            return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):
             kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
-            return kind(scene, scheme_of(scene), full)
+            return kind(scene, scheme_of(scene), base_motion(scene), full)
         if features.ADAPTIVE in features.of(scene):
             return AdaptiveBlock(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)

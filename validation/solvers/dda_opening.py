@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,13 +23,16 @@ if TYPE_CHECKING:
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
+SLIDES = ("slide_m", "slide_n")  # m, along the base, less its own displacement
+STATES = ("state_m", "state_n")  # 0 open, 1 stick (closed without friction, too), 2 and -2 slip towards N and M
 COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
+OPENING = (*GAPS, *FORCES, *SLIDES, *STATES, *COUNTS)
 
 
 class OpeningBlock(Prepared):
     """A whole block on corners that carry no tension."""
 
-    def __init__(self, scene: Scene, scheme: dda.Scheme, full: bool) -> None:
+    def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None, full: bool) -> None:
         import dda
 
         self.scene, self.scheme, self.full = scene, scheme, full
@@ -36,9 +40,9 @@ class OpeningBlock(Prepared):
         b, c, q = scene.block, scene.contact, scene.load
         with naming(scene):
             block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band)
+            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, *friction(scene), c.rules)
             loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block, law, *loads, b.velocity)
+            self.model = dda.UnilateralModel(block, law, *loads, b.velocity, q.slope, motion)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
     def solve(self, columns: Sequence[str]) -> dda.UnilateralResult | dda.OpeningResult:
@@ -52,7 +56,7 @@ class OpeningBlock(Prepared):
         import dda
 
         no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *GAPS, *FORCES, *COUNTS))
+        check_columns(self.scene, (*dda.COLUMNS, *OPENING))
         asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
             r = self.solve(asked)
@@ -62,7 +66,7 @@ class OpeningBlock(Prepared):
     def _contact(self, r: dda.UnilateralResult | dda.OpeningResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
-        names = [name for name in self.scene.run.columns if name in (*GAPS, *FORCES, *COUNTS)]
+        names = [name for name in self.scene.run.columns if name in OPENING]
         return {name: np.asarray(getattr(r, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
@@ -92,6 +96,7 @@ class OpeningBlock(Prepared):
             energies=r.energies or {},
             solves=r.step_solves.astype(float),
             cuts=r.step_cuts.astype(float),
+            slip=r.slip,
         )
 
     def _impulse(self, r: dda.UnilateralResult | dda.OpeningResult, force: Array) -> Array:
@@ -102,13 +107,20 @@ class OpeningBlock(Prepared):
         return opened.summed(force, self.scheme.step, late)
 
 
+def friction(scene: Scene) -> tuple[float | None, float]:
+    """Return tan(phi) and the cohesion of one corner, half of that of the whole base [N]."""
+    c = scene.contact
+    tangent = None if c.friction is None else math.tan(math.radians(c.friction))
+    return tangent, c.cohesion * scene.block.base_length / 2
+
+
 class OpeningSubBlocks(OpeningBlock):
     """Glued sub-blocks on points that carry no tension."""
 
-    def __init__(self, scene: Scene, scheme: dda.Scheme, full: bool) -> None:
+    def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None, full: bool) -> None:
         import dda
 
-        super().__init__(scene, scheme, full)
+        super().__init__(scene, scheme, motion, full)
         b = scene.block
         with naming(scene):
             columns, rows = b.subdivide or (1, 1)

@@ -16,6 +16,7 @@ from validation.runs.history import Array, History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
+from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
@@ -26,12 +27,20 @@ if TYPE_CHECKING:
     from fem_reference.events import switches as events
     from fem_reference.events.bar_model import BarProblem
     from fem_reference.events.block_model import BlockProblem
+    from fem_reference.problem.motion import Motion as BaseMotion
 
 FORCES = ("normal_force_m", "normal_force_n")  # N, on the block, at the two ends of the base
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
-BLOCK_COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", *GAPS, *FORCES)
+SHEAR = ("shear_force_m", "shear_force_n", "slide_m", "slide_n")  # N, towards +x, and m, over the base
+STATES = ("state_m", "state_n")  # 0 open, 1 sticks, 2 slips towards +x, -2 towards -x
+BLOCK_COLUMNS = (
+    *("displacement", "contact_pressure", "horizontal_displacement", "rotation"),
+    *(*GAPS, *FORCES, *SHEAR, *STATES),
+)
 BAR_COLUMNS = ("displacement", "contact_pressure", *GAPS, *FORCES)
 SAMPLES, IN_CONTACT = 400, 9  # instants in which peaks are sought: of the motion, at least, and of each contact
+# of a switch: whether it opens or closes, whether it slips or sticks
+KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
 TOLD = 6  # switches that a note names
 
 
@@ -66,7 +75,21 @@ def block_of(scene: Scene) -> BlockProblem:
         gravity=q.gravity,
         gap=c.gap,
         velocity=b.velocity,
+        slope=q.slope,
+        friction=c.friction,
+        cohesion=c.cohesion,
+        base=base_of(scene),
     )
+
+
+def base_of(scene: Scene) -> BaseMotion | None:
+    """Return the motion of a scene's base, or None where it is fixed."""
+    from fem_reference.problem.motion import Motion as BaseMotion
+
+    record = base_record(scene)
+    if record is None:
+        return None
+    return BaseMotion(*(tuple(map(float, part)) for part in (record.time, record.x, record.y)))
 
 
 def bar_of(scene: Scene) -> BarProblem:
@@ -101,7 +124,7 @@ class Motion(Prepared):
         """Return the switches of the motion that was run."""
         if self.found is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        return tuple(Switch(one.time, one.corner, one.kind == "opens") for one in self.found)
+        return tuple(Switch(one.time, one.corner, *KINDS[one.kind]) for one in self.found)
 
     def instants(self) -> Array:
         """Return the instants that are reported [s]."""
@@ -161,7 +184,7 @@ def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
 def switches_in_words(switches: Sequence[events.Switch]) -> str:
     """Return the first switches with their times, and how many there are."""
     if not switches:
-        return "the contact neither opens nor closes after t = 0"
+        return "the contact does not change after t = 0"
     told = ", ".join(f"{one.corner} {one.kind} at {one.time:.9g} s" for one in switches[:TOLD])
     more = f" and {len(switches) - TOLD} more" if len(switches) > TOLD else ""
     return f"{told}{more}"
@@ -184,7 +207,7 @@ class BlockMotion(Motion):
         self.motion = solve(block_of(self.scene), self.end)
         self.found, at = self.motion.switches, self.motion.at(self.instants())
         u, v, r = at.displacement[:3]
-        return (v, at.contact_pressure, u, r, *at.gap, *at.normal_force)
+        return (v, at.contact_pressure, u, r, *at.gap, *at.normal_force, *at.shear_force, *at.slide, *at.states)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
@@ -206,10 +229,17 @@ class BlockMotion(Motion):
             given=opened.given_energy(self.scene),
             velocity=velocity,
             rebounds=landings(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
-            energies={name: getattr(found, name) for name in STORED}
-            | dict.fromkeys(LOST[:2], np.zeros_like(t))
-            | {LOST[2]: found.released},
+            energies=self._energies(found),
+            slip=np.abs(found.slipped).max(axis=0),
         )
+
+    def _energies(self, found: block_events.BlockHistory) -> dict[str, Array]:
+        """Return the energies; none where the base moves, whose work is not among them."""
+        if self.scene.load.base_motion is not None:
+            return {}
+        stored = {name: getattr(found, name) for name in STORED}
+        none = dict.fromkeys(LOST[:2], np.zeros_like(found.time))
+        return stored | none | {"switching": found.released, "friction": found.friction}
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
@@ -265,10 +295,10 @@ class BarMotion(Motion):
 
 
 class BlockEvents(Solver):
-    """The block of one strain on springs that carry no tension, exact in time: what `dda` tends to as dt -> 0."""
+    """The block of one strain on springs without tension and with friction, exact in time: `dda` as dt -> 0."""
 
     name = "block-events"
-    handles = frozenset({features.UNILATERAL, features.OFF_CENTRE, features.WEIGHT}) | features.RULES
+    handles = features.LOADS | features.RULES | {features.UNILATERAL, features.FRICTION, features.SLOPE}
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
@@ -311,33 +341,3 @@ class BarEvents(BlockEvents):
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
         return BarMotion(scene, self.name)
-
-
-def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tuple[float, float, float, float]:
-    """Return mean, least, greatest and mean square of the restitution of a penalty contact over its phase.
-
-    A mass without load under Newmark's scheme; the phase is where in a step it lands, uniform from 0 to 1.
-
-    Parameters
-    ----------
-    alpha, delta, gg
-        The scheme and its discount.
-    omega
-        sqrt(k / m) dt, `math.inf` for a rigid contact.
-
-    Raises
-    ------
-    ValueError
-        A number is out of the range in which the map is defined.
-    """
-    from fem_reference.events.restitution import ContactScheme, statistics
-
-    found = statistics(ContactScheme(alpha, delta, gg), omega)
-    return found.mean, found.low, found.high, found.mean_square
-
-
-def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phase: float) -> float:
-    """Return the restitution of one phase; see `impact_statistics`."""
-    from fem_reference.events.restitution import ContactScheme, restitution
-
-    return float(restitution(ContactScheme(alpha, delta, gg), omega, phase)[0])

@@ -66,6 +66,7 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
             traction=q.traction,
             gravity=q.gravity,
             motion=motion,
+            slope=q.slope,
         )
 
 
@@ -88,13 +89,6 @@ def check_stable(scene: Scene, model: Model | None = None) -> None:
 def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
     return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
-
-
-def moving_base(scene: Scene) -> str | None:
-    """Return None, or that a base which carries no tension may not move."""
-    if {features.UNILATERAL, features.BASE_MOTION} <= set(features.of(scene)):
-        return f"it does not handle {features.BASE_MOTION} together with {features.UNILATERAL}"
-    return None
 
 
 class Mesh(Prepared):
@@ -177,23 +171,25 @@ class AdaptiveMesh(Prepared):
         return to_run(self.scene, found, built=own.building)
 
 
-# J, in the order of `STORED` and `LOST`
+# J, in the order of `STORED` and `LOST`, without friction
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
-LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss")
+LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
 
 
 class OpeningMesh(Prepared):
     """A block on a foundation that carries no tension, point by point of its base."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        from fem_reference.history.unilateral import Unilateral
+        from fem_reference import Friction, Unilateral
 
         self.scene, self.full = scene, full
         self.problem, self.scheme = problem_of(scene), scheme_of(scene)
         c = scene.contact
         glue = "glued" if c.shear else "frictionless"
         with naming(scene):
-            self.contact = Unilateral(c.gap, scene.block.velocity, glue, c.solve_limit, c.cut, c.rule)
+            friction = None if c.friction is None else Friction(c.friction, c.cohesion)
+            velocity = scene.block.velocity
+            self.contact = Unilateral(c.gap, velocity, glue, c.solve_limit, c.cut, c.rule, friction=friction)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -221,7 +217,7 @@ class OpeningMesh(Prepared):
         from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
         found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
-        seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
+        seen, energies = found.columns, zip((*STORED, *LOST[:3]), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = seen["contact_pressure"] * self.scene.block.base_length
         return ContactRecord(
             time=found.time,
@@ -229,6 +225,7 @@ class OpeningMesh(Prepared):
             impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
             penetration=seen["largest_penetration"],
             gap=seen["largest_gap"],
+            slip=None if self.contact.friction is None else seen["largest_slide"],
             open_share=seen["open_share"],
             start_velocity=self.scene.block.velocity,
             start_energy=opened.start_energy(self.scene),
@@ -246,6 +243,8 @@ class FiniteElements(Solver):
     name = "fem"
     handles = features.LOADS | frozenset(
         {
+            features.SLOPE,
+            features.FRICTION,
             features.SUB_BLOCKS,
             features.UNILATERAL,
             features.IMPLICIT,
@@ -271,7 +270,7 @@ class FiniteElements(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with unilateral contact."""
-        return moving_base(scene) or features.damping_apart(scene)
+        return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""

@@ -27,7 +27,7 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable, moving_base
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, flips, no_fields, pulls
 
@@ -35,7 +35,16 @@ VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-OPENING_COLUMNS = (*COLUMNS, "base_shear", "open_share", "largest_gap", "largest_penetration", "solves", "cuts")
+OPENING_COLUMNS = (
+    *COLUMNS,
+    "base_shear",
+    "open_share",
+    "largest_gap",
+    "largest_penetration",
+    "largest_slide",
+    "solves",
+    "cuts",
+)
 WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx")  # type: ignore[union-attr,arg-type]
 # One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
 # that is not of the locale's characters, unless Python reads paths as UTF-8.
@@ -122,7 +131,7 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL}) | features.LOADS
+    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.SLOPE, features.FRICTION}) | features.LOADS
     sections = MESH_SECTIONS
     unread = OF_SUB_BLOCKS
     sources = ("fem_reference.fenicsx",)
@@ -154,7 +163,7 @@ class FEniCSx(Solver):
             return "it takes springs spread over edges or at the corners, and none at nodes"
         if features.UNILATERAL in features.of(scene) and scene.fem.foundation == "patch":
             return "it takes unilateral contact on the whole base or at the corners, and none on patches"
-        return moving_base(scene)
+        return None
 
     def missing(self) -> str | None:
         """Return None, or what is not installed and how to get it."""
@@ -237,10 +246,11 @@ class RemoteMesh(Prepared):
 def request(scene: Scene) -> dict[str, Any]:
     """Return a scene as the worker takes it; a mesh file becomes points and cells."""
     b, c, t, f, q = scene.block, scene.contact, scene.time, scene.fem, scene.load
-    record, moved = base_record(scene), None
+    record, moved, table = base_record(scene), None, None
     if record is not None:
         instants = t.step * np.arange(t.steps + 1.0)
         moved = np.column_stack([np.interp(instants, record.time, part) for part in (record.x, record.y)]).tolist()
+        table = [part.tolist() for part in (record.time, record.x, record.y)]
     return {
         "vertices": b.outline,
         "base": b.base,
@@ -255,7 +265,9 @@ def request(scene: Scene) -> dict[str, Any]:
         "eccentricity": q.eccentricity,
         "traction": q.traction,
         "gravity": q.gravity,
+        "slope": q.slope,
         "moved": moved,
+        "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
         "degree": f.degree,
         "foundation": f.foundation,
@@ -271,6 +283,8 @@ def request(scene: Scene) -> dict[str, Any]:
         "columns": scene.run.columns,
         "law": c.law,
         "gap": c.gap,
+        "friction": c.friction,
+        "cohesion": c.cohesion,
         "velocity": b.velocity,
         "solve_limit": c.solve_limit,
         "cut": c.cut,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from validation.runs.contact import Rebound, rebounds_of_steps
@@ -16,10 +18,10 @@ def mass(scene: Scene) -> float:
 
 
 def pushing(scene: Scene) -> float:
-    """Resultant of pressure and weight, downwards [N]."""
+    """Resultant of pressure and weight, downwards, of the weight on a slope across it [N]."""
     (x1, y1), (x2, y2) = scene.block.edge(scene.block.top)
     length = float(np.hypot(x2 - x1, y2 - y1)) - 2 * abs(scene.load.eccentricity)
-    return scene.load.pressure * length + mass(scene) * scene.load.gravity
+    return scene.load.pressure * length + mass(scene) * scene.load.gravity * math.cos(math.radians(scene.load.slope))
 
 
 def start_energy(scene: Scene) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import functools
 import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -27,6 +28,10 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
+    "rocking": "validation.studies.rocking.rocking:STUDY",
+    "toppling": "validation.studies.rocking.toppling:STUDY",
+    "slopes": "validation.studies.slopes.sliding:STUDY",
+    "creep": "validation.studies.slopes.creep:STUDY",
     "waves": "validation.studies.waves.study:study",
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
@@ -148,6 +153,11 @@ def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None
     return [study for _, study in studies.values()]
 
 
+def _meant(target: str) -> str:
+    near = difflib.get_close_matches(target, [*STUDIES, *scene_names()], cutoff=0.5)
+    return f" did you mean {', '.join(near)}?" if near else ""
+
+
 def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
     if target in STUDIES and not assignments:
         return get_study(target)
@@ -155,8 +165,8 @@ def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
         raise InputError(f"--set: goes with a scene, got the study {target!r}; name a scene or a scene file")
     if target not in scene_names() and not target.endswith(".toml"):
         raise InputError(
-            f"{target}: must be a study ({', '.join(STUDIES)}), a built-in scene "
-            f"({', '.join(scene_names())}) or a scene file ending in .toml"
+            f"{target}: must be a study, a built-in scene or a scene file ending in .toml;{_meant(target)} "
+            "dda-validate list names studies and scenes"
         )
     study = scene_study(target, assignments)
     if study.name.casefold() in STUDIES and target not in scene_names():

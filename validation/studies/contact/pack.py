@@ -16,7 +16,7 @@ from validation.runs.files import write_csv
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.solvers.events import impact_restitution
+from validation.solvers.rigid import impact_restitution
 from validation.studies.bands import cases
 from validation.studies.contact.rebound import STIFF
 from validation.studies.opening import front

@@ -1,9 +1,9 @@
-"""What `run` prints: verdicts, alarms, and cases that did not complete."""
+"""Tables: a row a gate, what solvers differ by where nothing is judged, what changed between two runs."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,10 +11,12 @@ import typer
 from rich import box
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
-from validation.advice.alarms import DISCOUNT
-from validation.cli.output import console
+from validation.cli.printing.answer import STYLES, Line, how_it_ended
+from validation.cli.printing.output import console
 from validation.gates.gate import Verdict, said
+from validation.runs.case_name import CaseName
 from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -28,51 +30,70 @@ MOST = 20  # pairs that are shown
 
 
 def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
-    """Print one table: scene, pair, metric, value, band, verdict, seconds."""
+    """Print one table, a row a gate: scene, pair, metric, value, band, verdict, seconds."""
     rows = results.rows()
     cases = [case for study in studies for case in results.manifest(study)["cases"]]
     seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("scene", "pair", "metric"):
-        table.add_column(name, overflow="fold")
-    for name in ("value", "band"):
-        table.add_column(name, justify="right")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    name = _namer([v.gate.scene for v in verdicts])
+    table.add_column("scene", overflow="fold")
+    for head in ("pair", "metric"):
+        table.add_column(head, no_wrap=True)
+    for head in ("value", "band"):
+        table.add_column(head, justify="right", no_wrap=True)
     table.add_column("verdict")
     table.add_column("seconds", justify="right")
-    colours = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
     for v in verdicts:
         g, word = v.gate, str(v.status)
         spent = seconds.get(g.cases[0])
         table.add_row(
-            escape(printable(g.scene)),
+            escape(printable(name(g.scene))),
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
             said(v.value),
             f"{g.low:.4g} .. {g.high:.4g}",
-            f"[{colours[word]}]{word}[/]",
+            f"[{STYLES[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
         )
+    console().print(table)
+
+
+def _namer(cases: Iterable[str]) -> Callable[[str], str]:
+    """Return the function that names cases: by what is varied alone, where all are of one scene."""
+    parsed = {case: CaseName.parse(case) for case in cases}
+    alone = len({name.scene for name in parsed.values()}) == 1
+
+    def name(case: str) -> str:
+        values = parsed[case].values
+        return ",".join(f"{key}={value}" for key, value in values.items()) if alone and values else case
+
+    return name
+
+
+def print_lines(lines: Iterable[Line]) -> None:
+    """Print lines, with the style of its verdict on the first word or, in a line of counts, on all of it."""
     printer = console()
-    printer.print(table)
-    for v in verdicts:
-        if v.status != "PASS":
-            printer.print(printable(f"{v.status}: {v.gate.id}: {v.why or v.gate.reason}"), markup=False)
-    words = [str(v.status) for v in verdicts]
-    printer.print(", ".join(f"{words.count(w)} {w}" for w in colours))
+    for text, word in lines:
+        shown = Text(text)
+        if word:
+            shown.stylize(STYLES[word], 0, len(word) if text.startswith(word) else len(text))
+        printer.print(shown, soft_wrap=True)
 
 
 def print_differences(results: Results, study: str, writable: bool) -> None:
     """Print what the solvers of a scene without gates differ by, and what to write so that it is judged."""
     compared = results.manifest(study)["comparisons"]
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("scene", "solver", "differs from"):
-        table.add_column(name, overflow="fold")
+    name = _namer(c["scene"] for c in compared)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    table.add_column("scene", overflow="fold")
+    table.add_column("pair", no_wrap=True)
     for metric in DIFFERENCES:
-        table.add_column(f"{metric} [%]", justify="right")
+        table.add_column(metric.replace(".", "\n.") + " [%]", justify="right")
     for c in compared[:MOST]:
         values = [c["metrics"].get(metric) for metric in DIFFERENCES]
         shown = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
-        table.add_row(*map(escape, map(printable, (c["scene"], c["solver"], c["reference"]))), *shown)
+        pair = f"{c['solver']} | {c['reference']}"
+        table.add_row(*map(escape, map(printable, (name(c["scene"]), pair))), *shown)
     printer = console()
     if compared:
         printer.print(table)
@@ -109,30 +130,13 @@ def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
     return {(c["scene"], c["solver"]): rows[c["key"]].outcome for c in results.whole(study)["cases"]}
 
 
-def print_failures(results: Results, studies: list[str]) -> bool:
-    """Name the cases that did not complete; return whether one was refused."""
-    rows, refused = results.rows(), False
+def print_ends(results: Results, studies: list[str]) -> None:
+    """Name the cases that did not complete, and how they ended."""
+    rows = results.rows()
     for study in studies:
         for case in results.manifest(study)["cases"]:
-            row = rows[case["key"]]
-            refused = refused or row.outcome is Outcome.REFUSED
-            if row.outcome is not Outcome.COMPLETED:
-                said = f"{row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}"
-                typer.echo(printable(f"{case['scene']} {case['solver']}: {said}"))
-    return refused
-
-
-def print_alarms(results: Results, studies: list[str]) -> None:
-    """Print how many cases each kind of alarm was raised on, and in full what concerns a whole scene."""
-    cases: dict[str, set[str]] = {}
-    for alarm in [alarm for study in studies for alarm in results.manifest(study).get("alarms", [])]:
-        if alarm["kind"] == DISCOUNT:
-            typer.echo(f"warning: {alarm['scene']}: {alarm['sentence']}", err=True)
-        else:
-            cases.setdefault(alarm["kind"], set()).add(alarm["scene"])
-    if cases:
-        said = ", ".join(f"{kind} in {len(some)} case{'s' * (len(some) > 1)}" for kind, some in cases.items())
-        typer.echo(f"alarms: {said} (see the report)")
+            if rows[case["key"]].outcome is not Outcome.COMPLETED:
+                typer.echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
 
 
 def after_run(
@@ -158,7 +162,7 @@ def print_changes(found: list[Change]) -> None:
     """Print one table: change, study, gate, verdict and value before and after."""
     from validation.gates.changes import band_said
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     for name in ("change", "study", "gate", "before", "after"):
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}

@@ -50,3 +50,13 @@ def console() -> Console:
             raise
 
     return Plain(width=None if sys.stdout.isatty() else PAGE)
+
+
+def width() -> int:
+    """Return the characters of a line: those of the terminal, or `PAGE` where the output is none."""
+    return console().width
+
+
+def terminal_width() -> int | None:
+    """Return the characters of a line of the terminal; None where the output is none, and lines are not broken."""
+    return console().width if sys.stdout.isatty() else None

@@ -1,0 +1,121 @@
+"""A block over a plane base, and how its steps are made when it may turn by any angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.unilateral import Unilateral
+from dda.model.block import Block
+from dda.model.load import Load, pressed_part
+from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, positions, quarter, turned
+from dda.rotation.step import Setting, State, Touch
+from dda.scheme.newmark import Scheme
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RollingModel:
+    """One convex block that slides, rocks, topples and rolls over the line of its base edge, prolonged both ways.
+
+    Pressure and traction are dead loads: they keep size and direction and act on the material points of the top edge.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, the outline is not convex, the contact has a band, the eccentricity leaves nothing
+        of the top edge, or base and top are not two edges of the block.
+    """
+
+    block: Block
+    contact: Unilateral  # at every corner of the outline
+    load: Load = field(default_factory=Load)
+    base: int = 0  # edge on the plane at t = 0
+    top: int = 2  # edge under pressure and traction
+    tilt: float = 0.0  # counter-clockwise at t = 0, about the end of the base that stays down [rad]
+    velocity: tuple[float, float] = (0.0, 0.0)  # of the centroid at t = 0, in x and y of the block's coordinates [m/s]
+    spin: float = 0.0  # at t = 0, counter-clockwise [rad/s]
+
+    def __post_init__(self) -> None:
+        """Check the numbers and the edges."""
+        n = len(self.block.corners)
+        for name in ("base", "top"):
+            if not 0 <= getattr(self, name) < n:
+                raise ValueError(f"{name}: must be an edge between 0 and {n - 1}, got {getattr(self, name)!r}")
+        if self.base == self.top:
+            raise ValueError(f"top: must differ from base, got {self.top!r}")
+        for name in ("tilt", "spin", "velocity"):
+            if not np.all(np.isfinite(getattr(self, name))):
+                raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
+        if any(self.contact.band):
+            raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
+        pressed_part(*self.block.edge(self.top), self.load.eccentricity)
+        _ = self.body
+
+    @cached_property
+    def body(self) -> Body:
+        """Outline and matrices in the frame of the base."""
+        return body(self.block, self.base)
+
+    def setting(self, options: RollingOptions) -> Setting:
+        """Return what stays the same from step to step."""
+        where, dead = self._dead()
+        weight = self.load.gravity * (self.body.to_base @ self.load.falling)
+        return Setting(self.body, self.contact, weight, where, dead, options.rotation, options.solve_limit)
+
+    def _dead(self) -> tuple[Array, Array]:
+        """Return where the resultants of pressure and traction act, and these, y before x as in `directions`."""
+        load, (start, end) = self.load, self.block.edge(self.top)
+        pressed = pressed_part(start, end, load.eccentricity)
+        given = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
+        acting = [(ends, size, way) for ends, size, way in given if size]
+        local = self.body.to_base
+        where = [local @ (np.mean(ends, axis=0) - self.block.section.centroid) for ends, _, _ in acting]
+        forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ way) for ends, size, way in acting]
+        return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2).T[::-1].copy()
+
+    def start(self, setting: Setting, scheme: Scheme) -> State:
+        """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
+        own, Q, e = self.body, turned(self.tilt), np.zeros(3)
+        upright = own.centroid + own.xi[own.base[0 if self.tilt >= 0 else 1]]
+        c = upright - Q @ own.xi[own.base[0 if self.tilt >= 0 else 1]] + np.array([0.0, self.contact.gap])
+        gap = positions(c, Q, e, own.xi)[:, 1]
+        touching = own.base if self.tilt == 0 else own.base[:1] if self.tilt > 0 else own.base[1:]
+        gap[list(touching)] = self.contact.gap
+        V: Array = np.zeros(6)
+        A: Array = np.zeros(6)
+        V[:2], V[2] = own.to_base @ self.velocity, self.spin
+        if scheme.start == "consistent":
+            push = directions(quarter(Q), Q, e, setting.where).T @ setting.dead.ravel()
+            push[:2] += own.M[0, 0] * setting.weight
+            A[:] = np.linalg.solve(own.M, push)
+        return State(c, Q, 0.0, e, V, A, Touch.apart(gap))
+
+
+@dataclass(frozen=True)
+class RollingOptions:
+    """How the steps are made.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its range.
+    """
+
+    rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
+    solve_limit: int = 6  # solves of the open-close iteration before all states are tried
+    cut: float = 0.3  # length of a cut step over that of the failed one
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        if self.rotation not in (EXACT, FIRST_ORDER):
+            raise ValueError(f"rotation: must be {EXACT!r} or {FIRST_ORDER!r}, got {self.rotation!r}")
+        if isinstance(self.solve_limit, bool) or not isinstance(self.solve_limit, int) or self.solve_limit < 1:
+            raise ValueError(f"solve_limit: must be a positive integer, got {self.solve_limit!r}")
+        if not (math.isfinite(self.cut) and 0 < self.cut < 1):
+            raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")

@@ -1,0 +1,198 @@
+"""The small problem of one step: forces N, T of the nodes of the base, states that their laws ask for.
+
+With lambda = (N, T) the gaps and slips at the end of the step are (w, s) = (w_f, s_f) + C lambda. A node is open,
+N = T = 0 and w >= 0; or closed, N + k w = 0 and N >= 0, and then it sticks or slides:
+
+    T + k_t phi (s - r) = 0  while  |T| <= tan N + c,     T = -d (tan N + c),  d (s + T / k_t - r) >= 0,
+
+with r the slip at which its shear spring is unstrained, d the way it slides, 1 or -1, and c its share of the cohesion.
+For a node that closes in the step r is the slip where its gap, taken as straight in time, is zero:
+phi = w1 / (w1 - w0) with r the slip at the start; phi = 1 otherwise. Without friction nothing limits |T|.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+SETS = 256  # sets of states of which all are tried
+TURNS = 4  # changes of one node after the other, over the number of nodes
+SWEEPS = 200  # corrections of the crossings for given states
+SLACK = 1e-12  # of the friction, by which a node that slides may miss it
+NONE, SEVERAL = "no consistent contact state", "several consistent contact states"
+
+
+class Law(NamedTuple):
+    """Springs and friction of the nodes."""
+
+    k: np.ndarray  # normal stiffness [N/m]
+    k_t: np.ndarray  # shear stiffness [N/m]
+    tan: float  # of the angle of friction, infinite without a limit
+    c: np.ndarray  # cohesion [N]
+
+
+class Start(NamedTuple):
+    """The nodes at the start of a step."""
+
+    gap: np.ndarray  # [m]
+    reference: np.ndarray  # slip at which the shear spring is unstrained [m]
+    slip: np.ndarray  # [m]
+    states: np.ndarray  # 0 open, 1 sticks, 2 and -2 slides towards +x and -x
+    slid: np.ndarray  # sum of what the reference has moved while pressed [m]
+
+
+class Forces(NamedTuple):
+    """Forces, gaps and slips for given states of the nodes."""
+
+    N: np.ndarray
+    T: np.ndarray
+    w: np.ndarray
+    s: np.ndarray  # beyond the reference at the start
+    states: np.ndarray
+    settled: bool = True
+
+
+class Small:
+    """The small problem of one step."""
+
+    def __init__(self, law: Law, C: np.ndarray, free: tuple[np.ndarray, np.ndarray], start: Start) -> None:
+        self.law, self.C, self.start, self.n = law, C, start, len(law.k)
+        self.sheared = len(C) > self.n
+        self.rubs = self.sheared and law.tan < np.inf
+        self.free = np.concatenate([free[0], free[1] - start.reference])[: len(C)]
+        self.stiff = np.concatenate([law.k, law.k_t])[: len(C)]
+
+    def forces(self, states: np.ndarray) -> Forces:
+        """Forces of given states, with the crossings that they bring about."""
+        closing = (states == 1) & (self.start.states == 0) & self.sheared
+        phi, relax, least = np.where(closing, 0.5, 1.0), 1.0, np.inf
+        for _ in range(SWEEPS):
+            found = self._linear(states, phi)
+            miss = np.where(closing, self._passed(found.N) - phi, 0.0)
+            worst = float(np.abs(miss).max())
+            if worst < 1e-13:
+                return found
+            relax, least = (relax, worst) if worst < least else (relax / 2, least)
+            phi = phi + relax * miss
+        return found._replace(settled=False)
+
+    def _passed(self, N: np.ndarray) -> np.ndarray:
+        """Share of the step that a closing node has been closed for."""
+        depth = np.maximum(N, 0.0) / self.law.k
+        way = depth + np.maximum(self.start.gap, 0.0)
+        return np.asarray(np.divide(depth, way, out=np.ones(self.n), where=way > 0))
+
+    def _linear(self, states: np.ndarray, phi: np.ndarray) -> Forces:
+        """Solve x + k (free + C lambda) = 0, lambda = P x + q, for the N of closed and the T of sticking nodes."""
+        n, size = self.n, len(self.C)
+        P, q = np.eye(size), np.zeros(2 * n)
+        for i in np.flatnonzero(np.abs(states) == 2):
+            d = np.sign(states[i])
+            P[n + i, [i, n + i]] = -d * self.law.tan, 0.0
+            q[n + i] = -d * self.law.c[i]
+        q = q[:size]
+        rows = np.flatnonzero(np.concatenate([states != 0, states == 1])[:size])
+        stiff = self.stiff.copy()
+        stiff[n:] *= phi[: size - n]
+        matrix = np.eye(len(rows)) + stiff[rows, None] * (self.C[rows] @ P[:, rows])
+        x = np.linalg.solve(matrix, -stiff[rows] * (self.free[rows] + self.C[rows] @ q))
+        found = P[:, rows] @ x + q
+        moved = self.free + self.C @ found
+        N, T, w, s = (np.zeros(n) for _ in range(4))
+        N[:], w[:] = found[:n], moved[:n]
+        if self.sheared:
+            T[:], s[:] = found[n:], moved[n:]
+        return Forces(N, T, w, s, states)
+
+    def wanted(self, found: Forces) -> np.ndarray:
+        """States that forces, gaps and slips ask for."""
+        states, law = found.states, self.law
+        closed = np.where(states != 0, found.N >= 0, found.w < 0)
+        if not self.rubs:
+            return closed.astype(int)
+        N = np.where(states != 0, found.N, -law.k * np.minimum(found.w, 0.0))
+        phi = np.where(self.start.states == 0, self._passed(N), 1.0)
+        holding = np.where(states == 1, found.T, -law.k_t * phi * found.s)
+        most = law.tan * np.maximum(N, 0.0) + law.c
+        goes_on = (np.abs(states) == 2) & (-np.sign(states) * holding >= (1 - SLACK) * most)
+        begins = np.abs(holding) > most
+        way = np.where(goes_on, states, np.where(begins, -2 * np.sign(holding), 1))
+        return np.where(closed, way, 0).astype(int)
+
+    def solve(self, limit: int) -> tuple[Forces | None, int, str]:
+        """Forces of consistent states, solutions used, and why there are none."""
+        states = self.start.states
+        for count in range(1, limit + 1):
+            found = self.forces(states)
+            wanted = self.wanted(found)
+            if found.settled and np.array_equal(wanted, states):
+                return found, count, ""
+            states = wanted
+        if not self.sheared:
+            return self._least_index(states), limit + 1, ""
+        choices = (0, 1, 2, -2) if self.rubs else (0, 1)
+        if len(choices) ** self.n > SETS:
+            return self._by_turns(states, limit) if self.rubs else (None, limit, NONE)
+        sets = self._consistent(choices)
+        return (sets[0] if len(sets) == 1 else None), limit + 1, SEVERAL if sets else NONE
+
+    def _least_index(self, states: np.ndarray) -> Forces:
+        """Change the first node that is wrong until none is, which ends for any such problem (Murty, 1974)."""
+        while True:
+            found = self.forces(states)
+            wrong = np.flatnonzero(self.wanted(found) != states)
+            if not len(wrong):
+                return found
+            states = states.copy()
+            states[wrong[0]] = 1 - states[wrong[0]]
+
+    def _by_turns(self, states: np.ndarray, used: int) -> tuple[Forces | None, int, str]:
+        """Change the first node that is wrong, so many times at most."""
+        for count in range(used + 1, used + TURNS * self.n + 1):
+            found = self.forces(states)
+            wanted = self.wanted(found)
+            wrong = np.flatnonzero(wanted != states)
+            if not len(wrong):
+                return (found, count, "") if found.settled else (None, count, NONE)
+            states = states.copy()
+            states[wrong[0]] = wanted[wrong[0]]
+        return None, count, NONE
+
+    def _consistent(self, choices: tuple[int, ...]) -> list[Forces]:
+        """All sets of states that hold, those with equal forces once."""
+        kept: list[Forces] = []
+        for found in self._holding(choices):
+            if not any(alike(found, other) for other in kept):
+                kept.append(found)
+        return kept
+
+    def _holding(self, choices: tuple[int, ...]) -> Iterator[Forces]:
+        for choice in itertools.product(choices, repeat=self.n):
+            found = self.forces(np.array(choice))
+            if found.settled and np.array_equal(self.wanted(found), choice):
+                yield found
+
+    def ended(self, found: Forces, slip: np.ndarray) -> Start:
+        """The nodes at the end of the step, which are at `slip`."""
+        law, start = self.law, self.start
+        unstrained = slip + np.divide(found.T, law.k_t, out=np.zeros(self.n), where=law.k_t > 0)
+        was, slides = start.states != 0, np.abs(found.states) == 2
+        stuck = np.where(was & ~slides, start.reference, unstrained)
+        crossing = start.slip + (1 - self._passed(found.N)) * (slip - start.slip)
+        gone = unstrained - np.where(was, start.reference, crossing)
+        return Start(
+            gap=np.where(found.states != 0, -found.N / law.k, found.w),
+            reference=np.where(found.states != 0, stuck, slip),
+            slip=slip,
+            states=found.states,
+            slid=start.slid + np.where(slides & (gone * found.states > 0), gone, 0.0),
+        )
+
+
+def alike(one: Forces, other: Forces) -> bool:
+    """Whether two sets of states are one contact: a node without forces has several names for its state."""
+    parts = [np.concatenate([found.N, found.T]) for found in (one, other)]
+    return bool(np.abs(parts[0] - parts[1]).max() <= 1e-9 * np.abs(parts).max())

@@ -1,0 +1,130 @@
+"""The answer of `run`: failures in full, a line a study, alarms by kind, what comes next; bounded, and for machines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import SCENE, typed
+from oracles.made_cases import kept_study, made_row
+
+from validation import load_scene
+from validation.cli.printing import answer
+from validation.cli.printing.answer import FAILURES_SHOWN, SCREEN, Ran
+from validation.engine.measured import Judged
+from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.studies.catalogue import get_study
+
+CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
+GATE = Gate(CASE.name, ("dda", "bar"), "displacement.l2", 0.031, 0.042, "the reason " * 12)
+NOT_RUN = Verdict(GATE, None, Status.NOT_RUN, "fenicsx: needs the package dolfinx")
+ENDS = {"dda": Outcome.COMPLETED, "fem": Outcome.OVERFLOW, "bar": Outcome.TIMEOUT, "continuum": Outcome.NOT_APPLICABLE}
+
+
+def run_of(name: str, verdicts: Sequence[Verdict], ends: dict[str, Outcome] | None = None) -> Judged:
+    study = replace(get_study("core"), name=name, expects=(Outcome.OVERFLOW,))
+    return Judged(study, verdicts, {(CASE.name, solver): end for solver, end in (ends or {}).items()})
+
+
+def ran(results: Results, runs: Sequence[Judged], own: frozenset[str] = frozenset()) -> Ran:
+    return Ran(runs, [1.25] * len(runs), results, ["a: no case was measured"], None, own, 1)
+
+
+def said(what: Ran, width: int = 80) -> list[str]:
+    return [text for text, _ in answer.lines(what, width)]
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Results:
+    results = Results(tmp_path / "r")
+    rows = [made_row(name, {}, CASE.name, outcome=end, notes=("at 3",)) for name, end in ENDS.items()]
+    alarms = [{"kind": kind, "scene": name, "sentence": text} for kind, name, text in
+              (("hidden tension", "a", "x"), ("hidden tension", "a", "y"), ("hidden tension", "b", "z"),
+               ("contact ringing", "a", "it rings"))]  # fmt: skip
+    kept_study(results, [(CASE, row, None) for row in rows], alarms=alarms)
+    return results
+
+
+def test_failures_stand_first_and_in_full_and_the_rest_is_counted(made: Results) -> None:
+    lines = said(ran(made, [run_of("made", [judge(GATE, 0.0512), judge(GATE, 0.04), NOT_RUN], ENDS)]))
+    assert lines[0] == f"FAIL {GATE.id}: 0.0512 is outside [0.031, 0.042]"
+    reason = lines[1 : next(i for i, line in enumerate(lines) if line.startswith(CASE.name))]
+    assert " ".join(" ".join(reason).split()) == GATE.reason.strip() and all(line.startswith("  ") for line in reason)
+    text = " ".join(" ".join(lines).split())
+    assert f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3" in text
+    assert f"{CASE.name} fem" not in text, "what the study expects is counted"
+    at = lines.index("study  passed  failed  not run  seconds")
+    assert lines[at + 1 : at + 3] == ["made        1       1        1      1.2", "1 PASS, 1 FAIL, 1 NOT RUN in 1.2 s"]
+    for words in (
+        "a: no case was measured",
+        "NOT RUN 1: fenicsx: needs the package dolfinx",
+        "2 of 4 runs did not complete, as their studies allow: 1 overflow, 1 not applicable",
+        "alarms: hidden tension in 2 cases, contact ringing in 1 case",
+        f"results: {made.directory}",
+        f"next: dda-validate figures made --results {made.directory} draws the histories",
+    ):
+        assert words in text
+    assert "it rings" not in text
+    assert all(len(line) <= 80 or " " not in line.strip() for line in lines)
+
+
+def test_alarms_of_a_users_scene_are_explained(made: Results) -> None:
+    lines = said(ran(made, [run_of("made", [])], frozenset({"made"})))
+    assert "  contact ringing: a: it rings" in lines and "  hidden tension: a: x" in lines
+    assert "made: has no gates: nothing was judged" in lines
+
+
+def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made: Results) -> None:
+    runs = [run_of("made" if i == 19 else f"s{i}", [judge(GATE, 0.04 if i != 18 else 1.0)], ENDS) for i in range(25)]
+    lines = [text for text, _ in answer.summary(ran(made, runs), 80)]
+    assert len(lines) <= SCREEN
+    rows = lines[1 : next(i for i, line in enumerate(lines) if " PASS, " in line)]
+    assert len(rows) > 10 and rows[-1].startswith(f"{26 - len(rows)} more")
+    assert sum(int(row.split()[-4]) for row in rows) == 24
+    assert [row.split()[0] for row in rows if row.split()[-3] == "1"] == ["s18"]
+
+
+def test_of_very_many_failures_the_rest_is_counted_by_metric(made: Results) -> None:
+    many = [judge(replace(GATE, until=float(i + 1)), 1.0) for i in range(FAILURES_SHOWN + 7)]
+    lines = said(ran(made, [run_of("made", many)]), 200)
+    assert sum(line.startswith(f"FAIL {CASE.name}") for line in lines) == FAILURES_SHOWN
+    assert "FAIL and 7 more gates: displacement.l2 7; --verbose shows every one" in lines
+
+
+FAILING = """
+[run]
+solvers = ["dda", "bar"]
+[sweep]
+"time.step" = [0.002, 0.001]
+[[gate]]
+pair = ["dda", "bar"]
+metric = "displacement.l2"
+band = [0.0, 0.06]
+reason = "mine"
+"""
+
+
+def test_json_and_quiet_give_the_same_status_as_the_text(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE + FAILING)
+    command = "run", scene_file, "--results", tmp_path / "r"
+    text, quiet, data, full = (typed(*command, *more) for more in ([], ["--quiet"], ["--json"], ["--verbose"]))
+    assert [done.returncode for done in (text, quiet, data, full)] == [1] * 4
+    assert (quiet.stdout, quiet.stderr) == ("", "")
+    found = json.loads(data.stdout)
+    assert found["status"] == 1 and found["studies"][0]["failed"] == found["studies"][0]["passed"] == 1
+    assert found["verdicts"] == json.loads((tmp_path / "r/verdicts.json").read_text())
+    assert found["studies"][0]["outcomes"] == {"completed": 4} and found["changes"] is None
+    assert "FAIL small[time.step=0.001]:dda-bar:displacement.l2: " in text.stdout
+    assert "time.step=0.002" in full.stdout and "1 PASS, 1 FAIL, 0 NOT RUN" in full.stdout
+    both = typed(*command, "--json", "--quiet")
+    assert both.returncode == 2 and both.stderr == "error: --json, --quiet: exclude each other, got both\n"
+
+
+def test_colours_are_for_terminals_only(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE + FAILING)
+    assert "\x1b" not in typed("run", scene_file, "--results", tmp_path / "r", "--verbose").stdout

@@ -1,0 +1,60 @@
+"""Every command's help page has an example; its options exist, and it runs as it stands."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from conftest import SCENE, beside, typed
+
+from validation import load_scene, solve
+from validation.cli.entry import app
+
+COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+# A study is timed for minutes and a committed file rewritten; whole studies and packs have tests of their own.
+UNTRIED = {"record", "claims", "export-pack"}
+
+
+def examples(name: str) -> list[list[str]]:
+    """Return the words of each command line that stands as an example on a help page."""
+    lines = re.findall(r"\[bold\](.*?)\[/bold\]", COMMANDS[name].help, re.S)
+    parts = [part for line in lines for part in " ".join(line.split()).split("&&")]
+    return [shlex.split(part)[1:] for part in parts]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -> None:
+    assert "Example: " in COMMANDS[name].help
+    assert name in {words[0] for words in examples(name)}
+    for command, *rest in examples(name):
+        known = {option for parameter in COMMANDS[command].params for option in parameter.opts}
+        assert {word for word in rest if word.startswith("--")} <= known
+
+
+def test_help_pages_show_it() -> None:
+    for command in ([], ["run"], ["show"]):
+        done = typed(*command, "--help")
+        assert done.returncode == 0 and "Example: " in done.stdout
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", sorted(set(COMMANDS) - UNTRIED))
+def test_examples_run_as_they_stand(
+    name: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "reports").mkdir()
+    beside(finished_cases, tmp_path / "reports/results")
+    (tmp_path / "my-scene.toml").write_text(SCENE)
+    run = solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
+    table = np.column_stack([run.time, -1000 * run.displacement])  # millimetres, downwards
+    np.savetxt(tmp_path / "theirs.csv", table, delimiter=",", header="t,uy", comments="", fmt="%.17g")
+    first = [["run", "figures-3-4"]] if name in ("report", "diff") else []
+    for words in (*first, *examples(name)):
+        if words[0] == "diff":
+            (tmp_path / "main").mkdir()
+            (tmp_path / "main/verdicts.json").write_bytes((tmp_path / "reports/results/verdicts.json").read_bytes())
+        done = typed(*words, cwd=tmp_path)
+        assert done.returncode == 0, f"{words}\n{done.stdout}{done.stderr}"

@@ -1,0 +1,120 @@
+"""`show SCENE`: the model drawn, its parameters, and derived numbers against formulas written here."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import SCENE, thinned, typed
+
+from validation.scenes.scene import load_scene, scene_names
+
+
+def shown(*arguments: object) -> dict[str, Any]:
+    done = typed("show", *arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def single(found: dict[str, Any]) -> dict[str, float]:
+    """Return the numbers, each of which is the same in all cases."""
+    assert all(each["low"] == each["high"] for each in found["numbers"].values())
+    return {name: each["low"] for name, each in found["numbers"].items()}
+
+
+@pytest.mark.parametrize(("young", "density", "p", "dt"), [(1e9, 2700.0, 1e9, 0.002), (4e9, 2000.0, 3e10, 0.0007)])
+def test_numbers_of_a_block_are_those_of_the_formulas(
+    young: float, density: float, p: float, dt: float, scene_file: Path
+) -> None:
+    sets = (f"block.young={young}", f"block.density={density}", f"contact.stiffness={p}", f"time.step={dt}")
+    found = single(shown(scene_file, *(word for each in sets for word in ("--set", each))))
+    c, h, q, m = math.sqrt(young / density), 2.0, 5e6, density * 4
+    # two unknowns (v, ey): M = diag(m, m h^2/12), K = [[2 p, -p h], [-p h, E w h + p h^2 / 2]], w = h = 2 m
+    a, b = 2 * p / m, (young * 4 + p * 2) / (m / 3)
+    product = a * b - (2 * p) ** 2 / (m * m / 3)
+    w1 = math.sqrt((a + b) / 2 - math.sqrt((a + b) ** 2 / 4 - product))
+    wanted = {"m": m, "p/E": p / young, "c": c, "h/c": h / c, "c dt/h": c * dt / h, "F/2p": q * 2 / (2 * p), "w1": w1}
+    wanted |= {"w1 dt": w1 * dt, "wc": math.sqrt(product) / w1, "wc dt": math.sqrt(product) / w1 * dt, "n dt": 50 * dt}
+    assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=1e-9)
+    assert "dt stable" not in found and "Omega" not in found
+
+
+def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: Path) -> None:
+    explicit = ("--set", "time.alpha=0", "--set", "time.delta=0.5", "--set", "time.allow_unstable=true")
+    found = shown(scene_file, *explicit)
+    numbers = single(found)
+    fastest = max(numbers["w1"], numbers["wc"])  # central differences: w dt < 2
+    assert numbers["dt stable"] <= 2 / fastest * (1 + 1e-9)
+    assert list(found["remarks"]) == ["dt is beyond the stability limit: the numbers grow"]
+    below = shown(scene_file, *explicit, "--set", f"time.step={0.99 * numbers['dt stable']}")["remarks"]
+    assert not [text for text in below if "grow" in text]
+
+
+def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file: Path) -> None:
+    unlocked = ("--set", "contact.law=unilateral", "--set")
+    numbers = single(shown(scene_file, *unlocked, "time.step=0.001"))
+    c, m = math.sqrt(1e9 / 2700), 2700 * 4
+    assert numbers["Omega"] == pytest.approx(math.sqrt(8e9 / m) * 0.001)
+    assert numbers["dt seen"] == pytest.approx(2 / (c * math.sqrt(3)))  # h / (c sqrt(6 alpha))
+    assert "w1" not in numbers
+    words = {step: list(shown(scene_file, *unlocked, f"time.step={step}")["remarks"]) for step in (1e-4, 1e-3, 5e-3)}
+    assert words[1e-4] == [] and "restitution" in words[1e-3][0] and len(words[1e-3]) == 1
+    assert words[5e-3][0] == "dt hides that the block leaves its springs at t = 0" and "Omega > 2" in words[5e-3][1]
+
+
+def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
+    text = SCENE.replace("pressure = 5.0e6", "gravity = 9.81\nslope = 30.0")
+    scene_file.write_text(text.replace("[load]", 'law = "unilateral"\nfriction = 25.0\n\n[load]'))
+    found = shown(scene_file)
+    numbers = single(found)
+    assert numbers["tan phi"] == pytest.approx(math.tan(math.radians(25)))
+    assert numbers["tan b"] == pytest.approx(math.tan(math.radians(30))) and numbers["w/h"] == 1
+    assert "tan b > tan phi: the block slides" in found["remarks"]
+    assert "tan b > w/h: the block topples" not in found["remarks"]
+    flat = shown(scene_file, "--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")[
+        "remarks"
+    ]
+    assert "tan b > w/h: the block topples" in flat and "tan b > tan phi: the block slides" not in flat
+
+
+def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
+    found = single(shown("waves-site"))
+    rock, lowest = 2400.0 * 900, 2100.0 * 500
+    assert found["1: c"] == pytest.approx(500) and found["4: c dt/h"] == pytest.approx(150 * 0.002 / 0.5)
+    assert found["3: f10"] == pytest.approx(220 / (10 * 0.5), rel=1e-4)
+    assert found["H/c"] == pytest.approx(15 / 500 + 10 / 350 + 8 / 220 + 5 / 150, rel=1e-4)
+    assert found["reflected"] == pytest.approx(100 * (rock - lowest) / (rock + lowest))
+    assert shown("waves-glue")["numbers"]["blocks"] == {"low": 25.0, "high": 25.0, "unit": ""}
+
+
+def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
+    text = typed("show", "figures-3-4").stdout
+    lines = {line.split("  ")[0]: line.split() for line in text.splitlines()}
+    assert lines["c dt/h"][2:5] == ["0.3043", "..", "3.043"] and lines["m"][1] == "1.08e+04"
+    assert lines["varied"] == ["varied", "time.step", "=", "0.01,", "0.002,", "0.001"]
+    assert "! fewer than two steps in a period of the first mode: no history shows it (in 1 of 3 cases)" in text
+    assert "next: dda-validate run figures-3-4" in text
+    assert "over all" not in typed("show", "figures-3-4", "--set", "time.step=0.002").stdout
+
+
+def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
+    scene_file.write_text(SCENE + "[damping]\nmass = 2.0\n[run]\nsolvers = ['dda']\n")
+    text = typed("show", scene_file).stdout
+    for words in ("q = 5e+06 Pa", "2 x 2 m", "rho = 2700 kg/m3, E = 1e+09 Pa", "p = 1e+09 N/m at each corner; locked",
+                  "50 of dt = 0.002 s", "constant acceleration", "a0 = 2 1/s", "damping tables"):  # fmt: skip
+        assert words in text
+
+
+@pytest.mark.parametrize("name", thinned(scene_names(), 13))
+def test_every_built_in_scene_is_shown(name: str) -> None:
+    found = shown(name)
+    assert found["numbers"] and found["cases"] == len(load_scene(name).expand())
+    assert typed("show", name).stdout.startswith(f"{name}: ")
+
+
+def test_bad_input_is_refused_as_by_run(tmp_path: Path) -> None:
+    for words, said in ((("nowhere.toml",), "no such scene file"), (("drop", "--set", "time.stop=1"), "unknown key")):
+        done = typed("show", *words)
+        assert done.returncode == 2 and said in done.stderr and not done.stdout

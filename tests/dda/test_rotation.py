@@ -1,0 +1,250 @@
+"""A block that turns by any angle: invariants of its steps, small motion as its limit, named outcomes."""
+
+import math
+from dataclasses import replace
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from oracles.rolling import random_rolling
+
+import dda.rotation.solution as solution
+import dda.rotation.step as step
+from dda import BaseMotion, Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions
+from dda import solve_unilateral as solve_small
+from dda.contact.iteration import NONE
+from dda.rotation.body import FIRST_ORDER
+from dda.rotation.model import RollingModel, RollingOptions
+from dda.rotation.solution import solve_rolling
+from dda.rotation.step import Made
+
+COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", "strain_x", "strain_y")
+STORED = ("kinetic", "strain", "springs", "load")
+LOST = ("algorithmic", "kinetic damping", "switching", "friction")
+MATERIAL = Material(2700.0, 1e9, 0.2)
+QUADRILATERAL = Block([[0, 0], [2, 0], [2.5, 1], [0.3, 1.7]], MATERIAL)
+FAR = Unilateral(1e9, gap=100.0)
+AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
+HEAVY = RollingModel(Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e8, 4e7), Load(gravity=9.81), tilt=0.3)
+
+
+def losses(result):
+    """Return total energy, and the increments of all losses as rows, over the largest energy."""
+    e = result.energies
+    size = max(np.max(np.abs(values)) for values in e.values())
+    return sum(e[name] for name in STORED) / size, np.diff([e[name] for name in LOST]) / size
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 103))])
+def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed):
+    model, dt = random_rolling(seed)
+    scheme = Scheme(*CONSTANT, 0.98 if seed % 5 == 0 else 1.0, dt, "consistent" if seed % 2 else "zero")
+    result = solve_rolling(model, scheme, 200)
+    total, lost = losses(result)
+    assert result.outcome == "completed" and np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
+    assert np.max(np.diff(total)) < 1e-13 and np.min(lost) > -1e-13
+    assert np.all(result.normal >= 0) and np.all(result.gap * model.contact.stiffness >= -result.normal * (1 + 1e-9))
+
+
+@pytest.mark.parametrize(("alpha", "delta"), [AVERAGE, CONSTANT, (0.3025, 0.6)])
+def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
+    model, scheme = RollingModel(QUADRILATERAL, FAR), Scheme(alpha, delta, 1.0, 0.01)
+    stepping = solution.Rolling(model, scheme, RollingOptions())
+    start, V = stepping.parts[0], np.array([1.0, 2.0, 7.0, 0.3, -0.2, 0.4])  # it vibrates as it spins
+    stepping.parts[0] = replace(start, state=start.state._replace(V=V))
+    stepping.run(300)
+    states, M, K = [part.state for part in stepping.parts], stepping.setting.body.M, stepping.setting.body.K
+    assert states[-1].r > 6 * math.pi
+    assert np.max(np.abs([M[:3] @ state.V / (M[:3] @ V) - 1 for state in states])) < 1e-12
+    kinetic, strain = np.array([(state.V @ M @ state.V / 2, state.e @ K @ state.e / 2) for state in states]).T
+    gained = np.diff(kinetic + strain) / kinetic[0]
+    assert np.max(gained) < 1e-13 and (delta > 0.5 or np.max(np.abs(gained)) < 1e-13)
+    assert np.max(np.abs([np.linalg.det(state.Q) - 1 for state in states])) < 1e-12
+    assert np.ptp(strain) > 1e-5 * kinetic[0]
+
+
+def test_a_turn_by_360_degrees_brings_the_outline_back():
+    body = Block.rectangle(2.0, 2.0, MATERIAL)  # a square does not shear as it spins
+    model = RollingModel(body, FAR, spin=2 * math.pi / 0.9)
+    result = solve_rolling(model, Scheme(*AVERAGE, 1.0, 0.01), 90)
+    start = result.setting.body.xi + result.parts[0].state.c
+    assert abs(result.states[-1].r - 2 * math.pi) < 1e-12
+    assert np.max(np.abs(result.outline[-1] - start)) < 1e-12
+
+
+@pytest.mark.parametrize("steps", [45, 180])
+def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
+    r = math.pi / steps
+    model = RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), FAR, spin=r / 0.01)
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 0.01), steps, options=RollingOptions(FIRST_ORDER))
+    assert result.area[-1] == pytest.approx((1 + r * r) ** steps, rel=1e-11)
+    first, last = result.energies["kinetic"][[0, -1]]
+    assert last / first == pytest.approx((1 + r * r) ** (2 * (steps - 1)), rel=1e-11)  # moments go with its square
+    outline = result.outline[-1] - result.states[-1].c
+    angle = math.atan2(*(outline[1] - outline[0])[::-1]) % (2 * math.pi)
+    assert angle == pytest.approx(steps * math.atan(r), rel=1e-11)
+
+
+def test_small_motion_is_the_limit_of_small_loads():
+    law, scheme, e = Unilateral(1e9, 4e8), Scheme(*CONSTANT, 1.0, 2e-3), 0.3
+    block = Block([[0, 0], [2, 1], [1.5, 2.2], [-0.5, 1.0]], MATERIAL)  # its base leans
+    off = []
+    for size in (1.0, 0.5):
+        q, g = 4e5 * size, 9.81 * size
+        small = solve_small(UnilateralModel(block, law, q, 0, 2, e, 0.3 * q, g), scheme, 60, COLUMNS)
+        load = Load(q, e, 0.3 * q, g)
+        turned = solve_rolling(RollingModel(block, law, load), scheme, 60, COLUMNS)
+        off.append([np.max(np.abs(turned.columns[n] - small.columns[n])) / np.ptp(small.columns[n]) for n in COLUMNS])
+        rotation = np.max(np.abs(small.columns["rotation"]))
+    ratio = np.array(off[0]) / np.array(off[1])
+    assert np.all(np.array(off[0]) < 20 * 2 * rotation) and np.all(ratio > 1.7) and np.all(ratio < 2.3)
+
+
+def test_energies_of_small_motion_are_the_same():
+    law, scheme = Unilateral(1e9, 1e9), Scheme(*CONSTANT, 0.99, 1e-3)
+    small = solve_small(
+        UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), law, 5e3, eccentricity=0.3, gravity=9.81),
+        scheme,
+        100,
+        options=UnilateralOptions(energies=True),
+    )
+    load = Load(5e3, 0.3, gravity=9.81)
+    turned = solve_rolling(RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), law, load), scheme, 100)
+    size = max(np.max(np.abs(values)) for values in small.energies.values())
+    for name in (*STORED, *LOST[:3]):
+        assert np.max(np.abs(turned.energies[name] - small.energies[name])) < 1e-6 * size, name
+
+
+def test_a_mirrored_block_moves_as_its_mirror_image():
+    outline = np.array([[0, 0], [1.4, 0], [1.7, 1.9], [0.2, 2.2]])
+    law, load = Unilateral(1e8, 4e7, friction=0.4), Load(2e3, 0.1, 3e3, 9.81, slope=12.0)
+    other = Load(2e3, -0.1, -3e3, 9.81, slope=-12.0)
+    mirror = (outline * [-1, 1])[[1, 0, 3, 2]]
+    given = {"tilt": 0.4, "velocity": (0.3, -0.2), "spin": 0.5}
+    turned = {"tilt": -0.4, "velocity": (-0.3, -0.2), "spin": -0.5}
+    scheme = Scheme(*CONSTANT, 1.0, 5e-3)
+    left = solve_rolling(RollingModel(Block(outline, MATERIAL), law, load, **given), scheme, 160, COLUMNS)
+    right = solve_rolling(RollingModel(Block(mirror, MATERIAL), law, other, **turned), scheme, 160, COLUMNS)
+    assert np.max(np.abs(left.columns["displacement"] - right.columns["displacement"])) < 1e-9
+    assert np.max(np.abs(left.columns["rotation"] + right.columns["rotation"])) < 1e-9
+    assert np.max(np.abs(left.gap[[0, 1]] - right.gap[[1, 0]])) < 1e-9
+    assert np.count_nonzero(np.diff(left.of_points("state"))) > 3
+
+
+def test_a_base_that_moves_steadily_is_a_block_that_flies_the_other_way():
+    scheme, V = Scheme(*AVERAGE, 1.0, 2e-3), np.array([0.4, 0.3])
+    motion = BaseMotion([0.0, 1.0], [[0.0, 0.0], V])
+    carried = solve_rolling(replace(HEAVY, load=Load(gravity=9.81, motion=motion)), scheme, 120)
+    thrown = solve_rolling(replace(HEAVY, velocity=tuple(-V)), scheme, 120)
+    assert np.max(np.abs(carried.gap - thrown.gap)) < 1e-11
+    assert np.max(np.abs(carried.energies["strain"] - thrown.energies["strain"])) < 1e-6
+    total, lost = losses(carried)
+    assert np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
+
+
+def test_a_dead_load_keeps_its_direction_and_its_point():
+    """What it gives to a weightless block in flight is q L times the fall of its point."""
+    block = Block.rectangle(1.0, 2.0, Material(2700.0, 1e12, 0.0))
+    model = RollingModel(block, FAR, Load(1e4, 0.2, 2e3))
+    result = solve_rolling(model, Scheme(*AVERAGE, 1.0, 2e-3, "consistent"), 300)
+    assert abs(result.states[-1].r) > 0.25
+    e = result.energies
+    assert np.max(np.abs(e["kinetic"] + e["load"])) < 1e-4 * np.max(e["kinetic"])
+    pressed = (result.outline[:, 3] * 0.3 + result.outline[:, 2] * 0.7)[-1] - np.array([0.7, 102.0])
+    middle = result.outline[-1, 2:].mean(axis=0) - np.array([0.5, 102.0])
+    assert e["load"][-1] == pytest.approx(1e4 * 0.6 * pressed[1] - 2e3 * middle[0], rel=1e-9)
+
+
+def test_a_step_leaves_the_state_that_it_starts_from():
+    stepping = solution.Rolling(HEAVY, Scheme(*CONSTANT, 0.99, 1e-3), RollingOptions())
+    stepping.run(160)
+    state, scheme = stepping.parts[150].state, stepping.scheme
+    again = [step.advance(stepping.setting, scheme, state, np.zeros((2, 2))).state for _ in range(2)]
+    assert np.array_equal(again[0].c, again[1].c) and np.array_equal(again[0].V, stepping.parts[151].state.V)
+    assert not np.shares_memory(again[0].touch.gap, state.touch.gap)
+
+
+def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
+    tried = []
+
+    def refused(setting, scheme, state, base):
+        tried.append(scheme)
+        return Made(None, 3, NONE)
+
+    scheme = Scheme(*CONSTANT, 0.9, 1e-3)
+    with patch.object(solution, solution.advance.__name__, refused):
+        result = solve_rolling(HEAVY, scheme, 5)
+    assert result.outcome == NONE and len(result.time) == 0 and "at step 1" in result.notes[-1]
+    assert [s.step for s in tried] == pytest.approx([1e-3, 3e-4, 9e-5, 2.7e-5, 1e-5])
+    assert tried[1].gg == pytest.approx(0.9**0.3)
+
+
+def test_the_parts_of_a_cut_step_are_a_whole_step():
+    failed = []
+
+    def once(setting, scheme, state, base):
+        if not failed and scheme.step == 1e-3 and state.r != 0:
+            failed.append(scheme)
+            return Made(None, 1, NONE)
+        return real(setting, scheme, state, base)
+
+    real, scheme = solution.advance, Scheme(*AVERAGE, 0.99, 1e-3)
+    with patch.object(solution, solution.advance.__name__, once):
+        cut = solve_rolling(HEAVY, scheme, 40)
+    whole = solve_rolling(HEAVY, scheme, 40)
+    assert cut.step_cuts.sum() == 1 and len(cut.parts) > len(whole.parts)
+    total, lost = losses(cut)
+    assert np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
+    assert np.max(np.abs(cut.gap - whole.gap)) < 1e-5
+
+
+@pytest.mark.long
+def test_a_polygon_rolls_over_its_corners():
+    n = 12
+    angles = 2 * np.pi * (np.arange(n) - (n // 4) - 0.5) / n
+    block = Block(np.column_stack([np.cos(angles), np.sin(angles)]), Material(2700.0, 1e11, 0.0))
+    model = RollingModel(block, Unilateral(1e10, 1e10), Load(gravity=9.81, slope=30.0), base=0, top=6)
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 2e-3), 650, COLUMNS)
+    r, x = result.columns["rotation"][-1], result.columns["horizontal_displacement"][-1]
+    assert r < -1.5
+    side = 2 * math.sin(math.pi / n)
+    assert x == pytest.approx(-r * n * side / (2 * math.pi), abs=side)  # a side of the way for each corner
+    touched = np.flatnonzero(np.any(result.of_points("state") != 0, axis=1))
+    assert len(touched) >= 4
+
+
+def test_overflow_is_an_outcome():
+    model = RollingModel(QUADRILATERAL, FAR, Load(gravity=-1e300))
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 1e6), 20)
+    assert result.outcome == "overflow" and len(result.time) < 20
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"base": 4}, "base: must be an edge between 0 and 3"),
+        ({"top": 0}, "top: must differ from base"),
+        ({"tilt": math.nan}, "tilt: must be finite"),
+        ({"velocity": (0.0, math.inf)}, "velocity: must be finite"),
+        ({"contact": Unilateral(1e9, band=(1e-3, 0.0))}, "band: must be zero"),
+        ({"block": Block([[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]], MATERIAL)}, "vertices: must be those of a convex"),
+        ({"load": Load(1e3, 1.2)}, "eccentricity: must be below"),
+    ],
+)
+def test_bad_models_are_refused_by_name(given, words):
+    with pytest.raises(ValueError, match=words):
+        replace(RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9)), **given)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [({"rotation": "second"}, "rotation: must be"), ({"solve_limit": 0}, "solve_limit:"), ({"cut": 1.0}, "cut:")],
+)
+def test_bad_options_are_refused_by_name(given, words):
+    with pytest.raises(ValueError, match=words):
+        RollingOptions(**given)
+
+
+def test_rigid_stops_and_explicit_schemes_exclude_each_other():
+    with pytest.raises(ValueError, match="stiffness: must be finite in an explicit scheme"):
+        solve_rolling(RollingModel(QUADRILATERAL, Unilateral(math.inf)), Scheme(0.0, 0.5, 1.0, 1e-3), 1)

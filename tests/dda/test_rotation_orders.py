@@ -1,0 +1,101 @@
+"""A block that turns against DOP853: the order in the time step, and what the order needs."""
+
+import math
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from oracles.rolling import RollingBlock
+
+import dda.rotation.step as step
+from dda import Block, Load, Material, Scheme, Unilateral
+from dda.rotation.body import quarter, turn
+from dda.rotation.model import RollingModel
+from dda.rotation.solution import solve_rolling
+
+OUTLINE = [[0, 0], [1, 0], [1.1, 1.4], [0.1, 1.6]]
+MATERIAL = Material(2000.0, 3e7, 0.2)
+P, T = 5e6, 0.25
+SCHEMES = [(0.25, 0.5, 2.0), (0.5, 1.0, 1.0), (0.3025, 0.6, 1.0)]
+CASES = {"glued": (0.6, 4e6), "frictionless": (0.15, 0.0)}  # tilt [rad], shear stiffness [N/m]
+
+
+@pytest.fixture(scope="module")
+def truths():
+    made = {}
+    for name, (tilt, shear) in CASES.items():
+        outline = np.array([complex(*point) for point in OUTLINE])
+        block = RollingBlock(outline, 2000.0, MATERIAL.elasticity(), P, shear, -9.81j)
+        q0 = [*place(0.0, tilt), tilt, 0, 0, 0]
+        reference = [0.0 if shear else None, None, None, None]
+        made[name] = block.motion(q0, np.zeros(6), np.array([T]), reference)[-1][:6]
+    return made
+
+
+def model(name):
+    tilt, shear = CASES[name]
+    return RollingModel(Block(OUTLINE, MATERIAL), Unilateral(P, shear), Load(gravity=9.81), tilt=tilt)
+
+
+def place(r, tilt):
+    """Return the centroid of the tilted block, whose corner M is at the origin."""
+    x, y = model("glued").body.centroid
+    c, s = math.cos(tilt), math.sin(tilt)
+    return c * x - s * y, s * x + c * y
+
+
+def errors(name, alpha, delta, truth, steps):
+    """Return the errors of centroid and angle at T."""
+    found = []
+    for n in steps:
+        last = solve_rolling(model(name), Scheme(alpha, delta, 1.0, T / n, "consistent"), n).states[-1]
+        found.append(np.linalg.norm([*(last.c - truth[:2]), last.r + CASES[name][0] - truth[2]]))
+    return np.array(found)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "delta", "order"),
+    [SCHEMES[0], *(pytest.param(*scheme, marks=pytest.mark.long) for scheme in SCHEMES[1:])],
+)
+def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(truths, alpha, delta, order):
+    found = errors("glued", alpha, delta, truths["glued"], (150, 300))
+    assert abs(math.log2(found[0] / found[1]) - order) < 0.1  # the next order at these steps
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("alpha", "delta", "order"), SCHEMES)
+def test_contact_that_opens_and_closes_keeps_the_order(truths, alpha, delta, order):
+    """A switch falls anywhere within a step, which moves the error of one step length by some of its size."""
+    found = errors("frictionless", alpha, delta, truths["frictionless"], (150, 300, 600, 1200))
+    fitted = math.log2(found[0] / found[-1]) / 3
+    assert order - (0.5 if order == 2 else 0.1) < fitted < order + 0.1
+
+
+@pytest.mark.long
+def test_average_acceleration_needs_the_directions_of_the_end_of_a_step(truths):
+    """With those of the chord, which delta = 1 needs, its error falls with the first power of the step in the end."""
+    with patch.object(step, step.late_share.__name__, lambda delta: 0.0):
+        found = errors("glued", 0.25, 0.5, truths["glued"], (240, 480))
+    assert math.log2(found[0] / found[1]) < 1.4
+
+
+def test_delta_one_needs_the_directions_of_the_chord():
+    """With those of the end of the step a block gains energy as it falls over its corner."""
+    scheme = Scheme(0.5, 1.0, 1.0, 2e-3)
+    heavy = RollingModel(Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e9, 1e9), Load(gravity=9.81), tilt=0.5)
+
+    def rise():
+        e = solve_rolling(heavy, scheme, 150).energies
+        return np.max(np.diff(sum(e[name] for name in ("kinetic", "strain", "springs", "load"))))
+
+    assert rise() < 1e-7
+    with patch.object(step, step.late_share.__name__, lambda delta: 1.0):
+        assert rise() > 1e-3
+
+
+def test_the_first_derivative_of_the_turn_is_its_chord_in_the_limit():
+    Q = turn(np.eye(2), 0.7, "exact").end
+    for r in (1e-3, -0.4, 2.0):
+        made = turn(Q, r, "exact")
+        assert np.max(np.abs(made.end - Q - r * made.chord)) < 1e-15
+    assert np.max(np.abs(turn(Q, 1e-9, "exact").chord - quarter(Q))) < 1e-8

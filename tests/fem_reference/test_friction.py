@@ -1,0 +1,194 @@
+"""Elements that slide: turned axes, closed forms, other bases, symmetry."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from conftest import thinned
+from oracles.elements import make
+
+from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
+from fem_reference.contact.points import build
+from fem_reference.contact.stepper import ContactStepper
+
+CONSTANT = Scheme(0.5, 1.0, 1.0, 2e-4, "consistent")
+AVERAGE = Scheme(0.25, 0.5, 1.0, 2e-4, "consistent")
+GLUED = Unilateral(shear="glued")
+RUBBING = Unilateral(shear="glued", friction=Friction(25.0))
+SHAKE = Motion((0.0, 0.004, 0.011, 0.02, 0.03), (0.0, 1e-3, -2e-3, 1e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0, 0.0))
+
+
+def incline(slope, gravity=98.1, **more):
+    """A square on its incline, nothing on its top."""
+    own = {"elements": 4, "degree": 1, "poisson": 0.2, "shear": 4e8} | more
+    return replace(make(**own), pressure=0.0, gravity=gravity, slope=slope)
+
+
+def turned(problem, angle):
+    """The same block with its incline under it as it lies, gravity downwards, and the shaking along the same ways."""
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    corners = tuple(map(tuple, (np.array(problem.vertices) @ turn.T).tolist()))
+    x, y = turn @ np.array([SHAKE.x, SHAKE.y])
+    motion = None if problem.motion is None else Motion(SHAKE.time, tuple(x), tuple(y))
+    return replace(problem, vertices=corners, slope=0.0, motion=motion), turn
+
+
+@pytest.mark.parametrize(
+    ("contact", "motion"),
+    [
+        (None, SHAKE),
+        (replace(RUBBING, gap=1e-5, friction=Friction(10.0, 1e4)), SHAKE),
+        pytest.param(None, None, marks=pytest.mark.long),
+        pytest.param(RUBBING, None, marks=pytest.mark.long),
+    ],
+)
+def test_a_turned_block_is_a_block_under_turned_gravity(contact, motion):
+    upright = replace(incline(30.0), motion=motion)
+    lying, turn = turned(upright, np.radians(30.0))
+    names = ("displacement", "horizontal_displacement", "contact_pressure", "rotation")
+    if contact is None:
+        a, b = (solve(problem, CONSTANT, 150, names).columns for problem in (upright, lying))
+    else:
+        a, b = (solve_unilateral(problem, CONSTANT, 150, contact).columns for problem in (upright, lying))
+        assert a["largest_slide"].max() > 1e-4 and np.array_equal(a["solves"], b["solves"])
+        assert b["friction_loss"] == pytest.approx(a["friction_loss"], rel=1e-9, abs=1e-9 * a["friction_loss"].max())
+    moved = turn @ np.array([a["horizontal_displacement"], a["displacement"]])
+    found = np.array([b["horizontal_displacement"], b["displacement"]])
+    assert np.abs(found - moved).max() <= 1e-10 * np.abs(moved).max()
+    for name in names[2:]:
+        assert np.abs(b[name] - a[name]).max() <= 1e-9 * np.abs(a[name]).max(), name
+
+
+@pytest.mark.parametrize(
+    ("rule", "foundation"), thinned(product(["newmark", "implicit"], ["distributed", "corner", "patch"]), 4)
+)
+def test_while_all_points_slide_one_sum_of_the_mean_motion_is_free(rule, foundation):
+    """u_t + tan(phi) u_n of the centre of mass falls freely under g (sin b - tan(phi) cos b), by the same scheme."""
+    more = {"patch_width": 0.5} if foundation == "patch" else {}
+    problem = incline(40.0, foundation=foundation, degree=2, poisson=0.0, **more)
+    for scheme in (replace(AVERAGE, gg=0.99, start="zero"), Scheme(0.3025, 0.6, 0.999, 1e-3), CONSTANT):
+        if rule == "implicit":
+            scheme = replace(scheme, alpha=0.25, delta=0.5)
+        model = build(problem)
+        stepper = ContactStepper(model, scheme, "glued", rule=rule, friction=Friction(15.0))
+        tan, pull = np.tan(np.radians(15.0)), np.array(problem.pull)
+        weights = (1 - model.upwards + tan * model.upwards) @ model.M / 10800.0
+        state, g = stepper.start(), float(pull @ [1.0, tan])
+        x, v, a = 0.0, 0.0, g if scheme.start == "consistent" else 0.0
+        seen, dt, most = set(), scheme.step, 0.0
+        for _ in range(150):
+            state, _ = stepper.advance(state)
+            seen |= set(state.states.tolist())
+            x += scheme.gg * dt * v + dt**2 * ((0.5 - scheme.alpha) * a + scheme.alpha * g)
+            v, a = scheme.gg * v + dt * ((1 - scheme.delta) * a + scheme.delta * g), g
+            most = max(most, abs(weights @ state.motion.D - x))
+        assert seen <= {0, 2} and 2 in seen
+        # the sum is of forces that cancel, each with the rounding of a solution with a matrix of condition 1e4
+        assert most <= 1e-11 * x
+
+
+@pytest.mark.parametrize(("degree", "foundation"), thinned([(1, "distributed"), (2, "corner")], 2))
+def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, foundation):
+    angle, scheme, steps = 25.0, replace(CONSTANT, step=5e-2), 400
+    # what the first fall of the weight has set off is slowed, or made faster, by g sin(0.01 deg) / cos(phi)
+    faster = 9.81 * np.sin(np.radians(0.01)) / np.cos(np.radians(angle))
+    for slope, expected in ((angle - 0.01, 0.0), (angle + 0.01, faster)):
+        problem = incline(slope, 9.81, elements=2, degree=degree, foundation=foundation)
+        slide = solve_unilateral(problem, scheme, steps, RUBBING, columns=("largest_slide",)).columns["largest_slide"]
+        speed = np.diff(slide[steps // 2 :]) / scheme.step
+        gained = (speed[-1] - speed[0]) / (scheme.step * (len(speed) - 1))
+        # at rest to the last bit; or sped up by the sum of all forces, but for what still rings on the springs
+        assert gained == pytest.approx(expected, rel=1e-4, abs=0.0)
+        assert (speed[-1] == 0) == (expected == 0)
+
+
+def test_a_base_that_starts_to_move_carries_the_block_along():
+    """A base at the speed V under a block at rest: friction gives it that speed over a way V^2 / (2 tan g)."""
+    V, begin, g, tan = 0.5, 0.3, 9.81, np.tan(np.radians(25.0))
+    motion = Motion((0.0, begin, begin + 1.0), (0.0, 0.0, V), (0.0, 0.0, 0.0))
+    problem = replace(incline(0.0, g, elements=2), motion=motion)
+    run = solve_unilateral(problem, replace(CONSTANT, step=1e-3), 700, RUBBING)
+    way = V**2 / (2 * tan * g)
+    # at rest under the block the base has moved back: what slides, slides to -x; one step of the way is V dt, 1.8 %
+    assert run.columns["largest_slide"][-1] == pytest.approx(way, rel=0.02)
+    assert run.columns["largest_slide"][250] == 0.0
+    assert run.columns["friction_loss"][-1] == pytest.approx(10800 * g * tan * way, rel=0.03)
+    ahead = run.columns["horizontal_displacement"][-1] - V * 0.4
+    assert ahead == pytest.approx(-way, rel=0.02)
+
+
+@pytest.mark.parametrize("contact", thinned([RUBBING, GLUED, Unilateral()], 3))
+def test_a_base_that_rises_is_a_block_that_falls_on_it(contact):
+    """As seen from a base that moves at a constant speed from t = 0 on, the block has minus this speed."""
+    problem, speed = replace(incline(20.0), pressure=1e5, eccentricity=0.3, elements=8), 0.05
+    rising = Motion((0.0, 1.0), (0.0, 0.0), (0.0, speed))
+    contact = replace(contact, gap=1e-5)
+    fixed = solve_unilateral(problem, CONSTANT, 200, replace(contact, velocity=-speed)).columns
+    carried = solve_unilateral(replace(problem, motion=rising), CONSTANT, 200, contact).columns
+    way = speed * CONSTANT.step * np.arange(1, 201)
+    size = np.abs(fixed["displacement"]).max()
+    assert 0 < carried["open_share"].mean() < 1
+    assert np.abs(carried["displacement"] - fixed["displacement"] - way).max() <= 1e-9 * size
+    for name in ("contact_pressure", "base_shear", "largest_slide", "friction_loss", "switching_loss"):
+        assert np.abs(carried[name] - fixed[name]).max() <= 1e-8 * np.abs(fixed[name]).max(), name
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit"])
+def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one(rule):
+    still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))
+    problem = replace(incline(10.0, 98.1, foundation="nodes", p=1e8, shear=3e7), motion=still)
+    contact = replace(RUBBING, friction=Friction(60.0, 1e6), rule=rule)
+    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
+    scheme = replace(AVERAGE if rule == "implicit" else CONSTANT, step=1e-3)
+    steps = 20
+    run, locked = (
+        solve_unilateral(problem, scheme, steps, contact).columns,
+        solve(problem, scheme, steps, names).columns,
+    )
+    assert run["open_share"].max() == run["largest_slide"].max() == 0.0
+    if rule == "implicit":  # another scheme: the same motion in the limit only
+        run = {name: run[name] for name in names}
+        fine = solve_unilateral(problem, replace(scheme, step=1e-4), 10 * steps, contact).columns
+        both = run["displacement"], fine["displacement"][9::10]
+        far = [np.abs(values - locked["displacement"]).max() for values in both]
+        assert far[1] < far[0] < 0.2 * np.abs(locked["displacement"]).max()
+        return
+    for name in names:
+        scale = np.abs(locked["contact_pressure" if name == "contact_pressure" else "displacement"]).max()
+        # twenty solutions, each with the rounding of a matrix of condition 1e4
+        assert np.abs(run[name] - locked[name]).max() <= 1e-11 * scale, name
+
+
+def test_a_base_must_begin_where_the_block_stands():
+    with pytest.raises(ValueError, match=r"^motion: must be zero at t = 0"):
+        solve_unilateral(replace(incline(0.0), motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1)
+
+
+@pytest.mark.parametrize("foundation", thinned(["distributed", "corner"], 2))
+def test_no_limit_glues_and_none_at_all_lets_go(foundation):
+    problem = replace(make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8), foundation=foundation)
+    problem = replace(problem, traction=1e6)
+    cases = ((Friction(0.0, 1e12), GLUED), (Friction(0.0), Unilateral()))
+    for friction, other in cases:
+        found = solve_unilateral(problem, CONSTANT, 200, replace(GLUED, friction=friction)).columns
+        expected = solve_unilateral(problem, CONSTANT, 200, other).columns
+        assert 0 < expected["open_share"].mean() < 1
+        for name in ("displacement", "contact_pressure", "horizontal_displacement", "base_shear", "rotation"):
+            size = np.abs(expected["displacement" if "displacement" in name else name]).max()
+            assert np.abs(found[name] - expected[name]).max() <= 1e-9 * size, name
+
+
+@pytest.mark.parametrize("degree", thinned([1, 2], 2))
+def test_a_mirrored_incline_mirrors_the_block(degree):
+    contact = replace(RUBBING, velocity=-0.1, friction=Friction(12.0, 3e4))
+    right, left = (
+        solve_unilateral(incline(b, degree=degree), CONSTANT, 120, contact, every_point=True) for b in (20.0, -20.0)
+    )
+    assert set(np.unique(right.states)) >= {0, 1, 2}
+    flat = np.abs(right.slid).max()
+    assert flat > 1e-4 and np.abs(right.slid + left.slid[:, ::-1]).max() <= 1e-10 * flat
+    assert np.abs(right.normal - left.normal[:, ::-1]).max() <= 1e-9 * right.normal.max()
+    assert np.abs(right.shear + left.shear[:, ::-1]).max() <= 1e-9 * np.abs(right.shear).max()
+    mirrored = np.where(np.abs(left.states) == 2, -left.states, left.states)[:, ::-1]
+    assert np.array_equal(right.states, mirrored)

@@ -1,0 +1,216 @@
+"""The exact motion of the block with friction: known histories, an independent integration, identities."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import thinned
+from oracles.friction_oracle import Slipping, slipping_problem
+
+from fem_reference.events.block_events import BlockMotion, solve
+from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockProblem
+from fem_reference.problem.motion import Motion
+
+HALF = math.degrees(math.atan(0.5))  # tan(phi) = 0.5
+PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6, shear_stiffness=1e9)
+OFF_CENTRE = replace(PAPER, eccentricity=0.3, friction=HALF)
+SIDEWAYS = replace(PAPER, traction=2e6, friction=HALF, poisson=0.25)
+INCLINE = replace(PAPER, pressure=0.0, gravity=9.81, slope=20.0, friction=30.0, shear_stiffness=0.4e9)
+
+# First switches [s] with twelve digits, and (u, v, r) at an instant, from DOP853 with events at rtol 3e-14 and 1e-12.
+KNOWN = [
+    (
+        OFF_CENTRE,
+        "N closes 0.00239892830043, M closes 0.00407094907289, M slips 0.00745377531356, M sticks 0.00793488628924, "
+        "M slips 0.0157425143698, N slips 0.0159420213648, N opens 0.0163181298089, M opens 0.0163241226119",
+        {
+            0.01: [1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3],
+            0.03: [-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3],
+        },
+    ),
+    (
+        SIDEWAYS,
+        "N closes 0.00283945305465, M closes 0.00386752417274, M slips 0.00601093182843, M sticks 0.00703740618764, "
+        "M slips 0.00938196465955, M opens 0.0124246870787",
+        {0.03: [5.135338437750e-2, -8.977369811162e-3, -1.753606771872e-2]},
+    ),
+    (
+        INCLINE,
+        "M slips 0.0117360653442, N slips 0.014596773248, M opens 0.01461062328, N opens 0.0186019905401, "
+        "M closes 0.0193636210678",
+        {0.05: [8.660335668094e-4, -9.241387969921e-5, -5.024326498383e-5]},
+    ),
+]
+
+
+@pytest.mark.parametrize(("problem", "switches", "values"), KNOWN)
+def test_the_motion_is_that_computed_elsewhere(
+    problem: BlockProblem, switches: str, values: dict[float, list[float]]
+) -> None:
+    motion = solve(problem, max(values))
+    known = [one.split() for one in switches.split(", ")]
+    found = motion.switches[: len(known)]
+    assert [[s.corner, s.kind] for s in found] == [one[:2] for one in known]
+    # twelve digits are printed, half a unit of which is 5e-14 s, of an integration that is good to 4e-13 of the run
+    assert [s.time for s in found] == pytest.approx([float(one[2]) for one in known], rel=0, abs=6e-14)
+    for time, expected in values.items():
+        assert motion.at([time]).displacement[:3, 0] == pytest.approx(expected, rel=5e-11)
+
+
+def shift(problem: BlockProblem, *times: float) -> np.ndarray:
+    """Mean slide of the base [mm]."""
+    return 1e3 * solve(problem, times[-1]).at(times).slide.mean(axis=0)
+
+
+@pytest.mark.long
+def test_a_stable_block_on_an_incline_creeps() -> None:
+    assert shift(INCLINE, 0.1, 0.2, 0.3, 0.4) == pytest.approx([1.790, 3.732, 5.532, 7.394], abs=6e-4)
+    flat = shift(replace(INCLINE, friction=22.0), 0.1, 0.4)
+    assert np.diff(flat) / 0.3 == pytest.approx(27.3, abs=0.05)
+    stiff = shift(replace(INCLINE, friction=22.0, shear_stiffness=1e9), 0.1, 0.4)
+    assert np.diff(stiff) / 0.3 == pytest.approx(20.6, abs=0.05)
+
+
+def duration(problem: BlockProblem, travels: float) -> float:
+    return travels * problem.height * math.sqrt(problem.density / problem.young)
+
+
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(12) for moved in (False, True)], 5))
+def test_an_independent_integration_agrees(seed: int, moved: bool) -> None:
+    problem = slipping_problem(seed, moved)
+    end = duration(problem, 5)
+    motion = solve(problem, end)
+    switches, y = Slipping(problem).run([int(x) for x in motion.pieces[0].states], end)
+    # DOP853 at rtol 1e-13 is good to about 1e-12 here; every switch amplifies that
+    assert [s.time for s in motion.switches] == pytest.approx([time for time, _, _ in switches], abs=1e-8 * end)
+    assert [s.corner for s in motion.switches] == [corner for _, corner, _ in switches]
+    history = motion.at([end])
+    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-8 * np.abs(y[:6]).max())
+    assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
+
+
+def limit(problem: BlockProblem, normal: np.ndarray) -> np.ndarray:
+    return math.tan(math.radians(problem.friction or 0)) * normal + problem.cohesion * problem.width / 2
+
+
+@pytest.mark.parametrize("seed", thinned(range(20, 32), 6))
+def test_energy_law_and_the_digits_of_random_motions(seed: int) -> None:
+    problem = slipping_problem(seed)
+    end = duration(problem, 4)
+    motion, finer = solve(problem, end), solve(problem, end, digits=70)
+    assert motion.switches == finer.switches
+    t = np.sort(np.concatenate([np.linspace(0, end, 201), [s.time for s in motion.switches]]))
+    history, other = motion.at(t), finer.at(t)
+    # a float rounds terms of a series that cancel by up to e^4, sixty radians of a sine by 1e-14
+    for name in ("displacement", "velocity", "gap", "normal_force", "shear_force", "slide", "slipped", "friction"):
+        a, b = getattr(history, name), getattr(other, name)
+        assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max(), name
+    scale = history.kinetic.max() + history.strain.max() + np.abs(history.load).max()
+    assert np.abs(history.energy - history.energy[0]).max() <= 1e-13 * scale
+    assert np.diff(history.friction).min() >= -1e-13 * scale
+    bound, size = limit(problem, history.normal_force), 1e-12 * np.abs(history.normal_force).max()
+    assert np.all(np.abs(history.shear_force) <= history.closed * bound + size)
+    slips = np.abs(history.states) == RIGHT
+    assert slips.any() == ("slips" in {s.kind for s in motion.switches} or 2 in np.abs(motion.pieces[0].states))
+    assert np.abs(history.shear_force + np.sign(history.states) * bound)[slips].max(initial=0.0) <= size
+    for c in (0, 1):  # the reference goes where the corner slips to, and only then
+        moved, states = np.diff(history.slipped[c]), history.states[c, :-1]
+        assert np.all(np.sign(states) * moved * (np.abs(states) == RIGHT) >= -1e-14)
+        assert np.abs(moved[(states == STICKS) & (history.states[c, 1:] == STICKS)]).max(initial=0.0) <= 1e-14
+
+
+@pytest.mark.parametrize("seed", [40, 41])
+def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
+    problem = slipping_problem(seed)
+    signs = {name: -getattr(problem, name) for name in ("eccentricity", "traction", "slope")}
+    end = duration(problem, 3)
+    one, other = solve(problem, end), solve(replace(problem, **signs), end)
+    swapped = [(s.time, {"M": "N", "N": "M"}[s.corner], s.kind) for s in other.switches]
+    assert sorted((s.time, s.corner, s.kind) for s in one.switches) == sorted(swapped)
+    t = np.linspace(0, end, 40)
+    a, b = one.at(t), other.at(t)
+    assert np.array_equal(a.states, -np.where(np.abs(b.states) == RIGHT, b.states, -b.states)[::-1])
+    assert a.slide == pytest.approx(-b.slide[::-1], abs=1e-13 * np.abs(a.slide).max())
+
+
+def test_without_a_limit_that_is_reached_friction_changes_nothing() -> None:
+    glued, rough = solve(replace(OFF_CENTRE, friction=None), 0.03), solve(replace(OFF_CENTRE, friction=89.0), 0.03)
+    held = solve(replace(OFF_CENTRE, friction=0.0, cohesion=1e9), 0.03)
+    assert [s.time for s in held.switches] == [s.time for s in glued.switches]
+    assert {s.kind for s in glued.switches} == {"opens", "closes"}
+    assert held.at([0.03]).displacement == pytest.approx(glued.at([0.03]).displacement, rel=1e-13)
+    assert "slips" in {s.kind for s in rough.switches}  # without cohesion nothing sticks up to N = 0
+
+
+def both(motion: BlockMotion, kind: str) -> list[list[float]]:
+    return [[s.time for s in motion.switches if s.corner == corner and s.kind == kind] for corner in "MN"]
+
+
+def test_sliding_obeys_the_law_of_the_inclined_plane() -> None:
+    """While every corner slips or is open, u'' + tan(phi) v'' = g (sin b - tan(phi) cos b) whatever the springs do."""
+    steep = replace(INCLINE, slope=28.9, friction=15.0)
+    motion = solve(steep, 0.1)
+    t = np.linspace(0, 0.1, 31)
+    history, tan, b = motion.at(t), math.tan(math.radians(15.0)), math.radians(28.9)
+    fine = np.linspace(0, 0.1, 3001)
+    free = t > fine[(motion.at(fine).states == STICKS).any(axis=0)].max() + 0.001
+    v = history.velocity[0] + tan * history.velocity[1]
+    rates = np.diff(v[free]) / np.diff(t[free])
+    assert rates == pytest.approx(9.81 * (math.sin(b) - tan * math.cos(b)), rel=1e-11)
+    assert free.sum() > 20
+    assert set(np.unique(history.states[:, free])) <= {RIGHT, OPEN}
+
+
+def test_no_friction_at_all_is_the_block_without_shear_springs() -> None:
+    smooth = solve(replace(SIDEWAYS, shear_stiffness=0.0, friction=None), 0.02)
+    slick = solve(replace(SIDEWAYS, friction=0.0), 0.02)
+    times = [[s.time for s in m.switches if s.kind in ("opens", "closes")] for m in (smooth, slick)]
+    assert times[0] == pytest.approx(times[1], rel=1e-14)
+    assert smooth.at([0.02]).displacement == pytest.approx(slick.at([0.02]).displacement, rel=1e-13)
+    assert not slick.at(np.linspace(0, 0.02, 50)).friction.any()
+
+
+@pytest.mark.parametrize("friction", [5.0, 20.0])
+def test_corners_that_switch_together(friction: float) -> None:
+    """A flat load on a block that bulges: the corners slip apart and together again at the same instants."""
+    motion = solve(replace(PAPER, friction=friction, pressure=1e6, poisson=0.3), 0.05)
+    for kind in ("opens", "closes", "slips", "sticks"):
+        M, N = both(motion, kind)
+        assert M
+        assert M == N
+    history = motion.at(np.linspace(0, 0.05, 100))
+    assert not history.displacement[[0, 2, 5]].any()
+    assert np.array_equal(history.slide[0], -history.slide[1])
+
+
+def test_a_base_that_carries_the_block_along() -> None:
+    """Seen from a base in uniform motion the block starts with the opposite velocity, and falls the same."""
+    drift = Motion((0.0, 1.0), (0.0, 0.0), (0.0, 0.3))
+    onto = replace(PAPER, gap=1e-3, friction=20.0, traction=1e5)
+    moved, still = solve(replace(onto, base=drift), 0.02), solve(replace(onto, velocity=-0.3), 0.02)
+    assert [s.time for s in moved.switches] == pytest.approx([s.time for s in still.switches], rel=1e-13)
+    t = np.linspace(0, 0.02, 9)
+    assert moved.at(t).gap == pytest.approx(still.at(t).gap, abs=1e-15)
+    assert moved.at(t).displacement[1] - 0.3 * t == pytest.approx(still.at(t).displacement[1], abs=1e-15)
+
+
+def test_starts_at_rest() -> None:
+    idle = solve(replace(PAPER, pressure=0.0, friction=10.0), 0.01)
+    assert not idle.switches
+    assert not idle.at([0.005]).displacement.any()
+    pushed = solve(replace(PAPER, pressure=0.0, traction=1e3, friction=10.0), 1e-3)  # nothing presses, nothing holds
+    assert set(pushed.at([1e-4]).states[:, 0]) <= {OPEN, RIGHT, LEFT}
+    assert solve(replace(PAPER, friction=10.0), 0.01).closed_at_start == (False, False)
+    weighed = solve(INCLINE, 0.01)
+    assert weighed.at([0.001]).states[:, 0].tolist() == [STICKS, STICKS]
+
+
+def test_bad_input_is_refused_by_name() -> None:
+    for field, value in [("friction", 90.0), ("friction", -1.0), ("cohesion", -1.0), ("slope", 90.0)]:
+        with pytest.raises(ValueError, match=field):
+            replace(INCLINE, **{field: value})
+    with pytest.raises(ValueError, match="cohesion: must be 0 without friction"):
+        replace(PAPER, cohesion=1e3)
+    with pytest.raises(ValueError, match="shear_stiffness"):
+        replace(INCLINE, shear_stiffness=0.0)

@@ -1,0 +1,49 @@
+"""Blocks with friction under two corners: histories that are known by their events, and invariants of any history."""
+
+import math
+from dataclasses import dataclass
+
+from dda import Block, Material, Unilateral, UnilateralModel
+
+YOUNG = 1e9
+
+
+@dataclass(frozen=True)
+class Known:
+    """A block and where its centroid is (u, v, r), found from events to 13 digits, at given times."""
+
+    model: UnilateralModel
+    at: dict[float, tuple[float, float, float]]
+
+
+def square(poisson=0.0):
+    """Return the block of 2 m by 2 m."""
+    return Block.rectangle(2.0, 2.0, Material(2700.0, YOUNG, poisson))
+
+
+KNOWN = {
+    "glued": Known(
+        UnilateralModel(square(), Unilateral(YOUNG, YOUNG), 5e6, eccentricity=0.3),
+        {0.03: (5.3825976780e-4, -1.262046085987e-2, -2.464006670949e-3)},
+    ),
+    "rubbing": Known(
+        UnilateralModel(square(), Unilateral(YOUNG, YOUNG, friction=0.5), 5e6, eccentricity=0.3),
+        {
+            0.01: (1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3),
+            0.03: (-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3),
+        },
+    ),
+    "pulled": Known(
+        UnilateralModel(square(0.25), Unilateral(YOUNG, YOUNG, friction=0.5), 5e6, traction=2e6),
+        {0.03: (5.135338437750e-2, -8.977369811162e-3, -1.753606771872e-2)},
+    ),
+    "incline": Known(
+        UnilateralModel(
+            square(),
+            Unilateral(YOUNG, 0.4 * YOUNG, friction=math.tan(math.radians(30))),
+            gravity=9.81,
+            slope=20.0,
+        ),
+        {0.05: (8.660335668094e-4, -9.241387969921e-5, -5.024326498383e-5)},
+    ),
+}

@@ -1,0 +1,115 @@
+"""Scenes with updated geometry: columns, contact record and refusals of the adapter."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import SCENE
+
+from validation import load_scene, solve
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.solvers.registry import get_solver, solver_names
+
+TOPPLING = """\
+title = "A tower on its corner"
+
+[block]
+width = 1.0
+height = 2.5
+density = 2700.0
+young = 1.0e9
+tilt = 35.0
+
+[contact]
+law = "unilateral"
+stiffness = 1.0e9
+
+[load]
+gravity = 9.81
+
+[time]
+step = 5.0e-3
+steps = 600
+
+[run]
+solvers = ["dda"]
+geometry = "updated"
+columns = ["displacement", "contact_pressure", "rotation", "gap_m", "gap_n", "normal_force_m", "normal_force_n", "area"]
+"""
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    path = tmp_path_factory.mktemp("rotation") / "tower.toml"
+    path.write_text(TOPPLING)
+    return load_scene(path)
+
+
+@pytest.fixture(scope="module")
+def prepared(scene):
+    ready = get_solver("dda").prepare(scene)
+    return ready, ready.run()
+
+
+def test_a_tower_tilted_beyond_its_diagonal_lies_down(prepared, scene):
+    ready, run = prepared
+    columns = run.history.columns
+    assert run.outcome is Outcome.COMPLETED
+    assert columns["rotation"][-1] == pytest.approx(math.radians(90 - 35), abs=0.02)
+    assert columns["gap_n"][-1] == pytest.approx(1.0, abs=0.02) and columns["gap_m"][-1] < 0
+    weight = 2.5 * 2700.0 * 9.81
+    assert np.mean(columns["contact_pressure"][-50:]) == pytest.approx(weight, rel=0.1)
+    assert columns["normal_force_n"][-1] == 0 and np.max(np.abs(columns["area"] - 1)) < 0.02
+    switches = ready.switches()
+    assert {switch.corner for switch in switches} >= {"corner 3"}
+
+
+def test_the_contact_record_balances(prepared):
+    record = prepared[0].contact_record()
+    stored = sum(record.energies[name] for name in ("kinetic", "strain", "springs", "load"))
+    lost = sum(record.energies[name] for name in ("algorithmic", "kinetic damping", "switching", "friction"))
+    size = np.max(np.abs(record.energies["load"]))
+    assert np.max(np.abs(stored + lost - stored[0] - lost[0])) < 1e-12 * size
+    mass, fallen = 2700.0 * 2.5, record.velocity + 9.81 * record.time
+    assert np.max(np.abs(record.impulse - mass * fallen)) < 1e-9 * record.impulse[-1]
+    assert np.max(record.penetration) > 0 and record.force[-1] > 0
+
+
+def test_rotation_is_the_default_of_no_scene(scene):
+    assert "large rotation" not in load_scene("unlocked").run.model_dump_json()
+    assert load_scene("unlocked").run.geometry == "small"
+
+
+def test_other_solvers_refuse_updated_geometry(scene):
+    for name in solver_names():
+        if name not in ("dda",) and get_solver(name).handles.isdisjoint({"large rotation"}):
+            assert "large rotation" in get_solver(name).refusal(scene)
+
+
+@pytest.mark.parametrize(
+    ("values", "word"),
+    [
+        ({"block.subdivide": [2, 2]}, "sub-blocks together with large rotation"),
+        ({"contact.band": [1e-3, 0.0]}, "dead bands together with large rotation"),
+        ({"contact.rule": "implicit", "time.alpha": 0.25, "time.delta": 0.5}, "implicit contact together with large"),
+    ],
+)
+def test_what_does_not_go_with_updated_geometry_is_refused(scene, values, word):
+    with pytest.raises(InputError, match=word):
+        solve(scene.with_values(values), "dda")
+
+
+def test_a_base_that_moves_goes_with_updated_geometry(scene, tmp_path):
+    (tmp_path / "push.csv").write_text("time,x\n0,0\n0.1,0.02\n")
+    path = tmp_path / "pushed.toml"
+    path.write_text(TOPPLING.replace("gravity = 9.81", 'gravity = 9.81\nbase_motion = "push.csv"').replace("600", "20"))
+    still, moved = solve(scene.with_values({"time.steps": 20}), "dda"), solve(load_scene(path), "dda")
+    assert not np.allclose(still.history.columns["rotation"], moved.history.columns["rotation"])
+
+
+def test_tilt_without_updated_geometry_is_refused(tmp_path):
+    path = tmp_path / "tilted.toml"
+    path.write_text(SCENE.replace("side = 2.0", "side = 2.0\ntilt = 5.0"))
+    with pytest.raises(InputError, match="tilt goes with run"):
+        load_scene(path)

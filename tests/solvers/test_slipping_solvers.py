@@ -1,0 +1,77 @@
+"""The exact motion with friction as a solver: its columns, switches, slip and energies, and who refuses it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
+
+INCLINE = """
+title = "block on an incline"
+[block]
+side = 2.0
+density = 2700.0
+young = 1.0e9
+[contact]
+law = "unilateral"
+stiffness = 1.0e9
+shear_stiffness = 4.0e8
+friction = 30.0
+[load]
+gravity = 9.81
+slope = 20.0
+[time]
+step = 0.001
+steps = 30
+[run]
+solvers = ["block-events"]
+columns = ["displacement", "slide_m", "slide_n", "state_m", "state_n", "shear_force_m", "normal_force_m"]
+"""
+
+
+def scene(tmp_path: Path, text: str = INCLINE) -> Scene:
+    path = tmp_path / "incline.toml"
+    path.write_text(text)
+    return load_scene(path)
+
+
+def test_a_block_on_an_incline(tmp_path: Path) -> None:
+    prepared = get_solver("block-events").prepare(scene(tmp_path))
+    run = prepared.run()
+    assert run.history is not None
+    columns = run.history.columns
+    assert set(np.unique(columns["state_m"])) <= {0.0, 1.0, 2.0, -2.0}
+    assert columns["state_m"][[0, 12]].tolist() == [1.0, 2.0]  # it slips from 11.7 ms on
+    switches = prepared.switches()
+    kinds = [(one.corner, one.opens, one.slips) for one in switches[:5]]
+    assert kinds[:3] == [("M", None, True), ("N", None, True), ("M", True, None)]
+    assert kinds[4] == ("M", False, None)
+    record = prepared.contact_record()
+    assert record.slip is not None
+    assert record.slip[-1] == pytest.approx(max(columns["slide_m"][-1], columns["slide_n"][-1]), rel=0.5)
+    assert np.diff(record.energies["friction"]).min() >= 0
+    scale = np.abs(record.energies["load"]).max()
+    assert sum(record.energies.values()) == pytest.approx(np.zeros(len(record.time)), abs=1e-12 * scale)
+    impulse = record.impulse[-1] - record.impulse[0]
+    assert impulse == pytest.approx(np.trapezoid(record.force, record.time), rel=1e-3)  # a sum between samples
+
+
+def test_a_base_that_moves_and_no_energies_of_it(tmp_path: Path) -> None:
+    (tmp_path / "base.csv").write_text("time,x\n0,0\n0.01,0.002\n0.02,0\n")
+    text = INCLINE.replace("slope = 20.0", f'base_motion = "{tmp_path / "base.csv"}"')
+    prepared = get_solver("block-events").prepare(scene(tmp_path, text))
+    run = prepared.run()
+    assert run.history is not None
+    pushed = run.history.columns["shear_force_m"]
+    assert pushed[3] > 0 > pushed.min()
+    assert prepared.contact_record().energies == {}
+
+
+@pytest.mark.parametrize("name", ["bar-events", "bar", "continuum"])
+def test_who_knows_no_friction_refuses_it_by_name(tmp_path: Path, name: str) -> None:
+    assert "friction" in str(get_solver(name).refusal(scene(tmp_path)))

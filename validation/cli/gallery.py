@@ -1,0 +1,31 @@
+"""The command ``gallery``: the results as a static site with calculators."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.cli.app import RESULTS, ResultsOption, _progress, app
+
+
+@app.command()
+def gallery(
+    out: Annotated[
+        Path, typer.Option(help="Directory to write, or an earlier gallery to replace.", metavar="DIR")
+    ] = Path("reports/gallery"),
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Write the results as a static site: figures, histories to zoom, verdicts to filter, calculators.
+
+    Example: [bold]dda-validate run core && dda-validate gallery --out gallery[/bold]
+
+    It works from its files, without a network; open index.html. Nothing is computed.
+    """
+    from validation.gallery.site import build, size
+    from validation.runs.results import Results
+
+    with _progress("gallery") as progress:
+        page = build(Results(results), out, progress)
+    typer.echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

@@ -1,0 +1,107 @@
+"""What ``list`` prints: studies, scenes, solvers and metrics in columns, one line each where it fits."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from validation.metrics.catalogue import Metric
+
+Line = tuple[str, ...]
+BREAK: Line = ()  # an empty line between two groups
+NARROW = 34  # characters: a last column with less room stands below its line
+
+
+def metrics() -> list[Line]:
+    """Return id, unit, needs and meaning of every metric, a group for each first part of the ids."""
+    heads = ("metric", "unit", "needs", "meaning")
+    return [heads, *_grouped(lambda m: (m.id, m.unit, ", ".join(sorted(m.needs)), m.says))]
+
+
+def short_metrics() -> list[Line]:
+    """Return id, unit and meaning of every metric, grouped."""
+    return [("metric", "unit", "meaning"), *_grouped(lambda m: (m.id, m.unit, m.says))]
+
+
+def _grouped(line: Callable[[Metric], Line]) -> list[Line]:
+    from validation.metrics.catalogue import CATALOGUE
+
+    groups: dict[str, list[Line]] = {}
+    for metric in CATALOGUE.values():
+        groups.setdefault(metric.id.partition(".")[0], []).append(line(metric))
+    return [each for group in groups.values() for each in (BREAK, *group)][1:]
+
+
+def studies() -> list[Line]:
+    """Return name, number of scenes and title of every study."""
+    from validation.studies.catalogue import STUDIES, get_study
+
+    declared = [get_study(name) for name in STUDIES]
+    return [("study", "scenes", "title"), *((s.name, str(len(s.scenes)), s.title) for s in declared)]
+
+
+def scenes() -> list[Line]:
+    """Return name, number of cases, solvers and title of every built-in scene."""
+    from validation.scenes.scene import load_scene, scene_names
+
+    known = [load_scene(name) for name in scene_names()]
+    heads = ("scene", "cases", "solvers", "title")
+    return [heads, *((s.name, str(len(s.expand())), ", ".join(s.run.solvers), s.title or s.name) for s in known)]
+
+
+def solvers() -> list[Line]:
+    """Return name, role, a description and the features handled of every solver."""
+    from validation.solvers.registry import BUILT_IN, entry_points, get_solver
+
+    heads, lines = ("solver", "role", "description", "handles"), []
+    for name in BUILT_IN:
+        solver = get_solver(name)
+        lines.append((name, str(solver.role), _first_line(solver), ", ".join(sorted(solver.handles)) or "-"))
+    return [heads, *lines, *((name, "other", target, "decides itself") for name, target in entry_points().items())]
+
+
+def _first_line(value: object) -> str:
+    return (type(value).__doc__ or "").partition("\n")[0]
+
+
+LISTS: dict[str, Callable[[], list[Line]]] = {
+    "metrics": metrics,
+    "studies": studies,
+    "scenes": scenes,
+    "solvers": solvers,
+}
+
+
+def short() -> dict[str, list[Line]]:
+    """Return the four lists with what fits a line: names, and what they stand for."""
+    named = {"studies": studies(), "scenes": scenes(), "solvers": [line[:3] for line in solvers()]}
+    parts: dict[str, list[Line]] = {
+        title: [(line[0], line[-1]) for line in lines[1:]] for title, lines in named.items()
+    }
+    return parts | {"metrics": short_metrics()[1:]}
+
+
+def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = "") -> str:
+    """Return lines with their columns aligned.
+
+    The last column is as long as it likes, or wrapped to a width: beside the others, or below where there is no room.
+    """
+    widths = [max(map(len, column)) for column in zip(*filter(None, lines), strict=True)][:-1]
+    offset = len(indent) + sum(n + 2 for n in widths)
+    return "\n".join(row for line in lines for row in _rows(line, widths, indent, offset, width))
+
+
+def _rows(line: Line, widths: Sequence[int], indent: str, offset: int, width: int | None) -> list[str]:
+    if not line:
+        return [""]
+    start = indent + "".join(cell.ljust(n + 2) for cell, n in zip(line[:-1], widths, strict=True))
+    if width is None or offset + len(line[-1]) <= width:
+        return [(start + line[-1]).rstrip()]
+    if width - offset >= NARROW:
+        return textwrap.wrap(
+            line[-1], width, initial_indent=start, subsequent_indent=" " * offset, break_on_hyphens=False
+        )
+    below = indent + "    "
+    return [start.rstrip(), *textwrap.wrap(line[-1], max(width, NARROW), initial_indent=below, subsequent_indent=below)]

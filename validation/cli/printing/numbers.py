@@ -1,0 +1,213 @@
+"""What follows from a scene's parameters before anything runs: speeds, frequencies, steps over them, limits.
+
+A block: c = sqrt(E' / rho), h / c, c dt / h, p / E, the modes w of the DDA block with w dt, and the limits of the step.
+A column: the same of each layer, its blocks a wavelength, and what the base reflects.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.advice import contact
+from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names
+from validation.errors import InputError
+from validation.gates import closed_forms
+from validation.scenes.scene import Scene
+from validation.solvers import opened
+
+MOST_CASES = 200  # of a sweep that are looked at, evenly taken
+MOST_BLOCKS = 36  # sub-blocks whose modes are found at once; `damping` finds those of more
+
+
+@dataclass(frozen=True)
+class Number:
+    """One derived number of a case."""
+
+    name: str
+    value: float
+    unit: str  # "" of a ratio
+    says: str
+
+
+@dataclass(frozen=True)
+class Range:
+    """A derived number over the cases of a scene, in all of which it lies between two values."""
+
+    name: str
+    low: float
+    high: float
+    unit: str
+    says: str
+
+
+def cases(scene: Scene) -> list[Scene]:
+    """Return the cases of a scene, of very many `MOST_CASES`, first and last among them."""
+    every = scene.expand()
+    if len(every) <= MOST_CASES:
+        return list(every)
+    return [every[i] for i in np.linspace(0, len(every) - 1, MOST_CASES).round().astype(int)]
+
+
+def ranges(found: Sequence[Sequence[Number]]) -> list[Range]:
+    """Return each number's range over cases, in the order of the case that has most of them."""
+    values: dict[str, list[Number]] = {}
+    for numbers in sorted(found, key=len, reverse=True):
+        for number in numbers:
+            values.setdefault(number.name, []).append(number)
+    return [
+        Range(name, min(n.value for n in some), max(n.value for n in some), some[0].unit, some[0].says)
+        for name, some in values.items()
+    ]
+
+
+def numbers(scene: Scene) -> list[Number]:
+    """Return the derived numbers of one case, all of them finite."""
+    parts = (_column,) if scene.column is not None else (_block, _modes, _opening, _slope)
+    found = [*(number for part in parts for number in part(scene)), *_steps(scene)]
+    return [number for number in found if math.isfinite(number.value)]
+
+
+def remarks(scene: Scene, found: Sequence[Number]) -> list[str]:
+    """Return in words the limits that a case with these numbers lies beyond."""
+    values = {number.name: number.value for number in found}
+    return [text for part in (_unstable, _coarse, _landing, _steep) for text in part(scene, values)]
+
+
+# ---- a block ------------------------------------------------------------------------------------------------------
+
+
+def _block(scene: Scene) -> Iterator[Number]:
+    b, dt = scene.block, scene.time.step
+    height = float(np.ptp([y for _, y in b.outline]))
+    speed = math.sqrt(closed_forms.moduli(scene)[0] / b.density)
+    yield Number("m", opened.mass(scene), "kg", "mass of the block")
+    yield Number("p/E", scene.contact.stiffness / b.young, "", "springs over Young's modulus, unit thickness")
+    yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
+    yield Number("h/c", height / speed, "s", "time of the wave through the block")
+    yield Number("c dt/h", speed * dt / height, "", "share of the block that the wave crosses in a step")
+    if load := opened.pushing(scene):
+        yield Number("F/2p", load / (2 * scene.contact.stiffness), "m", "how far the load presses the springs at rest")
+
+
+def _modes(scene: Scene) -> Iterator[Number]:
+    if math.prod(scene.block.subdivide or (1,)) > MOST_BLOCKS:
+        return
+    with suppress(InputError):  # no modes: the motion is not linear, or DDA does not take the scene
+        modes = dda_modes(scene)
+        named = dict(zip(mode_names(modes), modes, strict=True))
+        for short, name in (("w1", FIRST), ("wc", CONTACT)):
+            if name in named:
+                yield from _mode(scene, short, name, named[name].frequency)
+        if not scene.damping.present:
+            limit = closed_forms.critical_omega(scene) / max(mode.frequency for mode in modes)
+            yield Number("dt stable", limit, "s", "largest stable step of the DDA block")
+
+
+def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Number]:
+    found = mode_damping(scene, name, frequency)
+    yield Number(short, frequency, "rad/s", f"{name} mode of the DDA block")
+    yield Number(f"{short} dt", found.omega_dt, "", "times the step: its period has 2 pi over this steps")
+    if found.damping is not None:
+        yield Number(f"{short} xi", 100 * found.damping, "%", "its damping ratio by scheme, gg and tables")
+    if name == CONTACT:
+        yield Number("least root", found.least_root, "", "of a step; next to -1 the contact force rings")
+
+
+def _opening(scene: Scene) -> Iterator[Number]:
+    if scene.contact.law != "unilateral":
+        return
+    yield Number("Omega", contact.omega(scene), "", "w_c dt of a landing, w_c = sqrt(8 p/m)")
+    hidden = contact.hidden_from(scene)
+    if hidden is not None:
+        yield Number("dt seen", hidden, "s", "largest step that sees the block leave its springs at t = 0")
+
+
+def _slope(scene: Scene) -> Iterator[Number]:
+    c, slope = scene.contact, math.tan(math.radians(scene.load.slope))
+    if c.friction is not None:
+        yield Number("tan phi", math.tan(math.radians(c.friction)), "", "coefficient of friction")
+    if slope:
+        yield Number("tan b", abs(slope), "", "of the slope: what it asks of friction at rest")
+        if scene.block.vertices is None:
+            width, height = closed_forms.size(scene)
+            yield Number("w/h", width / height, "", "slenderness: the tan b beyond which the block topples")
+
+
+def _steps(scene: Scene) -> Iterator[Number]:
+    t = scene.time
+    yield Number("n dt", t.duration, "s", "time that is simulated")
+    if 0 < t.discount < 1:
+        yield Number("-ln gg/dt", -math.log(t.discount) / t.step, "1/s", "rate at which gg takes velocity")
+
+
+# ---- a column -----------------------------------------------------------------------------------------------------
+
+
+def _column(scene: Scene) -> Iterator[Number]:
+    column = scene.column
+    if column is None:
+        return
+    top, limit, travel = 0.0, math.inf, 0.0
+    for number, layer in enumerate(column.layer, start=1):
+        speed = math.sqrt(column.modulus(layer) / layer.density)
+        height = layer.thickness / layer.blocks
+        travel += layer.thickness / speed
+        top = layer.density * speed
+        limit = min(limit, closed_forms.critical_omega(scene) * height / (math.sqrt(12) * speed))
+        yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
+    yield Number("H/c", travel, "s", "time of the wave through the column")
+    yield Number("dt stable", limit, "s", "largest stable step of welded blocks")
+    if column.impedance is not None:
+        lowest = column.layer[0]
+        own = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
+        share = abs(column.impedance - own) / (column.impedance + own)
+        yield Number("reflected", 100 * share, "%", "of the amplitude of a wave that comes down to the base")
+    yield Number("rho c", top, "Pa s/m", "impedance of the top layer")
+
+
+def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Number]:
+    yield Number(f"{place}c", speed, "m/s", "speed of the wave")
+    yield Number(f"{place}h", height, "m", "height of a block")
+    yield Number(f"{place}c dt/h", speed * scene.time.step / height, "", "share of a block crossed in a step")
+    frequency = scene.input.frequency
+    yield Number(f"{place}f10", speed / (10 * height), "Hz", "ten blocks a wavelength")
+    if frequency is not None:
+        yield Number(f"{place}blocks", speed / (frequency * height), "", f"in a wavelength at {frequency:g} Hz")
+
+
+# ---- limits -------------------------------------------------------------------------------------------------------
+
+
+def _unstable(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
+    if scene.time.step > found.get("dt stable", math.inf) * (1 + 1e-12):
+        yield "dt is beyond the stability limit: the numbers grow"
+
+
+def _coarse(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
+    if found.get("w1 dt", 0.0) > math.pi:
+        yield "fewer than two steps in a period of the first mode: no history shows it"
+    stable = scene.time.step <= found.get("dt stable", math.inf)
+    if stable and found.get("least root", 0.0) <= FLIPPING:
+        yield "the contact mode flips its sign in every step: the contact force rings"
+
+
+def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
+    if scene.time.step > found.get("dt seen", math.inf):
+        yield "dt hides that the block leaves its springs at t = 0"
+    if found.get("Omega", 0.0) > contact.ARBITRARY:
+        yield f"Omega > {contact.ARBITRARY:g}: how fast a landing returns depends on where in the step it falls"
+    elif found.get("Omega", 0.0) > contact.WRONG:
+        yield f"Omega > {contact.WRONG:g}: the restitution of a landing is off by a fifth or more"
+
+
+def _steep(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
+    slope = found.get("tan b", 0.0)
+    if slope > found.get("tan phi", math.inf) and scene.contact.cohesion == 0:
+        yield "tan b > tan phi: the block slides"
+    if slope > found.get("w/h", math.inf):
+        yield "tan b > w/h: the block topples"

@@ -1,0 +1,186 @@
+"""The page of a scene: its model drawn in text, its steps, and the numbers that follow, before anything runs."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from validation.cli.printing import numbers
+from validation.cli.printing.listing import Line, in_columns
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+INSIDE = 15  # characters of a block's width in the drawing
+SCHEMES = {
+    (0.5, 1.0): "constant acceleration",
+    (0.25, 0.5): "average acceleration",
+    (1 / 6, 0.5): "linear acceleration",
+    (0.0, 0.5): "central differences",
+}
+SHOWN = 6  # values of a swept key
+
+
+def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
+    """Yield the lines of the page; a scene with a sweep shows the range of each number over its cases."""
+    every, looked = scene.expand(), numbers.cases(scene)
+    found = [numbers.numbers(case) for case in looked]
+    yield from textwrap.wrap(f"{scene.name}: {scene.title or 'a scene'}", width or 1000, break_long_words=False)
+    yield ""
+    yield from (column(every[0]) if scene.column is not None else block(every[0]))
+    yield ""
+    yield in_columns(list(_facts(scene, len(every))), width)
+    yield ""
+    if len(every) > 1:
+        of_all = f"{len(looked)} of {len(every)}" if len(looked) < len(every) else f"all {len(every)}"
+        yield f"over {of_all} cases of the sweep (drawn is the first):"
+    yield in_columns(_table(numbers.ranges(found)), width)
+    for text, count in _remarks(looked, found).items():
+        yield f"! {text}" + (f" (in {count} of {len(looked)} cases)" if len(looked) > 1 else "")
+    yield ""
+    yield f"next: dda-validate run {source}"
+
+
+def as_data(scene: Scene) -> dict[str, Any]:
+    """Return the scene as a file states it, and each number's range, as plain data."""
+    looked = numbers.cases(scene)
+    found = [numbers.numbers(case) for case in looked]
+    return {
+        "scene": scene.definition(),
+        "cases": len(scene.expand()),
+        "numbers": {r.name: {"low": r.low, "high": r.high, "unit": r.unit} for r in numbers.ranges(found)},
+        "remarks": dict(_remarks(looked, found)),
+    }
+
+
+def _remarks(looked: Sequence[Scene], found: Sequence[Sequence[numbers.Number]]) -> Counter[str]:
+    """Return how many cases lie beyond each limit."""
+    return Counter(text for case, own in zip(looked, found, strict=True) for text in numbers.remarks(case, own))
+
+
+def _facts(scene: Scene, count: int) -> Iterator[Line]:
+    t = scene.time
+    scheme = SCHEMES.get((t.alpha, t.delta), "Newmark")
+    start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
+    yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
+    discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
+    yield "scheme", f"{scheme}, alpha = {t.alpha:.4g}, delta = {t.delta:g}, {discount}"
+    if scene.damping.present:
+        yield "damping", f"C = a0 M + a1 K, a0 = {scene.damping.mass:g} 1/s, a1 = {scene.damping.stiffness:g} s"
+    if asked := features.of(scene):
+        yield "features", ", ".join(asked)
+    for field, values in scene.sweep.items():
+        if field != "mode":
+            more = f", ... ({len(values)})" if len(values) > SHOWN else ""
+            yield "varied", f"{field} = {', '.join(map(_short, values[:SHOWN]))}{more}"
+    yield "solvers", f"{', '.join(scene.run.solvers)}{f'; {count} cases' if count > 1 else ''}"
+    if scene.gate:
+        yield "gates", f"{len(scene.gate)} in the scene"
+
+
+def _short(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _table(found: Sequence[numbers.Range]) -> list[Line]:
+    rows: list[Line] = [("", "value", "", "what it is")]
+    for each in found:
+        low, high = f"{each.low:.4g}", f"{each.high:.4g}"
+        rows.append((each.name, low if low == high else f"{low} .. {high}", each.unit, each.says))
+    return rows
+
+
+# ---- drawings -----------------------------------------------------------------------------------------------------
+
+
+def block(scene: Scene) -> Iterator[str]:
+    """Yield a block on its springs, with its parameters beside it."""
+    b, c = scene.block, scene.contact
+    material = f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}"
+    walls = [_centred(text) for text in ("", _size(scene), _cut(scene), "")]
+    yield from _loads(scene)
+    yield f"  +{'-' * INSIDE}+"
+    for text, beside in zip(walls, ("", material, _start(scene), ""), strict=True):
+        yield f"  |{text}|   {beside}".rstrip()
+    yield f"  +{'-' * INSIDE}+"
+    if c.gap:
+        yield f"{' ' * (INSIDE + 7)}gap {c.gap:g} m"
+    yield f"  {'z' if c.law == 'locked' else 'x'}{' ' * INSIDE}{'z' if c.law == 'locked' else 'x'}   {_springs(scene)}"
+    yield f" {'=' * (INSIDE + 4)}  {_base(scene)}".rstrip()
+
+
+def _centred(text: str) -> str:
+    return text[:INSIDE].center(INSIDE)
+
+
+def _size(scene: Scene) -> str:
+    points = scene.block.outline
+    xs, ys = [x for x, _ in points], [y for _, y in points]
+    return f"{max(xs) - min(xs):.3g} x {max(ys) - min(ys):.3g} m"
+
+
+def _cut(scene: Scene) -> str:
+    b = scene.block
+    if b.subdivide is not None:
+        return f"{b.subdivide[0]} x {b.subdivide[1]} {b.pattern[:-1]}s"[:INSIDE]
+    return "" if b.vertices is None else f"{len(b.vertices)} vertices"
+
+
+def _start(scene: Scene) -> str:
+    b = scene.block
+    parts = (f"v(0) = {b.velocity:g} m/s" if b.velocity else "", f"tilted by {b.tilt:g} deg" if b.tilt else "")
+    return ", ".join(filter(None, parts))
+
+
+def _loads(scene: Scene) -> Iterator[str]:
+    load = scene.load
+    said = [
+        f"{word} = {value:g} {unit}"
+        for word, value, unit in (
+            ("q", load.pressure, "Pa"),
+            ("eccentricity", load.eccentricity, "m"),
+            ("traction", load.traction, "Pa"),
+            ("gravity", load.gravity, "m/s2"),
+            ("slope", load.slope, "deg"),
+        )
+        if value
+    ]
+    mark = "v" if load.pressure else ">" if load.traction else " "
+    arrows = "   ".join([mark] * (INSIDE // 4 + 1))
+    yield f"   {arrows.ljust(INSIDE)}    {', '.join(said) or 'no load'}"
+
+
+def _springs(scene: Scene) -> str:
+    c = scene.contact
+    springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
+    shear = "" if c.shear_stiffness is None else f", shear {c.shear_stiffness:g} N/m"
+    law = "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
+    friction = "" if c.friction is None else f", friction {c.friction:g} deg, cohesion {c.cohesion:g} Pa"
+    return f"{springs}{shear}; {law}{friction}"
+
+
+def _base(scene: Scene) -> str:
+    return "" if scene.load.base_motion is None else f"moved by {scene.load.base_motion.rpartition('/')[2]}"
+
+
+def column(scene: Scene) -> Iterator[str]:
+    """Yield the layers of a column from the top down, and what it stands on."""
+    drawn, drive = scene.column, scene.input
+    if drawn is None:
+        return
+    what = drive.shape or f"record {(drive.record or '').rpartition('/')[2]}"
+    strength = f"{drive.velocity:g} m/s" if drive.velocity is not None else f"{drive.pressure or 0:g} Pa"
+    told = what if drive.shape is None else f"{what}, {strength}"
+    yield f"  +{'-' * INSIDE}+   {f'{told} on the top, {drawn.motion} waves' if drive.at == 'top' else 'free top'}"
+    for layer in reversed(drawn.layer):
+        cut = f"{layer.thickness:g} m in {layer.blocks}"
+        yield f"  |{_centred(cut)}|   rho = {layer.density:g} kg/m3, E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        yield f"  +{'-' * INSIDE}+"
+    for joint in drawn.joint:
+        yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {joint.stiffness:g} Pa/m"
+    if drawn.glue is not None:
+        yield f"{' ' * (INSIDE + 7)}blocks glued by {drawn.glue:g} Pa/m"
+    driven = f", {told}, {drawn.motion} waves" if drive.at == "base" else ""
+    yield f" {'=' * (INSIDE + 4)}  {drawn.base} base{driven}"

@@ -1,0 +1,32 @@
+"""The command ``show``: a scene before anything runs."""
+
+from __future__ import annotations
+
+import json
+
+import typer
+
+from validation.cli.app import SceneArgument, SetOption, app
+from validation.cli.damping import JsonOption
+
+
+@app.command()
+def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOption = False) -> None:
+    """Show a scene before anything runs: model, steps, wave speed, frequencies, w dt, and the limits of its step.
+
+    Of a scene with a sweep each number is shown as its range over the cases.
+
+    Example: [bold]dda-validate show figures-3-4[/bold] or [bold]dda-validate show my-scene.toml --set
+    time.step=0.001[/bold]
+    """
+    from validation.cli.printing import scene_page
+    from validation.cli.printing.output import terminal_width
+    from validation.scenes.scene import load_scene, parse_assignment
+    from validation.studies.catalogue import check_words
+
+    stated = load_scene(scene).with_values(dict(map(parse_assignment, assignments or [])))
+    check_words(stated, scene)
+    if as_json:
+        typer.echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
+    else:
+        typer.echo("\n".join(scene_page.page(stated, scene, terminal_width())))

@@ -1,0 +1,140 @@
+"""The pages: a template of `templates`, filled."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from validation.errors import InputError
+from validation.gallery import scene_data, verdicts
+from validation.gallery.calculators import CALCULATORS, Calculator, Choice
+from validation.gallery.cases import GalleryScene, GalleryStudy, readable
+from validation.gallery.chapters import Chapter, of_history, scene_of_figure, shown
+from validation.gallery.histories import LEAST, samples_for
+from validation.gallery.svg import Sheet
+from validation.gallery.work import work_plots
+from validation.report.chapters.text import parameters
+from validation.runs.case_name import CaseName
+from validation.runs.results import Results
+
+MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULATORS))
+SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
+
+
+def _environment() -> jinja2.Environment:
+    found = jinja2.Environment(
+        loader=jinja2.PackageLoader("validation.gallery", "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    found.filters["data"] = _data
+    found.tests["choice"] = lambda value: isinstance(value, Choice)
+    return found
+
+
+def _data(value: object) -> Markup:
+    """Return data for a script element, in which nothing can end the element."""
+    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for sign in "<>&":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return Markup(text)
+
+
+class Pages:
+    """The pages of one gallery."""
+
+    def __init__(self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene]) -> None:
+        self._environment = _environment()
+        self._results, self._studies, self._scenes = results, studies, scenes
+        self._most = scene_data.most_cases(scenes)
+        self._samples = LEAST
+        self._made = _provenance(studies)
+
+    def _page(self, template: str, file: str, **values: object) -> str:
+        page = self._environment.get_template(template)
+        return page.render(menu=MENU, file=file, made=self._made, **values)
+
+    def index(self) -> str:
+        """Return the first page: studies with their verdicts, what fails, scenes, calculators."""
+        every = [verdict for study in self._studies for verdict in study.verdicts]
+        rows = [(study, verdicts.counts(study.verdicts)) for study in self._studies]
+        bad = [verdict for verdict in every if verdict["verdict"] == "FAIL"]
+        return self._page(
+            "index.html.j2",
+            "index.html",
+            studies=rows,
+            scenes=self._scenes,
+            counts=verdicts.counts(every),
+            failed=verdicts.table(bad) if bad else None,
+            calculators=CALCULATORS,
+            scripts=SCRIPTS,
+        )
+
+    def study(self, study: GalleryStudy, chapter: Chapter) -> str:
+        """Return the page of a study: its chapter, its scenes, its verdicts."""
+        return self._page(
+            "study.html.j2",
+            study.page,
+            study=study,
+            blocks=shown(chapter, study.scenes, Sheet()) if chapter.blocks else [],
+            work=work_plots(self._results, study.manifest),
+            counts=verdicts.counts(study.verdicts),
+            table=verdicts.table(study.verdicts),
+            scripts=SCRIPTS,
+        )
+
+    def fit(self, room: float) -> None:
+        """Draw all histories with as many samples as there is room for [bytes]."""
+        self._samples = samples_for(scene_data.all_lines(self._scenes, self._most), room)
+
+    def figures(self, scene: GalleryScene, chapters: Mapping[str, Chapter]) -> list[dict[str, str]]:
+        """Return the figures of a scene in the chapters of its studies, each once, without those of its histories."""
+        sheet, found = Sheet(), {}
+        for study in (study for study in self._studies if study.name in scene.studies):
+            for file, drawing in chapters[study.name].drawings.items():
+                own = scene_of_figure(file, study.scenes)
+                if own is scene and file not in found and not of_history(file, scene):
+                    found[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
+        return list(found.values())
+
+    def scene(self, scene: GalleryScene, figures: Sequence[Mapping[str, str]]) -> str:
+        """Return the page of a scene: its parameters, histories, numbers, figures and verdicts."""
+        varied: set[str] = set().union(*(CaseName.parse(case.name).values for case in scene.cases))
+        return self._page(
+            "scene.html.j2",
+            scene.page,
+            scene=scene,
+            parameters=readable(parameters(scene.cases[0].scene, varied)),
+            studies=[study for study in self._studies if study.name in scene.studies],
+            data=scene_data.data(self._results, scene, self._most, self._samples),
+            drawn=len(scene_data.drawn(scene, self._most)),
+            figures=figures,
+            counts=verdicts.counts(scene.verdicts),
+            table=verdicts.table(scene.verdicts),
+            scripts=SCRIPTS,
+        )
+
+    def calculator(self, calculator: Calculator) -> str:
+        """Return the page of a calculator."""
+        scripts = ("uPlot.iife.min.js", "numerals.js", "formulas.js", "calculators.js", "gallery.js")
+        return self._page("calculator.html.j2", f"{calculator.id}.html", calculator=calculator, scripts=scripts)
+
+
+def _provenance(studies: Sequence[GalleryStudy]) -> dict[str, str]:
+    """Return versions, commit and date of the newest study."""
+    known = [study.manifest.get("provenance") or {} for study in studies]
+    newest: dict[str, Any] = max(known, key=lambda p: str(p.get("date", "")), default={})
+    packages = newest.get("packages") or {}
+    if not isinstance(packages, Mapping):
+        raise InputError(f"{studies[0].name}: provenance: packages must be a table, got {packages!r}")
+    return {
+        "date": readable(str(newest.get("date", "unknown"))),
+        "commit": readable(str(newest.get("commit", "unknown"))),
+        "version": readable(str(packages.get("dda-validation", "unknown"))),
+    }

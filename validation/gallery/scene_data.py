@@ -1,0 +1,131 @@
+"""The data of a scene's page: histories, outcomes and numbers of its cases."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from validation.gallery.cases import GalleryCase, GalleryScene, readable
+from validation.gallery.histories import lines_of
+from validation.metrics.catalogue import CATALOGUE
+from validation.report.chapters.text import bounded, cell
+from validation.report.figures.curves import COLUMNS, style_of
+from validation.runs.history import History
+from validation.runs.results import KEPT, Results
+from validation.runs.row import Value
+from validation.runs.run import Outcome
+
+MOST_LINES = 3000  # curves of a whole gallery
+FEWEST = 4  # cases of a scene that are drawn, however many lines there are
+METRICS = (
+    "displacement.static",
+    "displacement.peak",
+    "displacement.settling_step",
+    "pressure.peak",
+    "pressure.minimum",
+    "pressure.settling_step",
+    "mode1.frequency",
+    "mode1.damping",
+    "mode1.measured_damping",
+    "mode1.spectral_radius",
+    "switches.count",
+    "switches.first_opening",
+    "contact.gap",
+    "contact.penetration",
+    "contact.peak_force",
+    "contact.restitution",
+    "energy.rise",
+)
+
+
+def lines(case: GalleryCase) -> int:
+    """Return how many curves a case may have, as its rows tell without its histories."""
+    return sum(row.outcome in KEPT for row in case.rows.values()) * len(case.scene.run.columns)
+
+
+def drawn(scene: GalleryScene, most: int) -> list[GalleryCase]:
+    """Return the cases whose curves are drawn: all, or evenly chosen ones, the first and the last among them."""
+    with_lines = [case for case in scene.cases if lines(case)]
+    chosen = np.unique(np.linspace(0, max(len(with_lines) - 1, 0), most).round().astype(int))
+    return [with_lines[i] for i in chosen] if len(with_lines) > most else with_lines
+
+
+def most_cases(scenes: Sequence[GalleryScene]) -> int:
+    """Return how many cases of each scene can be drawn with `MOST_LINES` curves in all, and not fewer than `FEWEST`."""
+    most = max((len(scene.cases) for scene in scenes), default=FEWEST)
+    while most > FEWEST and all_lines(scenes, most) > MOST_LINES:
+        most -= 1
+    return max(most, FEWEST)
+
+
+def all_lines(scenes: Sequence[GalleryScene], most: int) -> int:
+    """Return the number of curves of all scenes with at most so many cases of each."""
+    return sum(lines(case) for scene in scenes for case in drawn(scene, most))
+
+
+def data(results: Results, scene: GalleryScene, most: int, samples: int) -> dict[str, Any]:
+    """Return what the page of a scene draws and tells, as plain data."""
+    chosen = drawn(scene, most)
+    cases = [_case(results, case, samples) for case in chosen]
+    used = dict.fromkeys(column for case in cases for column in case["columns"])
+    ordered = sorted(used, key=lambda name: [*COLUMNS, *used].index(name))
+    solvers = dict.fromkeys(solver for case in scene.cases for solver in case.rows)
+    return {
+        "columns": {name: list(COLUMNS.get(name, (name.replace("_", " ").capitalize(), ""))) for name in ordered},
+        "solvers": {readable(name): _style(name) for name in solvers},
+        "cases": cases,
+        "metrics": [[name, CATALOGUE[name].unit, CATALOGUE[name].says] for name in _metrics(chosen)],
+        "numbers": [_numbers(case, _metrics(chosen)) for case in chosen],
+    }
+
+
+def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
+    """Return label, curves and what went otherwise than hoped for."""
+    found = {readable(solver): history for solver, history in _histories(results, case)}
+    static = case.rows[next(iter(case.rows))].metrics.get("displacement.static") if case.rows else None
+    told = [
+        f"{readable(solver)}: {row.outcome}. {row.outcome.sentence} {readable('; '.join(row.notes))}".strip()
+        for solver, row in case.rows.items()
+        if row.outcome is not Outcome.COMPLETED
+    ]
+    limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
+    return {"label": readable(case.label), "limit": limit, "told": told} | lines_of(found, samples)
+
+
+def _histories(results: Results, case: GalleryCase) -> Iterator[tuple[str, History]]:
+    """Yield the kept histories of a case by solver."""
+    for solver, row in case.rows.items():
+        history = results.history(row.key)
+        if history is not None and len(history.time):
+            yield solver, history
+
+
+def _style(name: str) -> dict[str, Any]:
+    style = style_of(name)
+    return {"color": style.color, "dash": [round(2 * length, 1) for length in style.dash], "width": style.width}
+
+
+def _metrics(cases: Sequence[GalleryCase]) -> list[str]:
+    """Return the metrics of which some row has a number."""
+    known: set[str] = set()
+    for case in cases:
+        for row in case.rows.values():
+            known.update(name for name in METRICS if isinstance(row.metrics.get(name), int | float))
+    return [name for name in METRICS if name in known and name in CATALOGUE]
+
+
+def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
+    """Return solver, values of the metrics and steps of each row."""
+    return [
+        [readable(solver), *(_told(name, row.metrics.get(name)) for name in metrics), str(row.work.get("steps", "–"))]
+        for solver, row in case.rows.items()
+    ]
+
+
+def _told(metric: str, value: Value) -> str:
+    """Return a value as a page writes it; a ratio at the level of rounding is told to be below."""
+    text = cell(value)
+    return bounded(value, text) if isinstance(value, float) and value and CATALOGUE[metric].unit == "1" else text

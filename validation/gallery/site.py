@@ -1,0 +1,123 @@
+"""The site: every page under a temporary name, then renamed as a whole."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import resources
+from pathlib import Path
+
+from validation.errors import InputError
+from validation.gallery.calculators import CALCULATORS
+from validation.gallery.cases import studies_and_scenes
+from validation.gallery.chapters import chapter_for
+from validation.gallery.pages import Pages
+from validation.report.book import ordered_studies
+from validation.runs.results import Results
+
+STATIC = (
+    "gallery.css",
+    "gallery.js",
+    "numerals.js",
+    "formulas.js",
+    "calculators.js",
+    "uPlot.iife.min.js",
+    "uPlot.min.css",
+)
+NOTICE = "NOTICE.txt"  # licence of what others have written; its first line marks a directory as a gallery
+MOST_BYTES = 4_800_000  # of a gallery, as long as its figures leave room for the fewest samples of its histories
+LINE_BYTES = 1_800_000  # of all histories, which no eye needs more of
+PAGE_BYTES = 11_000  # of a scene's page without histories and figures
+Progress = Callable[[int, int, str], None]
+
+
+def build(results: Results, out: Path, progress: Progress = lambda done, total, label: None) -> Path:
+    """Write the gallery of a results directory and return its first page.
+
+    Parameters
+    ----------
+    results
+        The results directory; no solver is called.
+    out
+        Directory to write: a new or empty one, or an earlier gallery, which is replaced as a whole.
+    progress
+        Told after each page: how many are done, of how many, and which is next.
+
+    Raises
+    ------
+    InputError
+        There are no results, or they are damaged, or the directory is not one to write to.
+    """
+    _check(out)
+    studies, scenes = studies_and_scenes(results, ordered_studies(results))
+    steps = iter(range(len(studies) + len(scenes)))
+    with _whole(out) as place:
+        pages, chapters = Pages(results, studies, scenes), {}
+        for study in studies:
+            progress(next(steps), len(studies) + len(scenes), study.name)
+            chapters[study.name] = chapter_for(results, study)
+            _write(place / study.page, pages.study(study, chapters[study.name]))
+        for calculator in CALCULATORS:
+            _write(place / f"{calculator.id}.html", pages.calculator(calculator))
+        _write(place / "index.html", pages.index())
+        for name in (*STATIC, NOTICE):
+            _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
+        figures = {scene.page: pages.figures(scene, chapters) for scene in scenes}
+        drawn = sum(len(figure["svg"].encode()) for own in figures.values() for figure in own)
+        pages.fit(min(MOST_BYTES - size(place) - drawn - PAGE_BYTES * len(scenes), LINE_BYTES))
+        for scene in scenes:
+            progress(next(steps), len(studies) + len(scenes), scene.name)
+            _write(place / scene.page, pages.scene(scene, figures[scene.page]))
+    return out / "index.html"
+
+
+def size(place: Path) -> int:
+    """Return the size of a gallery [bytes]."""
+    return sum(path.stat().st_size for path in place.iterdir())
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_bytes(text.encode())
+
+
+def _check(out: Path) -> None:
+    """Refuse a place that cannot be written, or whose files are not those of a gallery."""
+    if out.exists() and not out.is_dir():
+        raise InputError(f"--out: must be a directory, got the file {out}")
+    if out.is_dir() and any(out.iterdir()) and not (out / NOTICE).is_file():
+        raise InputError(f"--out: must be a new or empty directory or an earlier gallery, got {out} with other files")
+
+
+@contextmanager
+def _whole(out: Path) -> Iterator[Path]:
+    """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or replaced.
+    """
+    place = out.absolute()
+    beside: Path | None = None
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}."))
+        new, old = beside / "new", beside / "old"
+        new.mkdir()
+        yield new
+        if place.exists():
+            os.replace(place, old)
+        try:
+            os.replace(new, place)
+        except OSError:
+            if old.exists():
+                os.replace(old, place)
+            raise
+    except OSError as error:
+        raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
+    finally:
+        if beside is not None:
+            shutil.rmtree(beside, ignore_errors=True)

@@ -1,0 +1,39 @@
+"""Verdicts as data of a table that a page filters: words once, each row by their numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from validation.gallery.cases import readable
+from validation.report.chapters.gates import ORDER, band, reason, value_cell
+from validation.runs.records import VerdictRecord
+
+COLUMNS = ("verdict", "case", "pair", "metric", "value", "band")
+
+
+def table(verdicts: Sequence[VerdictRecord]) -> dict[str, Any]:
+    """Return the table of some verdicts, failures first: rows of six texts and the number of the row's reason."""
+    words: dict[str, int] = {}
+    reasons: dict[str, int] = {}
+    rows = []
+    for verdict in sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)):
+        window = f"@{verdict['id'].rpartition('@')[2]}" if "@" in verdict["id"] else ""
+        texts = (
+            verdict["verdict"],
+            verdict["scene"],
+            " – ".join(verdict["pair"]),
+            verdict["metric"] + window,
+            value_cell(verdict["value"]),
+            band(verdict),
+        )
+        numbers = [words.setdefault(readable(text), len(words)) for text in texts]
+        rows.append([*numbers, reasons.setdefault(readable(reason(verdict)), len(reasons))])
+    return {"words": list(words), "rows": rows, "reasons": list(reasons)}
+
+
+def counts(verdicts: Sequence[VerdictRecord]) -> dict[str, int]:
+    """Return how many verdicts say PASS, FAIL and NOT RUN."""
+    counted = Counter(v["verdict"] for v in verdicts)
+    return {word: counted[word] for word in ("PASS", "FAIL", "NOT RUN")}

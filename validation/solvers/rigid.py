@@ -1,0 +1,33 @@
+"""Adapters of rigid bodies: the restitution of a mass on a penalty contact."""
+
+from __future__ import annotations
+
+
+def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tuple[float, float, float, float]:
+    """Return mean, least, greatest and mean square of the restitution of a penalty contact over its phase.
+
+    A mass without load under Newmark's scheme; the phase is where in a step it lands, uniform from 0 to 1.
+
+    Parameters
+    ----------
+    alpha, delta, gg
+        The scheme and its discount.
+    omega
+        sqrt(k / m) dt, `math.inf` for a rigid contact.
+
+    Raises
+    ------
+    ValueError
+        A number is out of the range in which the map is defined.
+    """
+    from fem_reference.events.restitution import ContactScheme, statistics
+
+    found = statistics(ContactScheme(alpha, delta, gg), omega)
+    return found.mean, found.low, found.high, found.mean_square
+
+
+def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phase: float) -> float:
+    """Return the restitution of one phase; see `impact_statistics`."""
+    from fem_reference.events.restitution import ContactScheme, restitution
+
+    return float(restitution(ContactScheme(alpha, delta, gg), omega, phase)[0])
