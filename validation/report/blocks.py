@@ -111,5 +111,6 @@ class Lines:
     sections: tuple[tuple[str, str, tuple[Line, ...]], ...]  # title, empty where it is the last one's; remark; lines
 
 
-Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak | Points | Beside | Lines
+Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
+Part = Block | Points | Beside | Lines  # of the first and the last pages
 Chapter = Callable[[Results, Manifest, Path], list[Block]]

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Part
 from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
@@ -42,12 +42,12 @@ def build(results: Results, out: Path) -> Path:
     return write_document(out, lambda root: _all_blocks(results, studies, root))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Part]:
     from validation.report.appendix.pages import appendix
     from validation.report.front.found import found_scenes
     from validation.report.front.pages import front_pages
 
-    chapters: list[Block] = []
+    chapters: list[Part] = []
     for study in studies:
         chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
     with _told(results, "the first and the last pages"):

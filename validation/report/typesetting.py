@@ -13,7 +13,7 @@ from typing import Any
 import typst
 
 from validation.errors import InputError
-from validation.report.blocks import Beside, Block
+from validation.report.blocks import Beside, Part
 from validation.report.names import unescaped
 from validation.runs.files import write_atomically
 
@@ -21,7 +21,7 @@ TEMPLATE = Path(__file__).with_name("report.typ")
 PIXELS_PER_INCH = 200.0
 
 
-def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Path:
     """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
 
     Raises
@@ -38,7 +38,7 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
     return out
 
 
-def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
+def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     shutil.copyfile(TEMPLATE, root / "report.typ")
     data = {
@@ -54,7 +54,7 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     return bytes(pdf)
 
 
-def _record(block: Block) -> dict[str, Any]:
+def _record(block: Part) -> dict[str, Any]:
     """Return a block as plain data with the name of its kind, those within it as well."""
     data: dict[str, Any] = {"block": type(block).__name__} | _shown(asdict(block))
     if isinstance(block, Beside):

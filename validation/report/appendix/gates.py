@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from validation.report.blocks import Block, Heading, Line, Lines, Paragraph
+from validation.report.blocks import Heading, Line, Lines, Paragraph, Part
 from validation.report.chapters.data import Group
 from validation.report.chapters.gates import band, reason, value_cell
 from validation.runs.case_name import scene_of
@@ -14,7 +14,7 @@ MOST_LINES = 700  # beyond, gates of a scene that share pair, metric and reason 
 Verdicts = Sequence[VerdictRecord]
 
 
-def gate_pages(verdicts: Verdicts, found: Mapping[str, Group]) -> list[Block]:
+def gate_pages(verdicts: Verdicts, found: Mapping[str, Group]) -> list[Part]:
     """Return the gates that passed, study by study."""
     labels = {case.name: case.label for group in found.values() for case in group.cases}
     passed = [v for v in verdicts if v["verdict"] == "PASS"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.gates import closed_forms
-from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Points
+from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
 from validation.report.chapters.data import Case
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
@@ -28,7 +28,7 @@ DISCOUNT = 0.98
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
 
 
-def first_page(found: Found, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
+def first_page(found: Found, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Part]:
     """Return the blocks of the first page."""
     words = f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa"
     drawing = histories.saved(model_figure(*words), directory, "model.svg", "")

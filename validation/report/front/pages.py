@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, PageBreak, Paragraph
+from validation.report.blocks import PageBreak, Paragraph, Part
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
@@ -13,9 +13,7 @@ from validation.report.front.found import Found, paper_scene
 from validation.runs.records import VerdictRecord
 
 
-def front_pages(
-    found: Found, verdicts: Sequence[VerdictRecord], studies: Sequence[str], directory: Path
-) -> list[Block]:
+def front_pages(found: Found, verdicts: Sequence[VerdictRecord], studies: Sequence[str], directory: Path) -> list[Part]:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
     paper = paper_scene(found)
     if paper is None:
