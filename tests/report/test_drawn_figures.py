@@ -273,7 +273,8 @@ def test_a_hollow_mark_at_the_top_has_not_settled() -> None:
         figures_stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
     ]
     (axes,) = figures_stability.settling_figure(lines, 1000.0).axes
-    assert names_at(axes) == {"one": (pytest.approx(40.0), color("one")), "two": (pytest.approx(100.0), color("two"))}
+    first, second, *_ = figures_stability.COLORS
+    assert names_at(axes) == {"one": (pytest.approx(40.0), first), "two": (pytest.approx(100.0), second)}
     hollow = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines
               if to_hex(line.get_markerfacecolor()) == "#ffffff" and len(line.get_xdata())]  # fmt: skip
     assert hollow == [([10.0], [1000.0])]

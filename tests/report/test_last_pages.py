@@ -159,7 +159,7 @@ def test_locking_is_told_by_the_share_that_linear_elements_keep() -> None:
     drift = made_group(
         made_case(PAPER, {"dda": {"energy.drift": 3e-11}}), made_case(PAPER, {"dda": {"energy.drift": 1e-13}})
     )
-    assert locking.drift_sentence(drift) == "After 100 steps the energy is within 3.0×10⁻¹¹ of what it was."
+    assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 100 steps."
 
 
 def test_two_codes_are_told_apart_by_their_largest_difference() -> None:

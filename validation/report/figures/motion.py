@@ -60,7 +60,9 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
     apart = apart and any(differences(panel, columns[0]) for panel in drawn)
     names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
     room = max(14.0, 5.0 + LETTER * max(map(len, names.values()), default=0))
-    rows = [(22.0, 3.0)] * len(columns) + [(16.0, 3.0)] * (span is not None) + [(14.0, 3.0)] * apart
+    rows = [(20.0, 3.0)] * len(columns) + [(14.0, 3.0)] * apart
+    if span is not None:  # whose own times stand below the rows above
+        rows[len(columns) - 1 : len(columns)] = [(20.0, 7.0), (16.0, 7.0 if apart else 3.0)]
     rows[-1] = (rows[-1][0], 13.0)
     with house_style():
         figure, bands = small_multiples(drawn, _columns(len(panels)), Margins(left=15.0, right=room), rows)

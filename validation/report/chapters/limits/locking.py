@@ -80,4 +80,5 @@ def drift_sentence(group: Group) -> str:
     if not drifts:
         return f"{steps} steps; the energy was not measured."
     largest = max(drifts)
-    return f"After {steps} steps the energy is within {bounded(largest, power(largest))} of what it was."
+    said = f"{steps:,}".replace(",", "\u202f")
+    return f"The energy drifts by {bounded(largest, power(largest))} at most over {said} steps."
