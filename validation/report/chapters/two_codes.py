@@ -6,9 +6,8 @@ from pathlib import Path
 
 from validation.report.blocks import Block, Callout, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Group, groups
-from validation.report.chapters.scene import gate_count, history_block, outcomes
+from validation.report.chapters.scene import gate_count, outcomes
 from validation.report.chapters.text import DASH, bounded, power
-from validation.runs.history import DISPLACEMENT
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -17,7 +16,7 @@ MEASURES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max"
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
-    """Return the chapter: how far the codes are apart, scene by scene, and one motion that both agree on."""
+    """Return the chapter: how far the codes are apart, scene by scene; where one did not run, why."""
     found = groups(results, manifest)
     blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
     blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
@@ -28,8 +27,6 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
         dict.fromkeys(block.text for group in found for block in outcomes(group) if isinstance(block, Callout))
     )
     blocks += [Callout(text, "warn") for text in missing[:3]]
-    if last := next((group for group in reversed(found) if any(case.histories for case in group.cases)), None):
-        blocks += [Heading(last.title, 2), history_block(last, (DISPLACEMENT,), directory)]
     return blocks
 
 
