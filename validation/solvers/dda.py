@@ -15,10 +15,10 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
+from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.dda_opening import OPENING, OpeningBlock, OpeningSubBlocks
-from validation.solvers.dda_rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
