@@ -3,11 +3,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+DOCS := $(VENV)/.docs
 export OMP_NUM_THREADS ?= 1
 # Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all gallery test test-all gates lint portable api bench clean
+.PHONY: report report-all gallery test test-all gates lint portable docs api bench clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -36,17 +37,26 @@ lint: $(READY)  ## style and types
 portable: $(READY)  ## the tests under other kernels, versions and Pythons, and an installed wheel; says which is red
 	$(BIN)/python .ci/portable
 
-api: $(READY)  ## the API reference from the docstrings, in docs/api
-	$(BIN)/pdoc --docformat numpy --output-directory docs/api $$(find dda fem_reference validation -name __init__.py | sed 's,/__init__.py,,; s,/,.,g' | sort)
+docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the results that are there
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery; \
+	else echo "no results for the gallery: make report, then make docs again"; fi
+	@echo site/index.html
+
+api: docs  ## the former name: the reference is a part of the site
 
 bench: $(READY)  ## speed, as ratios in one run against named rivals
 	$(BIN)/python reports/bench.py
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/gallery reports/*.pdf
+	rm -rf $(VENV) site build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/gallery reports/*.pdf
 
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c "import ensurepip" 2>/dev/null || { echo "needs the venv module of Python: apt-get install python3-venv"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[dev]' --constraint constraints.txt
+	@touch $@
+
+$(DOCS): $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[docs]' --constraint constraints.txt
 	@touch $@

@@ -284,7 +284,7 @@ PAGE = """# Speed
 Written by `make bench` ({machine}, Python {python}, numpy {numpy}); one BLAS thread on both sides, run by turns,
 least seconds of some repeats, set-up counted. Constant acceleration, p = E, dt = 1e-3 s. Ratios above one are ours;
 the last column is the greatest difference of the two answers over the maximum. The rivals are
-[`reports/rivals`](../reports/rivals) and, for FEniCSx, `fem_reference/fenicsx`.
+`reports/rivals` and, for FEniCSx, `fem_reference/fenicsx`.
 
 | what | ours [s] | rival | rival [s] | ratio | asked for | difference |
 |---|---|---|---|---|---|---|

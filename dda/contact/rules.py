@@ -5,7 +5,8 @@ from __future__ import annotations
 from dda.contact.friction import rubbing
 from dda.contact.glued import Free
 from dda.contact.iteration import Iteration, open_close
-from dda.contact.unilateral import Corners, Unilateral
+from dda.contact.lagged import lagged
+from dda.contact.unilateral import LAGGED, Corners, Unilateral
 
 
 def find_states(law: Unilateral, before: Corners, free: Free, limit: int) -> Iteration:
@@ -20,4 +21,4 @@ def find_states(law: Unilateral, before: Corners, free: Free, limit: int) -> Ite
     """
     if law.friction is None or not len(free.slide):
         return open_close(law, before, free, limit)
-    return rubbing(law, before, free, limit)
+    return (lagged if law.rules == LAGGED else rubbing)(law, before, free, limit)

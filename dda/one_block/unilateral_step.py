@@ -29,7 +29,7 @@ from dda.contact.conserving import conserving
 from dda.contact.glued import Free
 from dda.contact.iteration import Iteration, open_close
 from dda.contact.rules import find_states
-from dda.contact.unilateral import SLIDES, SLIP, Corners, Unilateral, at_rest, slide_forces
+from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
@@ -204,8 +204,8 @@ def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) ->
     """
     local = [sum(b * d for b, d in zip(row, D, strict=True)) for row in length.slides]
     stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
-    if after.state:
-        stays = [kept and abs(now) != SLIP for kept, now in zip(stays, after.state, strict=True)]
+    if after.slipped:
+        stays = [kept and not way for kept, way in zip(stays, after.slipped, strict=True)]
     where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
     if len(stays) == 2 and any(stays):
         glued = zip(before.reference, after.stretch, where, stays, strict=True)

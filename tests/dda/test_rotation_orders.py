@@ -71,6 +71,7 @@ def test_contact_that_opens_and_closes_keeps_the_order(truths, alpha, delta, ord
     assert order - (0.5 if order == 2 else 0.1) < fitted < order + 0.1
 
 
+@pytest.mark.long
 def test_average_acceleration_needs_the_directions_of_the_end_of_a_step(truths):
     """With those of the chord, which delta = 1 needs, its error falls with the first power of the step in the end."""
     with patch.object(step, step.late_share.__name__, lambda delta: 0.0):
@@ -84,7 +85,7 @@ def test_delta_one_needs_the_directions_of_the_chord():
     heavy = RollingModel(Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e9, 1e9), Load(gravity=9.81), tilt=0.5)
 
     def rise():
-        e = solve_rolling(heavy, scheme, 400).energies
+        e = solve_rolling(heavy, scheme, 150).energies
         return np.max(np.diff(sum(e[name] for name in ("kinetic", "strain", "springs", "load"))))
 
     assert rise() < 1e-7

@@ -102,3 +102,17 @@ def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pyte
         monkeypatch.setattr(case_module, "library_versions", lambda: sound | {library: "another"})  # noqa: B023
         assert Case(scene, "dda").key() != before["dda"], library
         monkeypatch.setattr(case_module, "library_versions", lambda: sound)  # noqa: B023
+
+
+def test_how_a_block_may_turn_enters_the_key_and_the_other_solvers_do_not(scene: Scene) -> None:
+    opened = scene.model_copy(update={"contact": scene.contact.model_copy(update={"law": "unilateral"})})
+    keys = {
+        Case(opened.model_copy(update={"run": opened.run.model_copy(update=values)}), "dda").key()
+        for values in (
+            {},
+            {"geometry": "updated"},
+            {"geometry": "updated", "rotation": "first-order"},
+            {"solvers": ("dda",)},
+        )
+    }
+    assert len(keys) == 3

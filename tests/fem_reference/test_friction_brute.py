@@ -24,7 +24,7 @@ class Brute:
         self.D, self.V, self.A = 0 * F, 0 * F, np.linalg.solve(M, F) * (scheme.start == "consistent")
         self.w, self.s, self.r = (np.zeros(len(k)) for _ in range(3))
         self.closed = np.ones(len(k), bool)
-        self.met = set()
+        self.met, self.slid, self.again = set(), np.zeros(len(k)), 0
 
     def solved(self, states, ahead, phi):
         """D1, N and T for given states and crossings."""
@@ -66,6 +66,9 @@ class Brute:
         self.A = np.linalg.solve(self.M, self.F - self.K @ self.D + self.Bn.T @ N + self.Bt.T @ T)
         self.V = self.V + dt * ((1 - self.scheme.delta) * old + self.scheme.delta * self.A)
         self.w, self.s = self.Bn @ self.D, self.Bt @ self.D
+        slides = np.abs(states) == 2
+        self.slid = self.slid + np.where(slides, self.s + T / self.k_t - r, 0.0)
+        self.again += np.count_nonzero(slides & ~self.closed)
         self.r = np.where(states == 0, self.s, np.where(states == 1, r, self.s + T / self.k_t))
         self.closed = states != 0
         self.met |= set(states.tolist())
@@ -93,16 +96,18 @@ def test_points_that_slide_are_those_of_brute_force(scheme, elements):
         model.tangential.toarray(),
         2e9 * share,
         8e8 * share,
-        np.tan(np.radians(20.0)),
-        2.0 * 2e5 * share,
+        np.tan(np.radians(12.0)),
+        2.0 * 2e4 * share,
         scheme,
     )
-    run = solve_unilateral(problem, scheme, 30, replace(RUBBING, friction=Friction(20.0, 2e5))).columns
+    run = solve_unilateral(problem, scheme, 30, replace(RUBBING, friction=Friction(12.0, 2e4))).columns
     forces = np.array([brute.step() for _ in range(30)]).T / 2.0
     assert brute.met >= {0, 1, 2}
     for name, expected in zip(("contact_pressure", "base_shear"), forces, strict=True):
         # thirty solutions with the springs in the matrix, of condition 1e5
         assert np.abs(run[name] - expected).max() <= 1e-8 * np.abs(expected).max()
+    assert brute.again > 0  # points that close and slide within the same step
+    assert run["largest_slide"][-1] == pytest.approx(np.abs(brute.slid).max(), rel=1e-8)
     assert run["displacement"][-1] == pytest.approx(assembled.observers["displacement"] @ brute.D, rel=1e-8)
 
 

@@ -1,7 +1,6 @@
 """Every code block of the documentation is run, in the order in which a reader meets it."""
 
 import os
-import re
 import shlex
 import subprocess
 import sys
@@ -10,12 +9,10 @@ from pathlib import Path
 
 import pytest
 from conftest import beside
+from oracles.pages import BLOCK, FEW, ROOT
 
-ROOT = Path(__file__).parents[2]
 PAGES = ("theory.md", "extending.md", "columns.md")
 LONG = ("contact.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")  # seconds each
-BLOCK = re.compile(r"^```(\w+)(?: file=(\S+))?\n(.*?)^```$", re.M | re.S)
-FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 
 
 def run_line(line: str, directory: Path) -> None:

@@ -78,7 +78,12 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     columns = {"solvers/columns/elements.py", "solvers/columns/layers.py"}
     assert elements == {"solvers/fem.py", "solvers/bar.py", "solvers/events.py", "solvers/rigid.py", *columns}
     assert not dda & elements
-    adapters = {"solvers/dda.py", "solvers/dda_opening.py", "solvers/dda_rotation.py", "solvers/columns/blocks.py"}
+    adapters = {
+        "solvers/dda.py",
+        "solvers/blocks/opening.py",
+        "solvers/blocks/rotation.py",
+        "solvers/columns/blocks.py",
+    }
     for path in (path for path in dda - adapters if not path.startswith("compare/")):
         text = (ROOT / "validation" / path).read_text()  # apart from the adapter, the closed forms of the scheme alone
         named = re.findall(r"^ *(?:from|import) (dda\b[\w.]*)(?: import (\w+))?", text, re.M)

@@ -104,6 +104,17 @@ def test_a_slip_in_the_record_is_seen(name: str) -> None:
     assert {key for key, value in EXPECTED.items() if found[key] != pytest.approx(value)} == told
 
 
+def test_slip_and_changes_of_state_are_counted() -> None:
+    found = measured(replace(MADE, slip=np.array([0.0, 1e-3, 2e-3, 5e-3])))
+    assert found["contact.slip"] == 5e-3
+    assert found["contact.slip_rate"] == pytest.approx(3e-3 / STEP)  # of the last of four steps alone
+    assert measured(MADE)["contact.slip"] == measured(MADE)["contact.slip_rate"] == "not reported"
+    states = {"state_m": np.array([1.0, 2.0, 2.0, 0.0]), "state_n": np.array([1.0, 1.0, -2.0, 1.0])}
+    seen = solo(Measurable(History(np.arange(4.0), states), STEP, contact=MADE), ("switches",))
+    assert seen["contact.state_changes"] == 4
+    assert measured(MADE)["contact.state_changes"] == "not reported"
+
+
 def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:
     assert {measured(None)[key] for key in EXPECTED} == {"not reported"}
     bare = replace(MADE, velocity=None, energies={}, solves=None, cuts=None)

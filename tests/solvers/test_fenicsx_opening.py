@@ -23,6 +23,7 @@ GLUED = {"load.eccentricity": 0.25, "block.poisson": 0.25, "contact.shear_stiffn
 RUBBING = {"contact.friction": 25.0, "contact.cohesion": 1e5}
 INCLINE = {"load.pressure": 0.0, "load.gravity": 98.1, "load.slope": 25.0, "contact.shear_stiffness": 4e8}
 TRIED = {"load.eccentricity": 0.5, "load.traction": 2e6, "contact.solve_limit": 1, "time.step": 1e-3}
+SHAKEN = {"load.base_motion": str(Path(__file__).with_name("shake.csv")), "load.gravity": 9.81}
 SCENES = {  # constant acceleration: average acceleration multiplies rounding at impacts
     "centred": {"load.gravity": 9.81, "block.velocity": -0.2, "contact.gap": 1e-4, "time.gg": 0.99},
     "frictionless": {"load.eccentricity": -0.25, "block.poisson": 0.25, "contact.shear_stiffness": 0.0},
@@ -34,12 +35,16 @@ SCENES = {  # constant acceleration: average acceleration multiplies rounding at
     "rubbing": GLUED | RUBBING | {"load.traction": 1e6, "time.gg": 0.999, "contact.gap": 1e-5},
     "rubbing corners": GLUED | RUBBING | {"fem.foundation": "corner", "contact.gap": 1e-4, "load.traction": -1e6},
     "incline": INCLINE | {"contact.friction": 20.0, "contact.cohesion": 2e4, "fem.degree": 1, "block.velocity": -0.1},
+    "shaken": RUBBING | SHAKEN | {"load.pressure": 2e5, "contact.shear_stiffness": 4e8, "block.poisson": 0.25},
+    "shaken in pieces": GLUED
+    | SHAKEN
+    | {"load.eccentricity": 0.5, "contact.stiffness": 1e11, "time.step": 1e-3, "contact.solve_limit": 2},
     "few that rub": GLUED | RUBBING | TRIED | {"fem.elements": 2, "fem.degree": 1},
     "many that rub": GLUED | RUBBING | TRIED,
     "all states": GLUED | {"fem.elements": 2, "load.eccentricity": 0.5, "contact.solve_limit": 1, "time.step": 1e-3},
 }
 
-SHORT = ("centred", "glued", "cut", "rubbing")  # of these in the short set
+SHORT = ("centred", "glued", "cut", "rubbing", "shaken")  # of these in the short set
 
 
 @pytest.fixture
@@ -87,7 +92,8 @@ def test_the_two_codes_agree_on_contact_that_opens(scene: Scene, name: str) -> N
 @pytest.mark.fenicsx
 @pytest.mark.parametrize("name", ["quadrilateral", "pentagon"])
 def test_the_two_codes_agree_on_files_of_gmsh(name: str) -> None:
-    contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "gap": 1e-4}
+    contact: dict[str, object] = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "gap": 1e-4}
+    contact |= {"friction": 20.0} if name == "pentagon" else {}
     values = {"contact": contact, "block.velocity": -0.5, "time.step": 5e-4, "time.steps": 60}
     case = load_scene(name).expand()[0].with_values(values | {"run.columns": adapters_fenicsx.OPENING_COLUMNS})
     assert 0 < distance(case) <= SAME
@@ -97,7 +103,19 @@ def test_the_two_codes_agree_on_files_of_gmsh(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-@pytest.mark.parametrize("name", ["glued", "corner", "cut"])
+@pytest.mark.parametrize("motion", [None, SHAKEN["load.base_motion"]])
+def test_the_two_codes_agree_on_a_locked_incline(scene: Scene, motion: str | None) -> None:
+    values = INCLINE | {"contact": {"stiffness": 1e9, "shear_stiffness": 4e8}, "block.poisson": 0.25}
+    case = scene.with_values(values | {"load.base_motion": motion, "run.columns": FEW})
+    histories = [solve(case, name).history for name in ("fem", "fenicsx")]
+    assert histories[0] is not None and histories[1] is not None
+    for name, expected in histories[0].columns.items():
+        assert np.abs(histories[1].columns[name] - expected).max() <= SAME * np.abs(expected).max(), name
+
+
+@pytest.mark.long
+@pytest.mark.fenicsx
+@pytest.mark.parametrize("name", ["glued", "corner", "cut", "rubbing", "shaken"])
 def test_ranks_share_one_contact(scene: Scene, name: str) -> None:
     assert 0 < distance(scene.with_values(SCENES[name]), "fenicsx:2") <= SAME
 
@@ -124,6 +142,12 @@ SLIPS = {  # a line of the worker, what a slip makes of it, and a scene that see
     "gg of the whole step in a piece": ('self.request["gg"] ** share', 'self.request["gg"]', "cut"),
     "gap at the start forgotten": ('w + self.request["gap"]', "w", "centred"),
     "velocity at the start forgotten": ('[0.0, request["velocity"]]', "[0.0, 0.0]", "centred"),
+    "friction begins late": ("np.abs(holding) > most", "np.abs(holding) > 1.5 * most", "rubbing"),
+    "friction keeps a point that turns": ("-np.sign(states) * holding >=", "0 * holding >= 0 *", "shaken"),
+    "no cohesion where a node slides": ("q[n + i] = -d * self.law.c[i]", "q[n + i] = 0.0", "rubbing corners"),
+    "crossing of a node that slides": ("self.start.states == 0, self._passed(N)", "False, N", "incline"),
+    "base a step late": ("self._way(self.time + dt)", "self._way(self.time)", "shaken"),
+    "slope turned back": ("np.sin(angle)", "-np.sin(angle)", "incline"),
     "states of the end not set": ("states=found.states,", "states=start.states,", "glued"),
 }
 
@@ -135,7 +159,7 @@ def test_a_slip_of_the_worker_is_seen(
     scene: Scene, line: str, slip: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copytree(adapters_fenicsx.WORKER, tmp_path / "worker")
-    modules = [tmp_path / "worker" / name for name in ("opening.py", "small.py")]
+    modules = [tmp_path / "worker" / name for name in ("opening.py", "small.py", "model.py")]
     (module,) = [module for module in modules if line in module.read_text()]
     text = module.read_text()
     assert text.count(line) == 1

@@ -125,7 +125,7 @@ def solve(scene):
 
 @pytest.mark.long
 def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slow(tmp_path: Path) -> None:
-    code = re.search(r"^```python file=my_solver.py\n(.*?)^```$", page(), re.M | re.S)
+    code = re.search(r"^```python title=\"my_solver.py\"\n(.*?)^```$", page(), re.M | re.S)
     assert code
     (tmp_path / "my_solver.py").write_text(code[1])
     (tmp_path / "busy.py").write_text(BUSY)

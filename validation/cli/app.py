@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
 SLOW = 2.0  # seconds after which progress is shown
 app: typer.Typer = typer.Typer(
-    add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
@@ -56,6 +55,23 @@ BaselineOption = Annotated[
     ),
 ]
 RESULTS: Path = Path("reports/results")
+
+
+def known_scenes(incomplete: str) -> list[str]:
+    """Return the built-in scenes that a shell may complete a word to."""
+    from validation.scenes.scene import scene_names
+
+    return [name for name in scene_names() if name.startswith(incomplete)]
+
+
+def known_targets(incomplete: str) -> list[str]:
+    """Return the studies and built-in scenes that a shell may complete a word to."""
+    from validation.studies.catalogue import STUDIES
+
+    return [name for name in (*STUDIES, "all") if name.startswith(incomplete)] + known_scenes(incomplete)
+
+
+SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.", autocompletion=known_scenes)]
 
 
 def one_case(source: str, assignments: list[str] | None) -> Scene:

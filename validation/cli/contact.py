@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import NUMERICAL_FAILURE, PASSED, SetOption, app, one_case
-from validation.cli.damping import JsonOption, SceneArgument
+from validation.cli.app import NUMERICAL_FAILURE, PASSED, SceneArgument, SetOption, app, one_case
+from validation.cli.damping import JsonOption
 
 if TYPE_CHECKING:
     from validation.runs.row import Row

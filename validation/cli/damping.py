@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import RESULTS, ResultsOption, SetOption, app, one_case
+from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, app, one_case
 
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
-SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.")]
 
 
 @app.command()

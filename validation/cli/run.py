@@ -34,10 +34,12 @@ from validation.cli.app import (
     FullOption,
     RanksOption,
     ResultsOption,
+    SceneArgument,
     SetOption,
     SummaryOption,
     _progress,
     app,
+    known_targets,
     one_case,
 )
 
@@ -75,6 +77,7 @@ def run(
         typer.Argument(
             help="Studies, built-in scenes or scene files (default: core; all: every study).",
             metavar="[STUDY|SCENE|FILE]...",
+            autocompletion=known_targets,
         ),
     ] = None,
     results: ResultsOption = RESULTS,
@@ -229,7 +232,7 @@ def _checked(kept: Results, required: list[str], summary: Path | None, baseline:
 
 @app.command()
 def solve(
-    scene: Annotated[str, typer.Argument(help="Built-in scene or scene file.")],
+    scene: SceneArgument,
     solver: Annotated[str, typer.Option(help="Solver, see `dda-validate list`.", metavar="NAME")] = "dda",
     csv: Annotated[Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE")] = None,
     fields: Annotated[

@@ -6,8 +6,8 @@ import json
 
 import typer
 
-from validation.cli.app import SetOption, app
-from validation.cli.damping import JsonOption, SceneArgument
+from validation.cli.app import SceneArgument, SetOption, app
+from validation.cli.damping import JsonOption
 
 
 @app.command()

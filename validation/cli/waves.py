@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import SetOption, app, one_case
+from validation.cli.app import SceneArgument, SetOption, app, one_case
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
 
-SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.")]
 FigureOption = Annotated[
     Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
 ]

@@ -57,6 +57,7 @@ CAUSES = {
         Cause("contact-opened", "the contact opened"),
         Cause("contact-locked", "the contact carries tension"),
         Cause("dead-band", "an open contact closes only beyond a penetration"),
+        Cause("lagged-friction", "a slipping corner has the friction of the step, or of the pass, before"),
         Cause("base-compliance", "a slightly compliant base", benign=True),
         Cause("own-weight", "the block's own weight", benign=True),
         Cause("geometry-updated", "geometry updated at every step", benign=True),

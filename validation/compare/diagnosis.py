@@ -24,6 +24,8 @@ from validation.compare.ranking import ranking, row_of
 from validation.compare.reading import Foreign, steppings
 from validation.compare.readings import Reading, readings_of, slips
 from validation.compare.search import paired, simple
+from validation.compare.slopes import answer
+from validation.compare.slopes.judge import judge
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes import features
@@ -106,6 +108,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     """
     features.refuse_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if features.FRICTION in features.of(scene):
+        return _with_friction(scene, foreign)
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(
@@ -296,6 +300,31 @@ def _answer_of_rival(foreign: Foreign, reading: Reading, verdict: RivalVerdict, 
         values=verdict.values if verdict.explained else {},
         unexplained=0.0 if verdict.explained else verdict.left,
         evidence=tuple(stages),
+    )
+
+
+def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
+    """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
+    read = answer.read(scene, foreign)
+    found = judge(scene, read.place, read.step, read.rounding)
+    ids = answer.ids_of(found, read)
+    t = scene.time
+    left = float(f"{1 - max(found.shares.values()):.4g}")
+    near = {"causes": list(found.causes), "values": found.values, "left": left}
+    return Answer(
+        {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
+        [row_of(DDA, t.alpha, t.delta, t.discount, found.normal, found.values.get("base-compliance", 0.0))],
+        answer.departure_of(found, ids),
+        ids,
+        found.opened if found.explained else None,
+        answer.sentence(scene, found, ids),
+        (*foreign.notes, *read.notes),
+        misfit=found.normal,
+        curves={"the file": (foreign.time, foreign.displacement)},
+        values=found.values if found.explained else {},
+        unexplained=0.0 if found.explained else left,
+        nearest=None if found.explained else near,
+        evidence=tuple(answer.stages(found, read)),
     )
 
 

@@ -15,7 +15,9 @@ from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.regular import regular
 
-OURS = ("time", DISPLACEMENT, PRESSURE)
+SIDEWAYS = "horizontal_displacement"  # m, towards +x
+OURS = ("time", DISPLACEMENT, PRESSURE, SIDEWAYS)
+FREE = (PRESSURE, SIDEWAYS)  # columns that a file need not have
 NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, speed
 LEAST_ROWS = 4
 LARGEST = 1e100  # the squares of larger numbers overflow
@@ -40,6 +42,8 @@ class Foreign:
     notes: tuple[str, ...] = ()
     rounding: Array | None = None  # [m]
     pressure_rounding: Array | None = None  # [Pa]
+    sideways: Array | None = None  # horizontal displacement [m]
+    sideways_rounding: Array | None = None  # [m]
 
 
 def parse_columns(text: str | None) -> dict[str, str]:
@@ -157,7 +161,7 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
         return folded.index(theirs.casefold())
     if theirs.isdigit() and 1 <= int(theirs) <= len(names):
         return int(theirs) - 1
-    if ours == PRESSURE and theirs == ours:
+    if ours in FREE and theirs == ours:
         return None
     raise InputError(
         f"{path}: no column {theirs!r} for {ours}; it has {', '.join(names)}; name it with --columns {ours}=NAME"
@@ -186,7 +190,7 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
         raise InputError(
             f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} other rows"
         )
-    step, time, dt, _, y, size, _, vy, _ = np.array(kept).T
+    step, time, dt, x, y, size, vx, vy, _ = np.array(kept).T
     summed = np.cumsum(vy * dt)
     start = y[0] - math.copysign(size[0], vy[0])
     every = bool(step[0] == 1 and np.all(np.diff(step) == 1))
@@ -194,7 +198,8 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     sideways = float(np.max(np.abs(moved - summed))) if every else 0.0
     if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
         moved = summed
-    return {"time": time, DISPLACEMENT: moved} | ({"dt": dt} if every else {})
+    aside = np.cumsum(vx * dt) if every else x - (x[0] - vx[0] * dt[0])
+    return {"time": time, DISPLACEMENT: moved, SIDEWAYS: aside} | ({"dt": dt} if every else {})
 
 
 def _bounded(rows: int, path: Path) -> None:
@@ -240,6 +245,7 @@ def _checked(
         notes,
         rounded[DISPLACEMENT][keep],
         None if pressure is None else rounded[PRESSURE][keep],
+        *((found[SIDEWAYS][keep], rounded[SIDEWAYS][keep]) if SIDEWAYS in found else (None, None)),
     )
 
 

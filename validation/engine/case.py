@@ -68,7 +68,8 @@ class Case:
         read: dict[str, Any] = {section: dict(data[section] or {}) for section in solver.sections}
         for section, _, key in (name.partition(".") for name in solver.unread):
             read[section].pop(key, None)
-        read["run"] = sorted(self.scene.run.columns)
+        read["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
+        del read["run"]["solvers"]  # which others run decides nothing
         if self.scene.fem.mesh and "fem" in solver.sections:
             read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
         load, drive = self.scene.stated_load, self.scene.stated_input

@@ -50,7 +50,7 @@ def static_displacement(scene: Scene) -> float:
 def dda_frequency(scene: Scene) -> float:
     """First axial frequency of the DDA block for mu = 0 [rad/s].
 
-    Smaller root of [2p - w^2 m] [E h w + ... ] - (p h)^2: M = diag(m, m h^2/12), K = [[2p, -p h], [-p h, E w h +
+    Smaller root of (2p - w^2 m) (E h w + ...) - (p h)^2: M = diag(m, m h^2/12), K = [[2p, -p h], [-p h, E w h +
     p h^2/2]], the two-unknown form of equations (17) and (27).
     """
     E, _ = moduli(scene)

@@ -113,6 +113,8 @@ def _of_switches() -> Iterator[Metric]:
     for name, unit, says, function in contact.parts():
         seen = partial(contact.reported, part=function)
         yield Metric(name, unit, says, frozenset({CONTACT}), seen, "switches")
+    changes = _first_line(contact.state_changes)
+    yield Metric("contact.state_changes", "1", changes, frozenset({HISTORY}), contact.state_changes, "switches")
     says = _first_line(contact.horizon)
     yield Metric("horizon.time", "s", says, frozenset({HISTORY, SWITCHES}), contact.horizon, "horizon")
 

@@ -37,6 +37,14 @@ def second(m: Measurable, opens: bool) -> Value:
     return times[1] if len(times) > 1 else UNDEFINED
 
 
+def state_changes(m: Measurable) -> Value:
+    """Changes of state from step to step, open, stick and slip either way, of both corners; from their columns."""
+    states = [m.history.columns.get(name) for name in ("state_m", "state_n")]
+    if any(state is None for state in states):
+        return NOT_REPORTED
+    return float(sum(np.count_nonzero(np.diff(state)) for state in states if state is not None))
+
+
 def reported(m: Measurable, part: Part) -> Value:
     """Return a part of what the contact did, not reported where there is no record of it."""
     return NOT_REPORTED if m.contact is None or not len(m.contact.time) else part(m.contact)
@@ -111,6 +119,20 @@ def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float])
         return NOT_REPORTED
     found = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
     return float(part(found)) if found else UNDEFINED
+
+
+def slip(record: ContactRecord) -> Value:
+    """Way that a corner or point slips over the run, to and fro summed; the largest of any."""
+    return NOT_REPORTED if record.slip is None else float(record.slip[-1])
+
+
+def slip_rate(record: ContactRecord) -> Value:
+    """Slip per second over the second half of the run."""
+    if record.slip is None:
+        return NOT_REPORTED
+    half = len(record.time) // 2
+    passed = float(record.time[-1] - record.time[half])
+    return float(record.slip[-1] - record.slip[half]) / passed if passed > 0 else UNDEFINED
 
 
 def landing_speed(record: ContactRecord) -> Value:
@@ -188,6 +210,8 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.mean_solves", "1", mean_solves),
     ("contact.most_solves", "1", most_solves),
     ("contact.cuts", "1", cuts),
+    ("contact.slip", "m", slip),
+    ("contact.slip_rate", "m/s", slip_rate),
     ("contact.landing_speed", "m/s", landing_speed),
     ("contact.restitution", "1", restitution),
     ("energy.given", "J", given),

@@ -15,10 +15,10 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
+from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.dda_opening import OPENING, OpeningBlock, OpeningSubBlocks
-from validation.solvers.dda_rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.limits import check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
@@ -54,7 +54,7 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
-NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION}
+NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION, features.LAGGED}
 
 
 class OneBlock(Prepared):
@@ -190,7 +190,7 @@ class DDA(Solver):
     name = "dda"
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
-        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.ROTATION}
+        | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
         | features.LOADS
         | features.RULES
     )
@@ -216,6 +216,8 @@ class DDA(Solver):
             )
         if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
+        if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
+            return "a corner that pulls within its band rubs under lagged rules only"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)

@@ -12,15 +12,22 @@ def rectangle_of(scene: Scene) -> Column | None:
     b, c, load = scene.block, scene.contact, scene.load
     if not features.linear(scene) and not _opens_only(scene):
         return None
-    points = b.outline
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points if len(points) == 4 else ((0.0, 0.0),) * 4
-    upright = y0 == y1 and x1 == x2 and y2 == y3 and x3 == x0 and x1 > x0 and y2 > y1
-    vertical = load.eccentricity == load.traction == 0 and load.base_motion is None
-    if not (upright and vertical and b.base == 0 and b.top == 2 and b.subdivide is None):
+    vertical = load.eccentricity == load.traction == load.slope == 0 and load.base_motion is None
+    if not (upright(scene) and vertical):
         return None
+    (x0, y0), (x1, _), (_, y2), _ = b.outline
     springs = 2 * c.stiffness, 2 * c.shear
     material = b.density, b.young, b.poisson, b.hypothesis == "plane strain"
-    return Column(x1 - x0, y2 - y1, *material, *springs, load.pressure, load.gravity)
+    return Column(x1 - x0, y2 - y0, *material, *springs, load.pressure, load.gravity)
+
+
+def upright(scene: Scene) -> bool:
+    """Whether a scene's block is one upright rectangle on its lower edge."""
+    b = scene.block
+    points = b.outline
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points if len(points) == 4 else ((0.0, 0.0),) * 4
+    rectangle = y0 == y1 and x1 == x2 and y2 == y3 and x3 == x0 and x1 > x0 and y2 > y1
+    return rectangle and b.base == 0 and b.top == 2 and b.subdivide is None
 
 
 def _opens_only(scene: Scene) -> bool:

@@ -15,8 +15,8 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, friction
 from validation.solvers.contract import NotReported, Prepared
-from validation.solvers.dda_opening import FORCES, GAPS, OPENING, SLIDES, STATES, friction
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
 
 if TYPE_CHECKING:

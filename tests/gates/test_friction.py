@@ -1,0 +1,112 @@
+"""The closed forms of sliding: printed numbers, identities of the recursion, and equilibrium at other data."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.gates import friction
+from validation.scenes.scene import Scene
+
+SLOPE = {
+    "contact.law": "unilateral",
+    "contact.friction": 15.0,
+    "load.pressure": 0.0,
+    "load.gravity": 9.81,
+    "load.slope": 28.9,
+}
+OTHER = {"block.width": 1.5, "block.height": 3.0, "block.density": 2400.0, "block.young": 3e9, "contact.stiffness": 7e8}
+
+
+def scene(**changes: object) -> Scene:
+    base = {"time.step": 0.01, "time.steps": 100}
+    return load_scene("figures-3-4").with_values(SLOPE | base | {k.replace("__", "."): v for k, v in changes.items()})
+
+
+def test_the_numbers_of_an_independent_computation() -> None:
+    assert friction.run_out(scene(), 1.0) == pytest.approx(1.219885, abs=5e-7)
+    assert friction.penalty_offset(scene()) == pytest.approx(1.864e-5, abs=5e-9)
+    assert friction.creep_scale(scene()) == pytest.approx(22.8e-3, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("gg", "step", "way", "average"),
+    [
+        (0.98, 0.01, 0.689234, False),
+        (0.98, 0.001, 0.114810, False),
+        (0.99, 0.01, 0.888645, True),
+        (0.99, 0.001, 0.218502, True),
+    ],
+)
+def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, average: bool) -> None:
+    """Numbers of an independent program; its average acceleration is from A0 = 0 and still rings by the offset."""
+    scheme = {"time__alpha": 0.25, "time__delta": 0.5} if average else {"time__start": "consistent"}
+    case = scene(time__gg=gg, time__step=step, time__steps=round(1 / step), **scheme)
+    moved, speed = friction.free_motion(case, friction.sliding_acceleration(case))
+    offset = friction.penalty_offset(case)
+    assert moved[-1] + offset == pytest.approx(way, abs=offset if average else 5e-7)
+    assert speed[-1] < friction.terminal_speed(case, friction.sliding_acceleration(case))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"time__alpha": 0.3, "time__delta": 0.7, "time__gg": 0.93, "time__start": "zero"},
+        {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.98, "time__start": "consistent"},
+        {"time__alpha": 0.25, "time__delta": 0.5, "time__start": "zero", "contact__cohesion": 3e3},
+        {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.0, "time__start": "zero"},
+    ],
+)
+def test_free_motion_is_the_recursion(changes: dict[str, object]) -> None:
+    case = scene(**changes)
+    t, a = case.time, friction.sliding_acceleration(case)
+    moved, speed = friction.free_motion(case, a)
+    D, V, A = 0.0, 0.0, a if t.start == "consistent" else 0.0
+    for n in range(t.steps):
+        D = D + t.discount * t.step * V + t.step**2 * ((0.5 - t.alpha) * A + t.alpha * a)
+        V, A = t.discount * V + t.step * ((1 - t.delta) * A + t.delta * a), a
+        assert moved[n] == pytest.approx(D, rel=1e-12)
+        assert speed[n] == pytest.approx(V, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "changes", [OTHER | {"contact.cohesion": 4e3}, {"contact.friction": 35.0, "load.gravity": 3.7}]
+)
+def test_at_the_threshold_the_forces_balance(changes: dict[str, object]) -> None:
+    case = scene().with_values(changes)
+    limit = friction.threshold_angle(case)
+    at = case.with_values({"load.slope": limit})
+    forces = friction.along(at), friction.coefficient(at) * friction.across(at), friction.adhesion(at)
+    assert forces[0] == pytest.approx(forces[1] + forces[2], rel=1e-12)
+    assert friction.run_out(case.with_values({"load.slope": limit - 1e-3}), 1.0) == 0
+    assert friction.run_out(case.with_values({"load.slope": limit + 1e-3}), 1.0) > 0
+
+
+@pytest.mark.parametrize("changes", [OTHER, {"contact.stiffness": 1e10, "load.slope": 11.0}])
+def test_the_settled_block_is_in_equilibrium(changes: dict[str, object]) -> None:
+    """-N = -2 p w at the springs, and E a h ey = -N h / 2 in the block, by the suite's own static solution."""
+    from validation.solvers.registry import get_solver
+
+    case = scene().with_values(changes)
+    upright = case.with_values({"load.slope": 0.0, "load.gravity": friction.across(case)})
+    plain = {key: value for key, value in upright.definition().items() if key != "contact"}
+    locked = load_scene("figures-3-4").with_values(
+        {f"load.{key}": value for key, value in plain["load"].items()}
+        | {k: v for k, v in changes.items() if not k.startswith("load")}
+    )
+    still = get_solver("dda").prepare(locked.with_values({"time.step": 0.01})).static()
+    assert friction.settlement(case) == pytest.approx(-still["displacement"], rel=1e-12)
+    weight, springs = friction.mass(case) * friction.across(case), 2 * case.contact.stiffness
+    assert friction.penalty_offset(case) > friction.coefficient(case) * weight / springs
+
+
+def test_a_rate_is_what_a_discount_takes_in_a_second() -> None:
+    for gg, step in ((0.98, 1e-3), (0.9, 4e-2)):
+        case = scene(time__gg=gg, time__step=step)
+        assert math.exp(-friction.drag_rate(case) * step) == pytest.approx(gg, rel=1e-12)
+        assert friction.time_constant(case) == pytest.approx(step / (1 - gg), rel=1e-12)
+    assert friction.drag_rate(scene()) == 0
+    assert friction.terminal_speed(scene(), 2.0) == math.inf
+    many = friction.free_motion(scene(time__gg=0.9, time__steps=2000), 2.0)[1]
+    assert np.max(np.abs(many[1000:] / friction.terminal_speed(scene(time__gg=0.9), 2.0) - 1)) < 1e-12

@@ -1,0 +1,8 @@
+"""Code blocks of the documentation: how they are found, and which gates a page's pytest command runs in a test."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(r"^```(\w+)(?: (?:file=|title=\")([^\s\"]+)\"?)?\n(.*?)^```$", re.M | re.S)
+FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates

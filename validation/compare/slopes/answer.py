@@ -1,0 +1,153 @@
+"""A history on a slope as it is read, and the answer to it in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.compare.causes import CAUSES, UNEXPLAINED
+from validation.compare.departure import Departure
+from validation.compare.evidence import Stage
+from validation.compare.fits.rectangle import upright
+from validation.compare.reading import SIDEWAYS, Foreign, steppings
+from validation.compare.sentences import per_cent, scheme_words
+from validation.compare.slopes.judge import BLURRED, CLOSE, NORMAL, Found
+from validation.compare.slopes.motion import body_of
+from validation.errors import InputError
+from validation.runs.history import Array
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+KNOWN = frozenset(
+    {features.FRICTION, features.LAGGED, features.SLOPE, features.WEIGHT, features.OFF_CENTRE}
+    | {features.UNILATERAL, features.DEAD_BAND}
+)
+UNIFORM = 1e-3  # relative; times are often printed with four digits
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """Displacements of the centroid along and across the base at every step, signs corrected."""
+
+    place: Array  # m, (steps, 2)
+    rounding: Array  # m, (steps, 2)
+    step: float  # s
+    slips: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def read(scene: Scene, foreign: Foreign) -> Read:
+    """Return what a history holds of a block with friction.
+
+    Raises
+    ------
+    InputError
+        The scene is not a rectangle at rest on its springs, or the history lacks a column or a step.
+    """
+    _check(scene)
+    if foreign.sideways is None:
+        raise InputError(
+            f"{scene.name}: {SIDEWAYS}: a history with friction must have it, got none; "
+            f"name it with --columns {SIDEWAYS}=NAME"
+        )
+    stepping = steppings(foreign, scene.time.step)[0]
+    steps = stepping.steps
+    if len(stepping.rows) != len(steps) or np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
+        raise InputError(f"{scene.name}: time: with friction a history must show every step, all alike, got others")
+    place = np.column_stack([foreign.sideways, foreign.displacement])
+    no_digits = np.zeros(len(place))
+    units = [no_digits if unit is None else unit for unit in (foreign.sideways_rounding, foreign.rounding)]
+    signs = [_sign(column, load) for column, load in zip(place.T, body_of(scene).load, strict=True)]
+    slips = ("sign",) if min(signs) < 0 else ()
+    notes = (stepping.note,) if stepping.note else ()
+    return Read(place * signs, np.column_stack(units), float(np.mean(steps)), slips, notes)
+
+
+def _check(scene: Scene) -> None:
+    """Refuse what is not a rectangle that lies at rest on its springs."""
+    more = sorted(set(features.of(scene)) - KNOWN)
+    at_rest = scene.contact.gap == scene.block.velocity == 0
+    if more or not upright(scene) or not at_rest or scene.time.alpha == 0:
+        got = ", ".join(more) or ("alpha = 0" if scene.time.alpha == 0 else "another scene")
+        raise InputError(
+            f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {got}"
+        )
+    if scene.sweep:
+        raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
+
+
+def _sign(column: Array, load: float) -> float:
+    """Return the factor that makes a column go with its load at first."""
+    first = float(np.sum(column[: max(4, len(column) // 50)]))
+    return -1.0 if first * load < 0 else 1.0
+
+
+def ids_of(found: Found, read: Read) -> list[str]:
+    """Return the ids of an answer."""
+    return [*read.slips, *found.causes] if found.explained else [UNEXPLAINED]
+
+
+def departure_of(found: Found, ids: Sequence[str]) -> Departure | None:
+    """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
+    if all(CAUSES[name].benign for name in ids):
+        return None
+    return Departure(1 if "sign" in ids else found.first or 1, "offset")
+
+
+def stages(found: Found, read: Read) -> list[Stage]:
+    """Return what was measured: signs, normal law, friction."""
+    held = {name: 100 * share for name, share in found.shares.items()}
+    shares = f"consistent in {held['consistent']:.3g} % of the steps, lagged in {held['lagged']:.3g} %"
+    telling = f"{found.telling} steps tell them apart"
+    blurred = "; the digits of the file do not show it" if found.tolerance > BLURRED else ""
+    numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
+    right = "signs and columns are the scene's" if not read.slips else "a sign is turned"
+    pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
+    return [
+        Stage("reading", not read.slips, right, {}),
+        Stage("normal forces", found.normal <= NORMAL, pressed, {"misfit": found.normal, "allowed": NORMAL}),
+        Stage(
+            "friction",
+            None if blurred else found.first is None,
+            f"rules that hold to {per_cent(found.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
+            numbers,
+        ),
+    ]
+
+
+def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
+    """Return the first line of the answer."""
+    t = scene.time
+    own = scheme_words(t.alpha, t.delta, t.discount)
+    law = "lagged" if found.lagged else "consistent"
+    held = f"{law} friction gives the force of {100 * found.shares[law]:.4g} % of the steps"
+    if not found.explained:
+        why = "the digits of the file do not show its forces" if found.tolerance > BLURRED else f"at best, {held}"
+        return f"Departs, not explained: {why}; the normal law leaves {per_cent(found.normal, 2)} %."
+    faults = [_fault(name, found) for name in ids if not CAUSES[name].benign]
+    benign = [_benign(name, found) for name in ids if CAUSES[name].benign]
+    allowed = f", allowing for {' and '.join(benign)}" if benign else ""
+    if not faults:
+        blunt = f" within {per_cent(found.tolerance, 2)} %" if found.tolerance > CLOSE else ""
+        return f"Same model, same scheme: {own}{allowed}; {held}{blunt}."
+    where = f" from step {found.first} on" if found.first else ""
+    return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
+
+
+def _fault(name: str, found: Found) -> str:
+    value = found.values.get(name, 0.0)
+    words = {
+        "lagged-friction": "friction lags, that of a slipping corner is of the step, or of the pass, before",
+        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
+        "springs-factor": f"the contact springs are {value:.4g} times the scene's",
+    }
+    return words.get(name, CAUSES[name].words)
+
+
+def _benign(name: str, found: Found) -> str:
+    value = found.values.get(name, 0.0)
+    if name == "own-weight":
+        return f"the block's own weight ({value:.3g} x 9.81 m/s2)"
+    return f"a base that adds {100 * value:.2g} % to the static displacement"

@@ -1,0 +1,149 @@
+"""Closed forms of a block on an incline with Coulomb's friction, written apart from the solvers.
+
+Gravity is g (sin b, -cos b) along and across the base. While every corner slips one way or is open, the resultants of
+the contact obey T + tan(phi) N = -c a (downhill slip), whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
+displacements moves freely under
+
+    a_s = g (sin b - tan(phi) cos b) - c a / m,
+
+for any springs, and in any Newmark scheme as a free body does in that scheme.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from validation.gates.closed_forms import moduli, size
+from validation.runs.history import Array
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+
+
+def mass(scene: Scene) -> float:
+    """Mass of the block of unit thickness [kg]."""
+    return scene.block.density * area(scene.block.outline)
+
+
+def coefficient(scene: Scene) -> float:
+    """Coefficient of friction tan(phi) [-]; zero without friction."""
+    return math.tan(math.radians(scene.contact.friction or 0.0))
+
+
+def along(scene: Scene) -> float:
+    """Gravity along the base, downhill [m/s2]."""
+    return scene.load.gravity * math.sin(math.radians(scene.load.slope))
+
+
+def across(scene: Scene) -> float:
+    """Gravity that presses the block on its base [m/s2]."""
+    return scene.load.gravity * math.cos(math.radians(scene.load.slope))
+
+
+def adhesion(scene: Scene) -> float:
+    """Deceleration c a / m by cohesion over the whole base [m/s2]."""
+    return scene.contact.cohesion * scene.block.base_length / mass(scene)
+
+
+def sliding_acceleration(scene: Scene) -> float:
+    """Acceleration a_s of a sliding block [m/s2]; negative where the block stands.
+
+    g (sin b - tan(phi) cos b) - c a / m.
+    """
+    return along(scene) - coefficient(scene) * across(scene) - adhesion(scene)
+
+
+def run_out(scene: Scene, time: float) -> float:
+    """Way that a block slides from rest, a_s t^2 / 2 [m]; zero where it stands."""
+    return max(sliding_acceleration(scene), 0.0) * time**2 / 2
+
+
+def settlement(scene: Scene) -> float:
+    """Displacement of the centroid into the base, at rest [m].
+
+    m g cos(b) (1 / (2 p) + h / (4 E' a)): the springs, and the strain of the block, for mu = 0.
+    """
+    width, height = size(scene)
+    modulus, _ = moduli(scene)
+    weight = mass(scene) * across(scene)
+    return weight * (1 / (2 * scene.contact.stiffness) + height / (4 * modulus * width))
+
+
+def penalty_offset(scene: Scene) -> float:
+    """Way that a sliding block is ahead of a_s t^2 / 2 because its springs have given way [m].
+
+    u_n = -settlement in u_t + tan(phi) u_n = a_s t^2 / 2; it does not depend on the time step.
+    """
+    return coefficient(scene) * settlement(scene)
+
+
+def threshold_angle(scene: Scene) -> float:
+    """Slope beyond which the block slides [deg].
+
+    phi + asin(c a cos(phi) / (m g)), from g sin(b) = tan(phi) g cos(b) + c a / m; 90 deg where it always stands.
+    """
+    phi = math.atan(coefficient(scene))
+    held = adhesion(scene) * math.cos(phi) / scene.load.gravity
+    return math.degrees(phi + math.asin(held)) if held < math.cos(phi) else 90.0
+
+
+def normal_frequency(scene: Scene) -> float:
+    """Frequency sqrt(2 p / m) of the rigid block on its normal springs [rad/s]."""
+    return math.sqrt(2 * scene.contact.stiffness / mass(scene))
+
+
+def creep_scale(scene: Scene) -> float:
+    """Speed g / w_n by which a stable block creeps while its normal springs ring undamped [m/s].
+
+    Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2.
+    """
+    return scene.load.gravity / normal_frequency(scene)
+
+
+# ---- the discount as a drag -----------------------------------------------------------------------------------------
+
+
+def drag_rate(scene: Scene) -> float:
+    """Rate -ln(gg) / dt at which the discount takes speed away [1/s]."""
+    gg = scene.time.discount
+    return -math.log(gg) / scene.time.step if gg > 0 else math.inf
+
+
+def time_constant(scene: Scene) -> float:
+    """Time dt / (1 - gg) in which the discount brings a free body near its terminal speed [s]."""
+    lost = 1 - scene.time.discount
+    return scene.time.step / lost if lost else math.inf
+
+
+def terminal_speed(scene: Scene, acceleration: float) -> float:
+    """Speed a dt / (1 - gg) that a body under a constant acceleration does not exceed with a discount [m/s]."""
+    return acceleration * time_constant(scene)
+
+
+def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
+    """Return displacement and velocity at each step of a free body in the scene's scheme, from rest [m], [m/s].
+
+    With A_0 = s a (s = 1 for the consistent start), A_n = a and g = gg:
+
+        V_1 = dt a ((1 - delta) s + delta),     V_n = g^(n-1) V_1 + dt a (1 - g^(n-1)) / (1 - g)
+        D_1 = dt^2 a ((1/2 - alpha) s + alpha), D_n = D_1 + g dt sum_{k<n} V_k + (n - 1) dt^2 a / 2
+
+    From the consistent start V_n = dt a (1 - g^n) / (1 - g).
+    """
+    t, n = scene.time, np.arange(1.0, scene.time.steps + 1)
+    s = 1.0 if t.start == "consistent" else 0.0
+    first = t.step * acceleration * ((1 - t.delta) * s + t.delta)
+    begun = t.step**2 * acceleration * ((0.5 - t.alpha) * s + t.alpha)
+    gained, summed = _series(t.discount, n - 1)
+    velocity = t.discount ** (n - 1) * first + t.step * acceleration * gained
+    way = t.step * (first * gained + t.step * acceleration * summed)
+    return begun + t.discount * way + (n - 1) * t.step**2 * acceleration / 2, velocity
+
+
+def _series(gg: float, n: Array) -> tuple[Array, Array]:
+    """Return the sums G_n = 1 + gg + ... + gg^(n-1), and of G_k over k < n."""
+    if gg == 1:
+        return n, n * (n - 1) / 2
+    gained = -np.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else np.minimum(n, 1.0)
+    return gained, (n - gained) / (1 - gg)

@@ -1,0 +1,185 @@
+"""The study `toppling`: the cases of the manuals of block codes as numbers, and the growth by first-order rotation.
+
+A block on a slope stands, slides or topples: with friction a tenth of a degree above and below the slope, with half of
+the friction that it needs, and as a tower whose centroid stands beyond its lower corner.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates.gate import Gate
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.studies.bands import about, cases
+from validation.studies.declaration import Study
+from validation.studies.rocking.read import crossing, increments, rectangle, settlement
+
+STATIC, SLIDE = "toppling-static", "toppling-slide"
+FROM_REST = ("toppling-tower", "toppling-threshold")  # on their base
+LET_GO = ("toppling-fall", "toppling-growth")  # on their lower corner
+ROW = "trajectory"  # derived row
+TURN = 0.5  # by which falling blocks are timed [rad]
+ROUNDING = 1e-9  # of identities over some hundred steps
+
+
+def down(scene: Scene) -> float:
+    """Return the acceleration g (sin b - tan(phi) cos b) of a block that slides [m/s2]."""
+    b, phi = math.radians(scene.load.slope), math.radians(scene.contact.friction or 0.0)
+    return scene.load.gravity * (math.sin(b) - math.tan(phi) * math.cos(b))
+
+
+def beyond(scene: Scene) -> float:
+    """Return the angle of the centroid beyond the vertical through the lower corner at t = 0 [rad]."""
+    return math.radians(scene.load.slope - scene.block.tilt) - rectangle(scene).alpha
+
+
+def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return how far the block moves in the second half of its steps, over what it would slide [-].
+
+    A step without velocities moves a sliding block by dt^2 / 2 times its acceleration.
+    """
+    history = finished.history(scene.name, "dda")
+    if history is None:
+        return {}
+    u, steps = history.columns["horizontal_displacement"], scene.time.steps
+    moved = float(u[-1] - u[steps // 2 - 1])
+    return {"moved": moved / ((steps - steps // 2) * scene.time.step**2 / 2 * abs(down(scene)))}
+
+
+def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return what the sliding identity leaves, and the run-out over that of a rigid block.
+
+    While both corners slip or are open u + tan(phi) v is a t^2 / 2, free motion under a = g (sin b - tan(phi) cos b).
+    """
+    history = finished.history(scene.name, "dda")
+    if history is None:
+        return {}
+    u, v, way = history.columns["horizontal_displacement"], history.displacement, down(scene) * history.time**2 / 2
+    rubbed = math.tan(math.radians(scene.contact.friction or 0.0))
+    return {
+        "identity": float(np.max(np.abs(u + rubbed * v - way)) / way[-1]),
+        "run-out": float(u[-1] / way[-1]),
+    }
+
+
+def fall(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
+    history = finished.history(scene.name, "dda")
+    if history is None:
+        return {}
+    rotation = -history.columns["rotation"]
+    found: dict[str, Value] = {"turned": float(np.max(np.abs(rotation)))}
+    if beyond(scene) > 0:
+        exact = rectangle(scene).fall_time(beyond(scene), TURN)
+        found["time"] = crossing(history.time, rotation, TURN) / exact
+    if "area" in history.columns:
+        grown = float(np.prod(1 + increments(history) ** 2)) if scene.run.rotation == "first-order" else 1.0
+        found["growth"] = float(history.columns["area"][-1]) - 1
+        found["area"] = float(history.columns["area"][-1]) / grown
+    return found
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    made = ((STATIC, static), (SLIDE, slide), *((name, fall) for name in (*FROM_REST, *LET_GO)))
+    return tuple(
+        Derived(case.name, ROW, ((case.name, "dda"),), functools.partial(compute, case))
+        for name, compute in made
+        for case in cases(name)
+    )
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*sliding_gates(), *toppling_gates(), *falling_gates())
+
+
+def sliding_gates() -> Iterator[Gate]:
+    """Yield the gates on a block that stands or slides."""
+    stands = "friction above the slope: a block without velocities comes to rest; band: rounding"
+    slips = "friction below the slope: dt^2 / 2 g (sin b - tan(phi) cos b) a step; band: what is left of settling"
+    for case in cases(STATIC):
+        steady = down(case) > 0
+        edges = about(1.0, 1e-6) if steady else about(0.0, ROUNDING)
+        yield Gate(case.name, (ROW,), "moved", *edges, slips if steady else stands)
+    for case in cases(SLIDE):
+        way = down(case) * case.time.duration**2 / 2
+        offset = math.tan(math.radians(case.contact.friction or 0.0)) * settlement(case) / way
+        why = "both corners slip: the free motion of the scheme, exact for constant acceleration; band: rounding"
+        yield Gate(case.name, (ROW,), "identity", 0.0, ROUNDING, why)
+        why = "rigid block; above: tan(phi) times the settlement, twice that of both corners at rest"
+        yield Gate(case.name, (ROW,), "run-out", 1.0, 1 + offset, why)
+
+
+def toppling_gates() -> Iterator[Gate]:
+    """Yield the gates on towers that stand on a slope when gravity begins to act."""
+    why = (
+        "rigid block about its lower corner, by quadrature; below: the impulse of the upper corner before it lifts, "
+        "m g cos b pi sqrt(m / 2 p) at most; above: a straight line within a step"
+    )
+    stands = "tan b < a/h: the tower stands; twice the turn m g / (p a) by which its corners settle"
+    for case in cases(*FROM_REST):
+        block = rectangle(case)
+        if beyond(case) < 0:
+            yield Gate(case.name, (ROW,), "turned", 0.0, 2 * settlement(case) / block.width, stands)
+            continue
+        exact = block.fall_time(beyond(case), TURN)
+        low, high = 1 - lifted(case) / exact, 1 + straight(case)
+        yield Gate(case.name, (ROW,), "time", low, high, why)
+
+
+def lifted(scene: Scene) -> float:
+    """Return the time that the impulse of the upper corner can save [s].
+
+    An impulse J gives the turn the rate J a / I, and psi = psi0 cosh(P t) is then ahead by that over psi0 P^2.
+    """
+    block, p = rectangle(scene), scene.contact.stiffness
+    m = scene.block.density * block.width * block.height
+    impulse = m * block.gravity * math.cos(math.radians(scene.load.slope)) * math.pi * math.sqrt(m / (2 * p))
+    inertia = m * (block.width**2 + block.height**2) / 3
+    return impulse * block.width / inertia / (beyond(scene) * block.rate2)
+
+
+def straight(scene: Scene) -> float:
+    """Return the error of a straight line within a step, relative to the time of the fall: (dt/T)^2."""
+    return (scene.time.step / rectangle(scene).fall_time(beyond(scene), TURN)) ** 2
+
+
+def falling_gates() -> Iterator[Gate]:
+    """Yield the gates on towers that are let go on their lower corner, by exact and by first-order rotation."""
+    timed = "rigid block about its lower corner, by quadrature; the corner settles by up to 2 m g / p, seen from psi"
+    kept = "exact rotation keeps the outline; band: the strain of four times the weight"
+    product = "a step's first-order rotation multiplies the area by 1 + r^2; band: the strain of four times the weight"
+    growing = "dt times the integral of the squared rate of a rigid block; band: twice that growth of it"
+    for case in cases(*LET_GO):
+        block, grown = rectangle(case), growth(case)
+        exact = case.run.rotation == "exact"
+        strain = 4 * case.block.density * block.gravity * block.height / case.block.young
+        slack = 2 * settlement(case) / block.width / beyond(case) + (0.0 if exact else grown) + straight(case)
+        yield Gate(case.name, (ROW,), "time", *about(1.0, slack), timed)
+        yield Gate(case.name, (ROW,), "area", *about(1.0, strain), kept if exact else product)
+        if not exact:
+            yield Gate(case.name, (ROW,), "growth", *about(grown, 2 * grown**2 + strain), growing)
+
+
+def growth(scene: Scene) -> float:
+    """Return the growth of the area by first-order rotation of a rigid block, dt times the integral of psi'^2 [-]."""
+    return scene.time.step * rectangle(scene).squared_rate(beyond(scene), scene.time.duration)
+
+
+STUDY = Study(
+    name="toppling",
+    title="Blocks on slopes that stand, slide and topple",
+    purpose="The cases by which manuals of block codes show that a block stands, slides or topples, as numbers: "
+    "does DDA do so at the right slope, along the right trajectory, and with the outline that it began with?",
+    scenes=(STATIC, SLIDE, *FROM_REST, *LET_GO),
+    gates=gates,
+    derived=derived,
+    pairs=(),
+)

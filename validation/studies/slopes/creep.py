@@ -1,0 +1,173 @@
+"""The study `creep`: a statically stable block on an incline that moves all the same.
+
+Undamped normal ringing unloads the friction once a period, so that the exact block creeps with a speed of the order
+g / w_n. A scheme that damps the ringing lets it stop; friction that lags by a pass, and dead bands, let it go on, the
+faster the finer the step.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates import friction
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import pair
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.studies.bands import OTHER, about, cases
+from validation.studies.declaration import Study
+
+EXACT, STEPS, LAGGED = "creep-exact", "creep-steps", "creep-lagged"
+REFINED = {"slope-exact-constant": 1.0, "slope-exact-average": 2.0}
+NEXT = 0.1  # of an order: what the next order adds over three halvings
+EVENTS, DDA = "block-events", "dda"
+# Mean slip of the corners of the exact block at 0.1, 0.2, 0.3 and 0.4 s by an independent program [m], 30 degrees.
+KNOWN = (1.790e-3, 3.732e-3, 5.532e-3, 7.394e-3)
+RATES = {30.0: 18.7e-3, 22.0: 27.3e-3}  # its speed [m/s] over some tenths of a second
+HALF = 5e-7  # m: half a unit of the last digit of KNOWN
+# Way of the centroid in a second under lagged friction by a program of the trade [m], by time step [s].
+PROGRAM = {0.01: 1.0e-3, 0.002: 2.2e-3, 0.001: 5.2e-3, 0.0002: 499e-3}
+DIGIT = 5e-5  # m: half a unit of its last digit
+APART = 0.2  # of the way: stick and slip in another order, by rounding or by 0.2 % on the springs, at the finest step
+STOPS = {0.001: 0.26e-3, 0.0002: 1.13e-3}  # mean slip at which consistent friction stands under (1/2, 1) [m]
+STOPPED = 5e-6  # m: half a unit of its last digit
+
+
+def slid(columns: Mapping[str, Any]) -> np.ndarray:
+    """Return the mean slide of the two corners [m]."""
+    return np.asarray((columns["slide_m"] + columns["slide_n"]) / 2)
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    exact = [
+        Derived(case.name, "base", ((case.name, EVENTS),), functools.partial(_base, case, EVENTS))
+        for case in cases(EXACT)
+    ]
+    steps = [
+        Derived(case.name, "base", ((case.name, DDA),), functools.partial(_base, case, DDA))
+        for case in cases(STEPS, LAGGED)
+    ]
+    return (*exact, *steps, *(_nearest(step) for step in PROGRAM), *(_order(name) for name in REFINED))
+
+
+def _base(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the mean slide of the corners at quarters of the run, and its mean speed over the second half."""
+    history = finished.history(scene.name, solver)
+    if history is None:
+        return {}
+    way, n = slid(history.columns), len(history.time)
+    found: dict[str, Value] = {f"way.{k}": float(way[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
+    speed = (way[-1] - way[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
+    whole = way[-1] / history.time[-1]
+    scale = friction.creep_scale(scene)
+    return found | {"speed": float(speed), "mean_speed": float(whole), "share": float(whole / scale)}
+
+
+def _nearest(step: float) -> Derived:
+    """Return the row that lays the creep of three like springs beside the program's."""
+    own = tuple(case for case in cases(LAGGED) if case.time.step == step)
+    needs = tuple((case.name, DDA) for case in own)
+    return Derived(LAGGED, f"at {1e3 * step:g} ms", needs, functools.partial(_beside, own, PROGRAM[step]))
+
+
+def _beside(own: tuple[Scene, ...], way: float, finished: Finished) -> Mapping[str, Value]:
+    """Return how far the program's way is from those of the springs, over what their spread and its digits allow."""
+    histories = [finished.history(case.name, DDA) for case in own]
+    ways = [float(h.columns["horizontal_displacement"][-1]) for h in histories if h is not None]
+    middle, spread = (min(ways) + max(ways)) / 2, max(ways) - min(ways)
+    allowed = max(1.5 * spread + DIGIT, APART * way if way > 0.1 else 0.0)
+    return {"distance": (way - middle) / allowed, "way": middle, "spread": spread}
+
+
+def _order(name: str) -> Derived:
+    levels = tuple(cases(name))
+    needs = tuple((case.name, solver) for case in levels for solver in (DDA, EVENTS))
+    return Derived(name, "order", needs, functools.partial(_fitted, levels))
+
+
+def _fitted(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the orders, with their sign, fitted to the errors of both displacements against the exact motion."""
+    errors: dict[str, list[float]] = {"displacement": [], "horizontal": []}
+    for case in levels:
+        one, exact = finished.history(case.name, DDA), finished.history(case.name, EVENTS)
+        if one is None or exact is None:
+            return {}
+        for name, found in errors.items():
+            error = pair(f"{name}.l2", one, exact)
+            found.append(error if isinstance(error, float) else math.nan)
+    sizes = np.log([case.time.step for case in levels])
+    return {name: float(np.polyfit(sizes, np.log(found), 1)[0]) for name, found in errors.items()}
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*exact_gates(), *step_gates(), *lagged_gates(), *order_gates())
+
+
+def exact_gates() -> Iterator[Gate]:
+    """Yield the gates on the exact creep."""
+    said = "an independent program, by events; half a unit of its last digit"
+    for case in cases(EXACT):
+        phi = case.contact.friction or 0.0
+        if phi == 30:
+            for k, way in enumerate(KNOWN, start=1):
+                yield Gate(case.name, ("base",), f"way.{k}", *about(way, HALF), said, OTHER, HALF)
+        rate = RATES[phi]
+        why = "an independent program, the speed over some tenths of a second; 5 % for where they begin and end"
+        yield Gate(case.name, ("base",), "speed", *about(rate, 0.05 * rate), why, OTHER, 5e-5)
+        order = "the speed is of the order g / w_n = g sqrt(m / (2 p)): between a half and twice"
+        yield Gate(case.name, ("base",), "share", 0.5, 2.0, order)
+
+
+def step_gates() -> Iterator[Gate]:
+    """Yield the gates on consistent friction by steps."""
+    for case in cases(STEPS):
+        t = case.time
+        if t.delta == 1 and t.discount == 1:
+            stands = "constant acceleration damps the normal ringing: the block stands; band: rounding"
+            yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
+            if t.step in STOPS:
+                said = "an independent program: where it stands; half a unit of its last digit"
+                yield Gate(case.name, ("base",), "way.4", *about(STOPS[t.step], STOPPED), said, OTHER, STOPPED)
+        elif t.discount == 1 and t.start == "consistent" and t.step <= 2e-4:
+            goes = "average acceleration keeps the ringing, and the creep: the exact speed, between a half and twice"
+            yield Gate(case.name, ("base",), "mean_speed", 0.5 * RATES[30.0], 2 * RATES[30.0], goes)
+
+
+def lagged_gates() -> Iterator[Gate]:
+    """Yield the gates on lagged friction beside a program of the trade."""
+    for step, way in PROGRAM.items():
+        why = (
+            f"a program of the trade creeps {1e3 * way:g} mm in a second; band: 1.5 times the spread of springs softer "
+            "by 0, 0.2 and 0.4 %, as its base is, and half a unit of its last digit"
+        )
+        chaos = "; 20 % at the finest step, where rounding decides the order of stick and slip" if way > 0.1 else ""
+        yield Gate(LAGGED, (f"at {1e3 * step:g} ms",), "distance", -1.0, 1.0, why + chaos, OTHER, 1e-3)
+
+
+def order_gates() -> Iterator[Gate]:
+    """Yield the gates on the order at which DDA tends to the exact motion through stick and slip."""
+    for name, order in REFINED.items():
+        why = f"order {order:g} of the scheme, kept through stick and slip; {NEXT:g} for the next order"
+        for column in ("displacement", "horizontal"):
+            yield Gate(name, ("order",), column, *about(order, NEXT), why)
+
+
+STUDY = Study(
+    name="creep",
+    title="Stable blocks that creep",
+    purpose="A block below its angle of friction should stand. The exact block on undamped springs creeps; does a code "
+    "let it stand, creep as it does, or slide the faster the finer its step?",
+    scenes=(EXACT, STEPS, LAGGED, *REFINED),
+    gates=gates,
+    derived=derived,
+    pairs=((DDA, EVENTS),),
+    long=True,
+)

@@ -1,0 +1,171 @@
+"""The study `slopes`: trajectories on inclines against closed forms.
+
+While every corner slips one way or is open, u_t + tan(phi) u_n of the centroid moves freely under
+a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.gates.friction`). So the run-out, what
+a discount takes of it and the slope at which a block begins to slide are known to rounding.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.gates import friction
+from validation.gates.closed_forms import moduli, size
+from validation.gates.gate import Gate
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.studies.bands import about, cases
+from validation.studies.declaration import Study
+
+SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL = (
+    "slope-sliding",
+    "slope-average",
+    "slope-drag",
+    "slope-threshold",
+    "slope-manual",
+)
+IDENTITY = "sliding identity"
+ROUNDED = 1e-10  # of the run-out: two formulations over 500 steps
+SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
+NEAR = 1e-4  # deg: the sliding acceleration is a straight line over 0.02 deg to (0.01 deg)^2 / 2
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    rows = [
+        Derived(case.name, IDENTITY, ((case.name, "dda"),), functools.partial(_identity, case))
+        for case in cases(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL)
+    ]
+    pair = tuple(cases(THRESHOLD))
+    needs = tuple((case.name, "dda") for case in pair)
+    return (*rows, Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)))
+
+
+def sliding(scene: Scene, history: History) -> np.ndarray:
+    """Return u_t + tan(phi) u_n of the centroid [m]."""
+    along, across = history.columns["horizontal_displacement"], history.displacement
+    return np.asarray(along + friction.coefficient(scene) * across)
+
+
+def acceleration(scene: Scene, history: History) -> float:
+    """Return the acceleration of u_t + tan(phi) u_n over the second half of a run [m/s2].
+
+    The scheme of constant acceleration keeps D = D0 + V0 t + a t^2 / 2 at any three instants.
+    """
+    z, n = sliding(scene, history), len(history.time)
+    quarter = n // 4
+    middle = n - 1 - quarter
+    gained = z[n - 1] - 2 * z[middle] + z[middle - quarter]
+    return float(gained / (quarter * scene.time.step) ** 2)
+
+
+def _identity(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+    history = finished.history(scene.name, "dda")
+    if history is None:
+        return {}
+    if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
+        return {"acceleration": acceleration(scene, history)}
+    free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
+    off = np.max(np.abs(sliding(scene, history) - free)) / friction.run_out(scene, scene.time.duration)
+    offset = history.columns["horizontal_displacement"][-1] - free[-1]
+    return {"largest difference": float(off), "offset": float(offset)}
+
+
+def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
+    found = []
+    for case in pair:
+        history = finished.history(case.name, "dda")
+        if history is None:
+            return {}
+        found.append(acceleration(case, history))
+    (low, high), (below, above) = (case.load.slope for case in pair), found
+    return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*identity_gates(), *offset_gates(), *drag_gates(), *threshold_gates(), *energy_gates(), *element_gates())
+
+
+def identity_gates() -> Iterator[Gate]:
+    """Yield the gates on the sliding identity."""
+    said = "u_t + tan(phi) u_n is the free recursion under g (sin b - tan(phi) cos b); band: rounding over the steps"
+    for case in cases(SLIDING, AVERAGE, DRAG):
+        yield Gate(case.name, (IDENTITY,), "largest difference", 0.0, ROUNDED, said)
+
+
+def offset_gates() -> Iterator[Gate]:
+    """Yield the gates on the way by which springs that give put a sliding block ahead."""
+    why = "tan(phi) x settlement, m g cos b (1/(2p) + h/(4 E a)), whatever dt; band: what still swings"
+    for case in cases(SLIDING, DRAG):
+        offset = friction.penalty_offset(case)
+        yield Gate(case.name, (IDENTITY,), "offset", *about(offset, SETTLED * offset), why)
+
+
+def drag_gates() -> Iterator[Gate]:
+    """Yield the gates on the way that a block slides under a discount."""
+    why = "closed form of the discount as a drag, with the penalty offset; band: what still swings of the offset"
+    for case in cases(DRAG):
+        moved, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+        offset = friction.penalty_offset(case)
+        edges = about(float(moved[-1]) + offset, SETTLED * offset)
+        yield Gate(case.name, ("dda",), "horizontal.final", *edges, why)
+
+
+def threshold_gates() -> Iterator[Gate]:
+    """Yield the gates on the slope at which a block slides, and on the rates about it."""
+    angle = friction.threshold_angle(next(cases(THRESHOLD)))
+    why = "the angle of friction; band: the curvature of the acceleration over a hundredth of a degree"
+    yield Gate(THRESHOLD, ("threshold",), "angle", *about(angle, NEAR), why)
+    said = "g (sin b - tan(phi) cos b) once it slides; band: 1e-6 of gravity along the slope"
+    for case in cases(THRESHOLD, MANUAL):
+        if case.name.startswith(THRESHOLD) or (case.contact.friction or 0) < case.load.slope:
+            edges = about(friction.sliding_acceleration(case), 1e-6 * friction.along(case))
+            yield Gate(case.name, (IDENTITY,), "acceleration", *edges, said)
+        else:
+            still = "its friction is above the slope, by a tenth of a degree at least: it stands; band: rounding"
+            yield Gate(case.name, ("dda",), "contact.slip_rate", 0.0, 1e-9, still)
+
+
+def energy_gates() -> Iterator[Gate]:
+    """Yield the gates on the energy: friction takes what it says, and nothing is gained."""
+    falls = "delta = 1: no opening, closing, sticking or slipping adds energy; band: rounding"
+    closes = "the balance of stored and lost energy is an identity of the step; band: rounding over the steps"
+    for case in cases(SLIDING, DRAG, AVERAGE):
+        yield Gate(case.name, ("dda",), "energy.imbalance", 0.0, 1e-10, closes)
+        if case.time.delta == 1:
+            yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
+    for case in cases(SLIDING):
+        pressed = friction.mass(case) * friction.across(case)
+        lost = friction.coefficient(case) * pressed * friction.run_out(case, case.time.duration)
+        why = "tan(phi) m g cos b times the way; band: the swinging of the normal force at first, 1e-3"
+        yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
+
+
+def element_gates() -> Iterator[Gate]:
+    """Yield the gates of elements on the same slope."""
+    for case in cases(SLIDING):
+        late = 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration
+        why = (
+            "one run-out for both: points of the base begin to slip within a wave's way up, 2 h / (c t) of the run-out"
+        )
+        yield Gate(case.name, ("dda", "fem"), "horizontal.final", -late, late, why)
+
+
+STUDY = Study(
+    name="slopes",
+    title="Blocks that slide down inclines",
+    purpose="A block on an incline slides by g (sin b - tan(phi) cos b), whatever its springs and steps, and stands up "
+    "to the angle of friction. How far does each code, and each discount, let it run?",
+    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL),
+    gates=gates,
+    derived=derived,
+    pairs=(("dda", "fem"),),
+)
