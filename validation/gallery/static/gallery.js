@@ -62,9 +62,12 @@
       const inside = found.filter((value) => value >= low && value <= high);
       return inside.length > 2 ? inside : [0, 1, 2, 3, 4].map((i) => low * (high / low) ** (i / 4));
     },
-    filter: (plot, splits) => {
-      const few = splits.length <= 12, digits = splits.length <= 30 ? ["1", "2", "5"] : ["1"];
-      return splits.map((value) => few || digits.includes(value.toExponential()[0]) ? value : null);
+    // labels of all ticks, of 1, 2 and 5, or of powers of ten, as many as there is room for
+    filter: (plot, splits, axis) => {
+      const room = (axis === 0 ? plot.bbox.width / 64 : plot.bbox.height / 20) / devicePixelRatio;
+      const chosen = ["123456789", "125", "15", "1"].map((digits) =>
+        splits.map((value) => digits.includes(value.toExponential()[0]) ? value : null));
+      return chosen.find((some) => some.filter((value) => value !== null).length <= room) || chosen[3];
     },
   };
 
