@@ -13,6 +13,8 @@ CHAPTERS: dict[str, str] = {
     "subblocks": "validation.report.chapters.subblocks:chapter",
     "stability": "validation.report.chapters.limits.stability:stability_chapter",
     "stability-small": "validation.report.chapters.limits.stability:stability_chapter",
+    "rocking": "validation.report.chapters.turning:rocking_chapter",
+    "toppling": "validation.report.chapters.turning:toppling_chapter",
     "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
     "waves": "validation.report.chapters.waves:chapter",
