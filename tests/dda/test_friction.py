@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles import frictional_mp
-from oracles.frictional import KNOWN, cases, held, rubbing_model, shaken, sliding, square
+from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
 from oracles.unilateral_checks import DT, mirrored, sums
 from oracles.unilateral_mp import lost
 
@@ -87,6 +87,17 @@ def test_no_step_gains_energy_at_delta_one(seeds, gg):
         assert np.max(np.diff(total)) < 1e-13 * size, seed
         steps += len(result.time)
     assert steps > 145 * len(seeds)  # both sets and both discounts: more than 20,000
+
+
+@pytest.mark.parametrize("seed", thinned(range(20), 10))
+def test_implicit_contact_rubs_by_the_law_and_gains_nothing(seed):
+    model, options = rubbing_model(seed), UnilateralOptions("implicit", energies=True)
+    result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, DT, "consistent"), 100, options=options)
+    coulomb(model, result)
+    total, lost_energy = sums(result)
+    size = np.max(np.abs(list(result.energies.values())))
+    assert np.max(np.diff(total)) < 1e-13 * size  # as average acceleration without this rule may
+    assert np.ptp(total + lost_energy) < 1e-12 * size
 
 
 @pytest.mark.parametrize("seed", thinned(range(30), 15))
