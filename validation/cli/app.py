@@ -100,9 +100,10 @@ def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, st
         TextColumn("{task.description}"),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[label]}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+        TextColumn("{task.fields[label]}", table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)),
         console=Console(stderr=True),
         transient=True,
+        expand=True,
     )
     task = bar.add_task(title, label="")
 
