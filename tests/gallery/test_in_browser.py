@@ -28,7 +28,7 @@ from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.rigid import impact_statistics
+from validation.solvers.rigid.impacts import impact_statistics
 from validation.studies.catalogue import scene_study
 
 pytestmark = [
