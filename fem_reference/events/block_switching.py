@@ -45,15 +45,13 @@ def settled(pieces: Pieces, state: State) -> State:
 
 
 def agrees(pieces: Pieces, state: State) -> bool:
-    """Whether every watched function of both corners is positive from now on, or rests at zero where it may."""
+    """Whether every watched function of both corners is positive from now on, or rests at zero.
+
+    Closed corners that stick are tried first: what rests does so in this state.
+    """
     start = Beginning(pieces, state)
-    for c in (0, 1):
-        corner = Corner(pieces.model, state, c)
-        for row in corner.watched():
-            sign = start.lead(row).sign
-            if sign < 0 or (sign == 0 and not corner.may_rest(row)):
-                return False
-    return True
+    corners = [Corner(pieces.model, state, c) for c in (0, 1)]
+    return all(start.lead(row).sign >= 0 for corner in corners for row in corner.watched())
 
 
 def changes(before: State, after: State) -> list[Switch]:
@@ -88,7 +86,7 @@ def _choices(corner: Corner) -> list[int]:
     closed = [STICKS]
     if corner.model.tan is not None:
         stuck = corner.as_if(STICKS)
-        closed += [way for way in (RIGHT, LEFT) if corner.is_in == way or _vanishes(stuck, stuck.reserve(sigma(way)))]
+        closed += [way for way in (RIGHT, LEFT) if _vanishes(stuck, stuck.reserve(sigma(way)))]
     return [*closed, OPEN] if touching else closed
 
 
