@@ -37,23 +37,25 @@ elements = 4
 
 
 TOGETHER = (  # modules whose tests share what takes long to make
-    "test_opened_chapters",
-    "test_contact_pack",
-    "test_subblocks_chapter",
     "test_calibration",
     "test_changes",
     "test_claims",
     "test_compare",
     "test_compare_words",
     "test_confusion",
+    "test_contact_pack",
     "test_fenicsx",
+    "test_in_browser",
     "test_kept_numbers",
+    "test_opened_chapters",
     "test_paper_chapter",
     "test_report",
     "test_rotation_orders",
     "test_rotation_solver",
     "test_site",
     "test_site_program",
+    "test_subblocks_chapter",
+    "test_turning_chapter",
     "test_walls",
     "test_work_precision",
 )
