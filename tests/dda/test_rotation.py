@@ -35,7 +35,7 @@ def losses(result):
     return sum(e[name] for name in STORED) / size, np.diff([e[name] for name in LOST]) / size
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 103))])
+@pytest.mark.parametrize("seed", [1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, *range(3, 103)))])
 def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed):
     model, dt = random_rolling(seed)
     scheme = Scheme(*CONSTANT, 0.98 if seed % 5 == 0 else 1.0, dt, "consistent" if seed % 2 else "zero")
@@ -281,7 +281,7 @@ def test_friction_of_small_motion_is_the_limit_of_small_turns():
 
 def test_a_rigid_stop_takes_a_block_that_turns():
     model = replace(HEAVY, contact=Unilateral(math.inf, 4e9, friction=1.0))
-    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 2e-3), 400)
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 5e-3), 160)
     total, lost = losses(result)
     assert result.outcome == "completed" and np.max(np.diff(total)) < 1e-13 and np.min(lost) > -1e-13
     assert np.all(result.gap[result.of_points("state").astype(bool)] == 0) and np.min(result.gap) >= 0
