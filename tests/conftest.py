@@ -49,6 +49,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_fenicsx",
     "test_kept_numbers",
     "test_paper_chapter",
+    "test_readable",
     "test_report",
     "test_rotation_orders",
     "test_rotation_solver",
