@@ -37,17 +37,17 @@ elements = 4
 
 
 TOGETHER = (  # modules whose tests share what takes long to make
-    "test_opened_chapters",
-    "test_contact_pack",
-    "test_subblocks_chapter",
     "test_calibration",
     "test_changes",
     "test_claims",
     "test_compare",
     "test_compare_words",
     "test_confusion",
+    "test_contact_pack",
     "test_fenicsx",
+    "test_in_browser",
     "test_kept_numbers",
+    "test_opened_chapters",
     "test_paper_chapter",
     "test_readable",
     "test_report",
@@ -55,6 +55,8 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_rotation_solver",
     "test_site",
     "test_site_program",
+    "test_subblocks_chapter",
+    "test_turning_chapter",
     "test_walls",
     "test_work_precision",
 )
