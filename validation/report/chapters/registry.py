@@ -8,8 +8,8 @@ from validation.report.blocks import Chapter
 
 # study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
 CHAPTERS: dict[str, str] = {
-    "core": "validation.report.chapters.core:chapter",
-    "two-codes": "validation.report.chapters.two_codes:chapter",
+    "core": "validation.report.chapters.block.core:chapter",
+    "two-codes": "validation.report.chapters.block.two_codes:chapter",
     "limits": "validation.report.chapters.limits.locking:chapter",
     "work-precision": "validation.report.chapters.work:chapter",
     "paper": "validation.report.chapters.paper:paper_chapter",
