@@ -1,4 +1,4 @@
-"""Hook of MkDocs: a page of reference for each package and each of its rooms, from their docstrings."""
+"""Hook of MkDocs: a page of reference for each room of the packages; pages that the navigation leaves out come last."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +16,10 @@ def rooms(package: str) -> Iterator[str]:
 
 
 def on_config(config: Any) -> None:
-    """Append the pages to the navigation."""
+    """Append to the navigation: pages that it does not name, and the reference."""
+    named = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    if more := [path.name for path in sorted((ROOT / "docs").glob("*.md")) if f" {path.name}\n" not in named]:
+        config.nav.append({"More": more})
     pages: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
         pages.append({package: [f"reference/{name}.md" for name in (package, *rooms(package))]})

@@ -33,6 +33,8 @@ class Points:
     stretch: Array  # s - r of the closed ones [m], 0 where open
     normal: Array  # N on the block, away from the base [N]
     shear: Array  # T on the block, along the base [N]
+    state: NDArray[np.int_] | None = None  # with friction: OPEN, STICK, or SLIP in its direction
+    slipped: Array | None = None  # with friction: change of r by slip in the step [m]
 
     @classmethod
     def at_rest(cls, law: Unilateral, count: int) -> Points:
@@ -111,7 +113,7 @@ def trial(law: Unilateral, before: Points, free: FreePoints, closed: Flags) -> P
     normal, shear, stretch = np.zeros(n), np.zeros(n), np.zeros(n)
     forces = np.zeros(len(free.C))
     if len(shut):
-        normal[shut], shear[shut] = _Closed(law, before, free, shut).forces()
+        normal[shut], shear[shut] = ClosedPoints(law, before, free, shut).forces()
     forces[:n] = normal
     if len(free.slide):
         forces[n:] = shear
@@ -120,16 +122,20 @@ def trial(law: Unilateral, before: Points, free: FreePoints, closed: Flags) -> P
     return Points(closed, gap, stretch, normal, shear)
 
 
-class _Closed:
+class ClosedPoints:
     """The equations of the closed points, `shut`; a point that closes in the step has a softer spring in shear."""
 
     def __init__(self, law: Unilateral, before: Points, free: FreePoints, shut: NDArray[np.intp]) -> None:
         self.law, self.before, self.free, self.shut = law, before, free, shut
         self.closing = np.flatnonzero(~before.closed[shut])
+        self.held = np.ones(len(shut))  # zero where a point slips
+
+    def drag(self, A: Array, b: Array, rows: NDArray[np.intp]) -> None:
+        """Add to the equations what T does that follows N; nothing where all closed points are held."""
 
     def forces(self) -> tuple[Array, Array]:
         """Return N and T."""
-        beta = np.ones(len(self.shut))
+        beta = self.held.copy()
         normal, shear, slope = self._solve(beta)
         if not len(self.free.slide) or not len(self.closing):
             return normal, shear
@@ -159,6 +165,7 @@ class _Closed:
             b[m:] = -(self.before.stretch[held] + self.free.slide[held])
         A[range(len(rows)), range(len(rows))] += soft
         scale = 1 / np.sqrt(np.diag(A))
+        self.drag(A, b, rows)
         scaled = A * scale * scale[:, None]
         found = np.linalg.solve(scaled, b * scale) * scale
         shear, slope = np.zeros(m), np.zeros((m, m))

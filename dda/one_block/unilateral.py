@@ -16,6 +16,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.iteration import Iteration
 from dda.contact.springs import base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
@@ -36,6 +37,7 @@ from dda.one_block.unilateral_history import (
 )
 from dda.one_block.unilateral_phase import Phase, phase_of
 from dda.one_block.unilateral_step import CONSERVING, IMPLICIT, NEWMARK, Jump, State, StepLength, advance, start_state
+from dda.scheme.cutting import Lengths, in_parts
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
@@ -43,7 +45,6 @@ Array = NDArray[np.float64]
 RULES = (NEWMARK, IMPLICIT, CONSERVING)
 COMPLETED = "completed"
 OVERFLOW = "overflow"
-FLOOR = 0.01  # shortest step that a cut may leave, over the scheme's step
 _LENGTHS = 64  # step lengths whose factors are kept
 
 
@@ -206,8 +207,8 @@ class Stepping:
         if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
             model = replace(model, contact=replace(model.contact, shear=0.0))
         self.law, self.form = model.contact, model.form(True) if options.full else model.reduced
-        self.outcome, self.factorisations = COMPLETED, 0
-        self.lengths: dict[float, StepLength] = {}
+        self.outcome = COMPLETED
+        self.length = Lengths(lambda ratio: StepLength.of(self.form, scheme, ratio, options.rule), _LENGTHS)
         self.phases: dict[tuple[bool, ...], Phase | str] = {}
         self.history = History(self.form.layout)
         self.cut_steps: dict[int, CutStep] = {}  # for their energies
@@ -255,7 +256,7 @@ class Stepping:
     @cached_property
     def jump(self) -> Jump | None:
         """Single steps of frictionless contacts; None where they are glued."""
-        return None if len(self.form.B) > self.form.contacts else Jump(self.form, self.law, self._length(1.0))
+        return None if len(self.form.B) > self.form.contacts else Jump(self.form, self.law, self.length(1.0))
 
     def phase_of(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
         """Return the steps of a contact state, or why they are made singly."""
@@ -273,37 +274,24 @@ class Stepping:
 
     def _interval(self, state: State) -> tuple[State, Step] | None:
         """Return the state after one step of the scheme, whole or in parts, and what is kept of it."""
-        left = ratio = 1.0
-        solves = cuts = 0
-        slipped: tuple[float, ...] = ()
-        while True:
-            length = self._length(ratio)
-            carried = None if self.carry is None else self.carry.momentum(self.history.steps + 1 - left, ratio)
-            after, found = advance(self.law, length, state, self.options.solve_limit, carried)
-            solves += found.solves
-            if after is None:
-                if ratio <= FLOOR:
-                    self.outcome = str(found.failure)
-                    return None
-                ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
-                continue
-            if cuts and self.options.energies:
-                self.cut_steps.setdefault(self.history.steps, []).append((length, state, after))
-            state, own = after, after.corners.slipped
-            slipped = tuple(map(sum, zip(slipped, own, strict=True))) if slipped and own else slipped or own
-            if ratio == left:
-                return state, Step(vector(state), state.corners.closed, solves, cuts, state.corners.state, slipped)
-            left -= ratio
-            ratio = left
+        begins = self.history.steps
 
-    def _length(self, ratio: float) -> StepLength:
-        """Return what depends on the step's length, factorised once for each."""
-        if ratio not in self.lengths:
-            if len(self.lengths) >= _LENGTHS:
-                self.lengths = {1.0: self.lengths[1.0]}
-            self.lengths[ratio] = StepLength.of(self.form, self.scheme, ratio, self.options.rule)
-            self.factorisations += 1
-        return self.lengths[ratio]
+        def attempt(state: State, begun: float, ratio: float) -> tuple[State | None, Iteration]:
+            carried = None if self.carry is None else self.carry.momentum(begins + begun, ratio)
+            return advance(self.law, self.length(ratio), state, self.options.solve_limit, carried)
+
+        made = in_parts(attempt, state, self.options.cut)
+        if made.failure is not None:
+            self.outcome = made.failure
+            return None
+        if made.cuts and self.options.energies:
+            self.cut_steps[begins] = [(self.length(ratio), x, y) for ratio, x, y in made.parts]
+        slipped = made.parts[0][2].corners.slipped
+        for _, _, after in made.parts[1:]:
+            slipped = tuple(map(sum, zip(slipped, after.corners.slipped, strict=True)))
+        state = made.parts[-1][2]
+        corners = state.corners
+        return state, Step(vector(state), corners.closed, made.solves, made.cuts, corners.state, slipped)
 
 
 def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: float) -> UnilateralResult:
@@ -323,7 +311,7 @@ def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: flo
         columns=values,
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=stepping.factorisations + sum(isinstance(p, Phase) for p in stepping.phases.values()),
+        factorisations=stepping.length.made + sum(isinstance(p, Phase) for p in stepping.phases.values()),
         solves=sum(part.solves if isinstance(part, Step) else part.steps for part in history.parts),
         notes=_notes(stepping),
         setup_seconds=ready - began,

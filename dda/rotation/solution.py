@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.one_block.solution import check_damping, check_request, step_times
-from dda.one_block.unilateral import COMPLETED, FLOOR, OVERFLOW, check_scheme
+from dda.one_block.unilateral import COMPLETED, OVERFLOW, check_scheme
 from dda.rotation.model import RollingModel, RollingOptions
 from dda.rotation.result import RollingResult, observed
 from dda.rotation.step import Part, advance
+from dda.scheme.cutting import FLOOR
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]

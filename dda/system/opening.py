@@ -19,7 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.points import Found, FreePoints, Points, open_close_points
+from dda.contact.points import Found, FreePoints, Points
+from dda.contact.rubbing_points import find_points
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
 from dda.one_block.two_block import TwoBlockModel
@@ -57,9 +58,11 @@ def opening_subdivided(
     Raises
     ------
     ValueError
-        If the block is not a convex quadrilateral, or a number is out of range.
+        If the block is not a convex quadrilateral, a number is out of range, or the base moves.
     """
-    loads = model.pressure, model.base, model.top, model.eccentricity, model.traction, model.gravity
+    if model.motion is not None:
+        raise ValueError("motion: sub-blocks over contact that opens stand on a base at rest, got one that moves")
+    loads = model.pressure, model.base, model.top, model.eccentricity, model.traction, model.gravity, None, model.slope
     locked = subdivided(TwoBlockModel(model.block, Contact(1.0), *loads), columns, rows, glue, pattern)
     tangent, normal, _ = base_directions(model.block, model.base)
     supports = [joint for joint in locked.joints if joint.second == FIXED]
@@ -70,7 +73,8 @@ def opening_subdivided(
         T = locked.blocks[number].T(float(x), float(y))
         normals[i, number], tangents[i, number] = normal @ T, tangent @ T
     share = supports[0].normal  # a side that is cut evenly has edges of one length
-    law = replace(model.contact, stiffness=model.contact.stiffness * share, shear=model.contact.shear * share)
+    own = model.contact
+    law = replace(own, stiffness=own.stiffness * share, shear=own.shear * share, cohesion=own.cohesion * share)
     return OpeningSystem(
         system=replace(locked, joints=[joint for joint in locked.joints if joint.second != FIXED]),
         law=law,
@@ -115,7 +119,7 @@ class Length:
         dD, dmu = stepper.increments(predictor(s, P, f) + s.alpha * (self.F - held), self.still)
         way = self.rows @ dD
         n = len(before.gap)
-        found = open_close_points(self.law, before, FreePoints(before.gap + way[:n], way[n:], self.C), limit)
+        found = find_points(self.law, before, FreePoints(before.gap + way[:n], way[n:], self.C), limit)
         if found.points is None:
             return None, found
         forces = np.concatenate([found.points.normal, found.points.shear])[: len(way)]

@@ -38,10 +38,16 @@ class SystemLedger:
         N = (1 - scheme.delta) * old.normal + scheme.delta * new.normal
         T = (1 - scheme.delta) * old.shear + scheme.delta * new.shear
         slid = self.opening.tangents @ (after.D - before.D)
-        lost = self._springs(old) - self._springs(new) - N * (new.gap - old.gap) - T * slid
+        rubbed = np.zeros_like(slid) if new.slipped is None else -new.shear * new.slipped
+        lost = self._springs(old) - self._springs(new) - N * (new.gap - old.gap) - T * slid - rubbed
         same = old.closed == new.closed
         damped = (1 - scheme.gg**2) * self._kinetic(before.P / self.dt)
-        self.losses += (self._bulk(length, before, after) + np.sum(lost[same]), damped, np.sum(lost[~same]), 0.0)
+        self.losses += (
+            self._bulk(length, before, after) + np.sum(lost[same]),
+            damped,
+            np.sum(lost[~same]),
+            np.sum(rubbed),
+        )
 
     def _bulk(self, length: Length, before: SystemState, after: SystemState) -> float:
         """Return the loss of the sub-blocks, with what A0 adds where M A0 was not F - K0 D0."""

@@ -11,10 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.points import Found
+from dda.contact.rubbing_points import states
+from dda.contact.unilateral import CONSISTENT, LAGGED
 from dda.one_block.solution import Result, at_corner, check_request, step_times
-from dda.one_block.unilateral import COMPLETED, FLOOR, OVERFLOW, UnilateralOptions, check_scheme
+from dda.one_block.unilateral import COMPLETED, OVERFLOW, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_energy import ENERGIES
 from dda.one_block.unilateral_step import NEWMARK
+from dda.scheme.cutting import Interval, Lengths, in_parts
 from dda.scheme.newmark import Scheme
 from dda.system.opening import Length, OpeningSystem, SystemState, start_state
 from dda.system.opening_energy import SystemLedger
@@ -35,7 +39,9 @@ class OpeningResult(Result):
     shear: Array  # (points, steps) T, along the base from M to N [N]
     gap: Array  # (points, steps) w, negative when pressed [m]
     closed: NDArray[np.bool_]  # (points, steps)
+    states: NDArray[np.int_]  # (points, steps) 0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M
     slide: Array  # (points, steps) displacement along the base [m]
+    slipped: Array  # (points, steps) change of the shear reference by slip in the step [m]
     velocity: Array  # of the centre of mass, upwards [m/s]
     horizontal_velocity: Array  # of the centre of mass [m/s]
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
@@ -43,14 +49,9 @@ class OpeningResult(Result):
     energies: dict[str, Array] | None  # by `ENERGIES` [J], losses summed from t = 0 on; None if not asked for
 
     @property
-    def states(self) -> NDArray[np.int_]:
-        """State of the points, (points, steps): 0 open, 1 closed."""
-        return self.closed.astype(int)
-
-    @property
     def slip(self) -> Array:
         """Largest sum of what the reference of a point moved while it was pressed, (steps,) [m]."""
-        return np.zeros(len(self.time))
+        return np.asarray(np.abs(np.cumsum(self.slipped, axis=1)).max(axis=0))
 
     # of the first and the last point alone
     normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", -1)  # N, away from the base [N]
@@ -69,7 +70,9 @@ class Row(NamedTuple):
     shear: Array
     gap: Array
     closed: NDArray[np.bool_]
+    states: NDArray[np.int_]
     slide: Array
+    slipped: Array
     momentum: Array  # dt times the momentum in x and y
     solves: int
     cuts: int
@@ -98,6 +101,8 @@ def solve_opening_system(
     options = options or UnilateralOptions()
     if options.rule != NEWMARK:
         raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    if opening.law.rules == LAGGED:
+        raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
     check_scheme(opening.law, scheme)
     began = perf_counter()
     stepping = SystemStepping(opening, scheme, options, columns)
@@ -115,8 +120,8 @@ class SystemStepping:
         self, opening: OpeningSystem, scheme: Scheme, options: UnilateralOptions, columns: Sequence[str]
     ) -> None:
         self.opening, self.scheme, self.options, self.names = opening, scheme, options, tuple(columns)
-        self.outcome, self.factorisations = COMPLETED, 0
-        self.lengths: dict[float, Length] = {}
+        self.outcome = COMPLETED
+        self.length = Lengths(lambda ratio: Length(opening, scheme, ratio), _LENGTHS)
         self.observers = opening.equations.rows(columns)[0]
         self.pressed = (
             np.array([name == "contact_pressure" for name in columns], dtype=float)[:, None]
@@ -128,54 +133,36 @@ class SystemStepping:
         """Yield the steps that are reached; `outcome` says how it ended."""
         state = start_state(self.opening, self.scheme)
         for _ in range(steps):
-            reached, solves, cuts = self._interval(state)
-            if reached is None:
+            made = self._interval(state)
+            if made.failure is not None:
+                self.outcome = made.failure
                 return
-            if not np.isfinite(reached.D).all():
+            state = made.parts[-1][2]
+            if not np.isfinite(state.D).all():
                 self.outcome = OVERFLOW
                 return
-            state = reached
-            yield self._row(state, solves, cuts)
+            slipped = sum((after.points.slipped for _, _, after in made.parts if after.points.slipped is not None), 0.0)
+            yield self._row(state, slipped + np.zeros(len(self.opening.normals)), made.solves, made.cuts)
 
-    def _row(self, state: SystemState, solves: int, cuts: int) -> Row:
+    def _row(self, state: SystemState, slipped: Array, solves: int, cuts: int) -> Row:
         p = state.points
         seen = self.observers @ state.D + self.pressed @ np.array([np.sum(p.normal)])
         momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
         kept = self.ledger.row(state) if self.ledger else ()
-        return Row(
-            seen, p.normal, p.shear, p.gap, p.closed, self.opening.tangents @ state.D, momentum, solves, cuts, kept
-        )
+        contact = (p.normal, p.shear, p.gap, p.closed, states(p), self.opening.tangents @ state.D, slipped)
+        return Row(seen, *contact, momentum, solves, cuts, kept)
 
-    def _interval(self, state: SystemState) -> tuple[SystemState | None, int, int]:
-        """Return the state after one step of the scheme, whole or in parts, with solves and cuts."""
-        left = ratio = 1.0
-        solves = cuts = 0
-        while True:
-            length = self.length(ratio)
-            after, found = length.advance(state, self.options.solve_limit)
-            solves += found.solves
-            if after is None:
-                if ratio <= FLOOR:
-                    self.outcome = str(found.failure)
-                    return None, solves, cuts
-                ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
-                continue
-            if self.ledger:
-                self.ledger.add(length, state, after)
-            state = after
-            if ratio == left:
-                return state, solves, cuts
-            left -= ratio
-            ratio = left
+    def _interval(self, state: SystemState) -> Interval[SystemState]:
+        """Return one step of the scheme, whole or in parts."""
 
-    def length(self, ratio: float) -> Length:
-        """Return what depends on the step's length, factorised once for each."""
-        if ratio not in self.lengths:
-            if len(self.lengths) >= _LENGTHS:
-                self.lengths = {1.0: self.lengths[1.0]}
-            self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
-            self.factorisations += 1
-        return self.lengths[ratio]
+        def attempt(state: SystemState, begun: float, ratio: float) -> tuple[SystemState | None, Found]:
+            return self.length(ratio).advance(state, self.options.solve_limit)
+
+        made = in_parts(attempt, state, self.options.cut)
+        if self.ledger:
+            for ratio, before, after in made.parts:
+                self.ledger.add(self.length(ratio), before, after)
+        return made
 
 
 def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float, float]) -> OpeningResult:
@@ -194,7 +181,7 @@ def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float,
         columns=dict(zip(stepping.names, history("columns", len(stepping.names)) + 0.0, strict=True)),
         unknowns=len(opening.equations.F),
         nonzeros=stepping.length(1.0).stepper.factor.nonzeros,
-        factorisations=stepping.factorisations,
+        factorisations=stepping.length.made,
         solves=sum(row.solves for row in rows),
         notes=("stepped: contact opens and closes", *ended),
         setup_seconds=seconds[0],
@@ -204,6 +191,8 @@ def _result(stepping: SystemStepping, rows: Sequence[Row], seconds: tuple[float,
         shear=history("shear", points),
         gap=history("gap", points),
         closed=history("closed", points) > 0,
+        states=history("states", points).astype(int),
+        slipped=history("slipped", points),
         slide=history("slide", points),
         velocity=velocity[1],
         horizontal_velocity=velocity[0],

@@ -182,10 +182,11 @@ class ShearStep:
         held = self._held(trial, normal)
         held = np.where(states == STICK, trial.shear, held)
         bound = self.base.bound(np.maximum(normal, 0.0))
-        least = np.where(np.abs(states) == SLIP, (1 - ROUNDED) * bound, bound)
-        # what slides on against its friction keeps its direction, what would turn round or rest is held to the bound
-        onward = (np.abs(states) == SLIP) & (-np.sign(states) * held >= least)
-        slides = onward | (np.abs(held) > bound)
+        least = (1 - ROUNDED) * bound
+        # what slides on against its friction keeps its direction; what would turn round is held first, as it may rest
+        was = np.abs(states) == SLIP
+        onward = was & (-np.sign(states) * held >= least)
+        slides = onward | (~was & (np.abs(held) > bound))
         direction = np.where(onward, np.sign(states), -np.sign(held))
         return np.where(closed == OPEN, OPEN, np.where(slides, SLIP * direction, STICK)).astype(np.int8)
 

@@ -133,34 +133,34 @@ class ContactStepper:
             The state at the end and the contact found; None where there is none, with the reason in `contact`.
         """
         own = self._matrices(self.scheme.step if length is None else length)
-        scheme, model, old = own.scheme, self.model, state.motion
+        scheme, old = own.scheme, state.motion
         ahead = predictor(old, scheme)
-        residual = model.F - model.K @ ahead
+        residual = self.model.F - self.model.K @ ahead
         free = own.solve(residual)
-        moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
         way = self._way(state.time + scheme.step) - state.base
-        moved -= np.repeat(way, len(model.share))[: len(moved)]
+        moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
+        moved -= np.repeat(way, len(self.model.share))[: len(moved)]
         contact = self._contact(state, own, moved)
         if contact.trial is None:
             return None, contact
         N, T = contact.trial.normal, contact.trial.shear
         forces = np.concatenate([N, T]) if self.shear == "glued" else N
-        A = free
-        if contact.states.any() and own.response is not None:
-            A = free + own.response @ forces
-        elif contact.states.any():
-            A = own.solve(residual + self._weight * (self._B.T @ forces))
+        A = free if not contact.states.any() else self._pushed(own, residual, free, forces)
         motion = self._moved(old, ahead, A, forces, scheme)
         # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
         gap = np.where(contact.states != OPEN, -N / self.model.stiffness, contact.trial.gap)
-        slip, reference, slid = state.slip, state.reference, state.slid
+        sheared = state.slip, state.reference, state.slid
         if self.shear == "glued":
-            slip, reference, slid = self._slipped(state, contact.states, contact.trial, moved + own.C @ forces)
-        given = state.given + self._given(state, contact.trial, way)
-        time = state.time + scheme.step
-        return ContactState(
-            motion, gap, slip, reference, N, T, contact.states, slid, time, state.base + way, given
-        ), contact
+            sheared = self._slipped(state, contact.states, contact.trial, moved + own.C @ forces)
+        ended = state.time + scheme.step, state.base + way, state.given + self._given(state, contact.trial, way)
+        slip, reference, slid = sheared
+        return ContactState(motion, gap, slip, reference, N, T, contact.states, slid, *ended), contact
+
+    def _pushed(self, own: _Matrices, residual: Array, free: Array, forces: Array) -> Array:
+        """Accelerations of the free block and of the forces."""
+        if own.response is not None:
+            return free + own.response @ forces
+        return own.solve(residual + self._weight * (self._B.T @ forces))
 
     def _way(self, time: float) -> Array:
         """Way of the base since t = 0, normal to it and along it [m]."""

@@ -117,8 +117,9 @@ class Small:
         phi = np.where(self.start.states == 0, self._passed(N), 1.0)
         holding = np.where(states == 1, found.T, -law.k_t * phi * found.s)
         most = law.tan * np.maximum(N, 0.0) + law.c
-        goes_on = (np.abs(states) == 2) & (-np.sign(states) * holding >= (1 - SLACK) * most)
-        begins = np.abs(holding) > most
+        slides = np.abs(states) == 2
+        goes_on = slides & (-np.sign(states) * holding >= (1 - SLACK) * most)
+        begins = ~slides & (np.abs(holding) > most)  # one that turns is held first
         way = np.where(goes_on, states, np.where(begins, -2 * np.sign(holding), 1))
         return np.where(closed, way, 0).astype(int)
 

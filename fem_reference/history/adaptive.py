@@ -58,8 +58,7 @@ def solve_adaptive(
     ValueError
         If a number is out of range, a column is unknown, the scheme has a damping of its own, or the base moves.
     """
-    check_request(steps, tuple(name for name in columns if name not in ADAPTIVE_COLUMNS))
-    _check(problem, scheme, floor)
+    _check(problem, scheme, steps, columns, floor)
     began = time.perf_counter()
     model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
@@ -73,16 +72,15 @@ def solve_adaptive(
         time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
         columns={name: every[name] for name in columns},
         unknowns=len(model.F),
-        nonzeros=stepper.work.nonzeros,
-        factorisations=stepper.work.factorisations,
-        solves=stepper.work.solves,
+        **vars(stepper.work),
         notes=(*model.notes, *front(problem, scheme.step), f"stepped: adaptive discount from {floor:g} to 1"),
         setup_seconds=ready - began,
         stepping_seconds=time.perf_counter() - ready,
     )
 
 
-def _check(problem: Problem, scheme: Scheme, floor: float) -> None:
+def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...], floor: float) -> None:
+    check_request(steps, tuple(name for name in columns if name not in ADAPTIVE_COLUMNS))
     if not 0 <= floor <= 1:
         raise ValueError(f"floor: must be from 0 to 1, got {floor!r}")
     if scheme.gg != 1:

@@ -47,9 +47,7 @@ def solve(
     ValueError
         If the block cannot be meshed, or `steps`, `columns` or `fields` are not valid.
     """
-    check_request(steps, tuple(columns))
-    if scheme.damped and problem.motion is not None:
-        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
+    _check(problem, scheme, steps, columns)
     began = time.perf_counter()
     model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
@@ -58,25 +56,31 @@ def solve(
     small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
     if isinstance(small, str):
         moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
-        history = run(stepper, model, steps, tuple(columns), writer, moved)
-        note, estimate = f"stepped: {small}", None
+        history, estimate = run(stepper, model, steps, tuple(columns), writer, moved), None
     else:
         history, estimate = small.history, small.estimate
-        note = f"blocked in {small.vectors} Krylov vectors"
     history = bounded(history, problem.load_size)
     ended = time.perf_counter()
     return Result(
         time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
         columns=dict(zip(columns, history, strict=True)),
         unknowns=len(model.F),
-        nonzeros=stepper.work.nonzeros,
-        factorisations=stepper.work.factorisations,
-        solves=stepper.work.solves,
-        notes=(*model.notes, *front(problem, scheme.step), note),
+        **vars(stepper.work),
+        notes=(*model.notes, *front(problem, scheme.step), _note(small)),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
         estimate=estimate,
     )
+
+
+def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...]) -> None:
+    check_request(steps, tuple(columns))
+    if scheme.damped and problem.motion is not None:
+        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
+
+
+def _note(small: Reduced | str) -> str:
+    return f"stepped: {small}" if isinstance(small, str) else f"blocked in {small.vectors} Krylov vectors"
 
 
 def _in_small_space(

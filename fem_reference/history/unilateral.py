@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def solve_unilateral(
     """
     if steps < 1:
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
-    contact = Unilateral() if contact is None else contact
+    contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)
     stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule, contact.friction)
@@ -120,16 +121,13 @@ def solve_unilateral(
     watched = _Watched(stepper, tuple(dict.fromkeys(columns)), every_point)
     rows, outcome = _run(stepper, state, steps, contact, watched)
     ended = time.perf_counter()
-    observed = np.array([row.observed for row in rows]).reshape(len(rows), len(watched.columns)).T
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
-        columns=dict(zip(watched.columns, observed, strict=True)),
+        columns=watched.table(rows),
         outcome=outcome,
         unknowns=len(model.F),
         points=len(model.share),
-        nonzeros=stepper.work.nonzeros,
-        factorisations=stepper.work.factorisations,
-        solves=stepper.work.solves,
+        **vars(stepper.work),
         notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
@@ -137,7 +135,7 @@ def solve_unilateral(
     )
 
 
-def _of_points(rows: list[_Row], points: int) -> dict[str, Array]:
+def _of_points(rows: list[_Row], points: int) -> dict[str, Any]:
     """What is kept of every point, shape (rows, points) each."""
     if not points:
         return {}
@@ -179,6 +177,11 @@ class _Watched:
         seen = [name for name in asked if name not in (*LOSSES, *COUNTS)]
         self.columns = (*seen, *(LOSSES if lost else ()), *self.counted)
         self.every_point = every_point
+
+    def table(self, rows: list[_Row]) -> dict[str, Array]:
+        """Return the columns, shape (rows,) each."""
+        observed = np.array([row.observed for row in rows]).reshape(len(rows), len(self.columns)).T
+        return dict(zip(self.columns, observed, strict=True))
 
     def row(self, step: CutStep, state: ContactState) -> _Row:
         """Return what is kept of a step that ends in a state."""

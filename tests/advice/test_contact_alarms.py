@@ -19,7 +19,7 @@ from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.rigid import impact_restitution
+from validation.solvers.rigid.impacts import impact_restitution
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}

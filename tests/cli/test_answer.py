@@ -111,7 +111,7 @@ reason = "mine"
 
 def test_json_and_quiet_give_the_same_status_as_the_text(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE + FAILING)
-    command = "run", scene_file, "--results", tmp_path / "r"
+    command = "run", scene_file, "--results", tmp_path / "r", "--jobs", 1
     text, quiet, data, full = (typed(*command, *more) for more in ([], ["--quiet"], ["--json"], ["--verbose"]))
     assert [done.returncode for done in (text, quiet, data, full)] == [1] * 4
     assert (quiet.stdout, quiet.stderr) == ("", "")
@@ -120,11 +120,7 @@ def test_json_and_quiet_give_the_same_status_as_the_text(scene_file: Path, tmp_p
     assert found["verdicts"] == json.loads((tmp_path / "r/verdicts.json").read_text())
     assert found["studies"][0]["outcomes"] == {"completed": 4} and found["changes"] is None
     assert "FAIL small[time.step=0.001]:dda-bar:displacement.l2: " in text.stdout
+    assert "\x1b" not in text.stdout + full.stdout, "colours are for terminals"
     assert "time.step=0.002" in full.stdout and "1 PASS, 1 FAIL, 0 NOT RUN" in full.stdout
     both = typed(*command, "--json", "--quiet")
     assert both.returncode == 2 and both.stderr == "error: --json, --quiet: exclude each other, got both\n"
-
-
-def test_colours_are_for_terminals_only(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE + FAILING)
-    assert "\x1b" not in typed("run", scene_file, "--results", tmp_path / "r", "--verbose").stdout

@@ -13,8 +13,8 @@ from validation import load_scene, solve
 from validation.cli.entry import app
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-# A study is timed for minutes and a committed file rewritten; whole studies and packs have tests of their own.
-UNTRIED = {"record", "claims", "export-pack"}
+# A study is timed for minutes and a committed file rewritten; whole studies, packs and sites have tests of their own.
+UNTRIED = {"record", "claims", "export-pack", "gallery"}
 
 
 def examples(name: str) -> list[list[str]]:

@@ -86,7 +86,8 @@ def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
     assert found["3: f10"] == pytest.approx(220 / (10 * 0.5), rel=1e-4)
     assert found["H/c"] == pytest.approx(15 / 500 + 10 / 350 + 8 / 220 + 5 / 150, rel=1e-4)
     assert found["reflected"] == pytest.approx(100 * (rock - lowest) / (rock + lowest))
-    assert shown("waves-glue")["numbers"]["blocks"] == {"low": 25.0, "high": 25.0, "unit": ""}
+    half = "column.layer=[{thickness=12.0, density=2000.0, young=2.0e9, blocks=24}]"
+    assert shown("waves-glue", "--set", half)["numbers"]["blocks"] == {"low": 50.0, "high": 50.0, "unit": ""}
 
 
 def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
@@ -102,9 +103,28 @@ def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
 def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
     scene_file.write_text(SCENE + "[damping]\nmass = 2.0\n[run]\nsolvers = ['dda']\n")
     text = typed("show", scene_file).stdout
-    for words in ("q = 5e+06 Pa", "2 x 2 m", "rho = 2700 kg/m3, E = 1e+09 Pa", "p = 1e+09 N/m at each corner; locked",
-                  "50 of dt = 0.002 s", "constant acceleration", "a0 = 2 1/s", "damping tables"):  # fmt: skip
+    for words in (
+        "q = 5e+06 Pa",
+        "2 m wide, 2 m high",
+        "rho = 2700 kg/m3, E = 1e+09 Pa",
+        "p = 1e+09 N/m at each corner",
+        "locked",
+        "50 of dt = 0.002 s",
+        "constant acceleration",
+        "a0 = 2 1/s",
+        "damping tables",
+    ):
         assert words in text
+
+
+def test_a_tower_is_drawn_as_one(scene_file: Path) -> None:
+    def inside(width: float) -> tuple[int, int]:
+        sets = ("--set", f"block.width={width}", "--set", "block.height=2.0")
+        walls = [line for line in typed("show", scene_file, *sets).stdout.splitlines() if line.startswith("  |")]
+        return walls[0].index("|", 3) - 3, len(walls)
+
+    tower, square, low = inside(0.5), inside(2.0), inside(4.0)
+    assert square == (15, 7) and low == (15, 4) and tower[1] == 7 and tower[0] == 8
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))

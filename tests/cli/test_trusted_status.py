@@ -158,7 +158,7 @@ def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
     assert typed("run", scene_file, "--results", "r", cwd=tmp_path).returncode == 0
     scene_file.write_text(gated("[-1.0, -0.5]", '["dda"]'))
     done = typed("run", scene_file, "--results", "r", "--baseline", where, cwd=tmp_path)
-    assert done.returncode == 1 and "1 gates differ: 1 worse" in done.stdout
+    assert done.returncode == 1 and "1 gate differs: 1 worse" in done.stdout
 
 
 def test_gates_that_are_deleted_are_worse(scene_file: Path, tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_gates_that_are_deleted_are_worse(scene_file: Path, tmp_path: Path) -> N
     assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
     scene_file.write_text(SCENE)
     done = typed("run", scene_file, "--results", tmp_path / "r", "--baseline", tmp_path / "r")
-    assert done.returncode == 1 and "1 gates differ: 1 worse" in done.stdout
+    assert done.returncode == 1 and "1 gate differs: 1 worse" in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_a_band_that_changed_is_reported_and_a_wider_one_is_worse(
             return
     done = typed("run", scene_file, "--results", tmp_path / "b", "--baseline", tmp_path / "a")
     assert done.returncode == status
-    assert ("no gate differs" if kind is None else f"1 gates differ: 1 {kind}") in done.stdout
+    assert ("no gate differs" if kind is None else f"1 gate differs: 1 {kind}") in done.stdout
     assert typed("diff", tmp_path / "a", tmp_path / "b").returncode == status
 
 
@@ -368,7 +368,7 @@ def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(
     drawn = book.chapter_of
     monkeypatch.setattr(book, "chapter_of", lambda study: (lambda *a: [][0]) if study == "other" else drawn(study))
     blocks = book._all_blocks(Results(tmp_path / "r"), ["other", "small"], tmp_path)
-    (said,) = [block.text for block in blocks if isinstance(block, Callout)]
+    (said,) = [block.text for block in blocks if isinstance(block, Callout) and block.tone == "fail"]
     assert "the chapter of other cannot be drawn from these results (IndexError: list index out of range)" in said
     assert Heading("A small scene", 2) in blocks or any(isinstance(block, FigureBlock) for block in blocks)
     done = typed("figures", "other", "--results", tmp_path / "r", "--out", tmp_path / "f")

@@ -21,6 +21,9 @@ from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
 from dda.one_block import response as dda_vibration
+from dda.rotation import model as rolling_model
+from dda.rotation import solution as rolling
+from dda.rotation import step as rolling_step
 from dda.scheme import blocked, newmark
 from dda.system import joints, subdivision, system
 from dda.system import solution as system_solution
@@ -111,6 +114,15 @@ SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
+
+# Blocks that turn
+ROLLING_SETTING = Seam(rolling_model.RollingModel, rolling_model.RollingModel.setting)
+ROLLING_START = Seam(rolling_model.RollingModel, rolling_model.RollingModel.start)
+ROLLING_ADVANCE = Seam(rolling, rolling.advance)
+ROLLING_BASE = Seam(rolling.Rolling, rolling.Rolling._base)
+ROLLING_OBSERVED = Seam(rolling, rolling.observed)
+ROLLING_TURN = Seam(rolling_step, rolling_step.turn)
+ROLLING_LATE = Seam(rolling_step, rolling_step.late_share)
 
 # Finite elements
 FEM_PREDICTOR = Seam(fem_newmark, fem_newmark.predictor)

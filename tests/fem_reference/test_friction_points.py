@@ -123,3 +123,12 @@ def test_a_sliding_point_that_turns_sticks_first_or_slides_back():
             assert found.trial.normal[0] == pytest.approx(1000.0)
             assert found.states[0] == state
             assert found.trial.shear[0] == pytest.approx(-slip * 0.5e9 if state == 1 else -np.sign(slip) * 600.0)
+
+
+def test_a_point_that_turns_is_held_first():
+    """On a body softer than the shear spring either direction asks for the other one; held, the point is at rest."""
+    base = ShearBase(np.diag([1e-9, 1e-8]), np.array([1e-9]), np.array([1e9]), 0.5, np.zeros(1))
+    step = ShearStep(base, np.array([-2e-6]), np.zeros(1), np.array([-1e-6]), np.array([True]))
+    for before in (2, -2):
+        found = sheared(step, np.array([before], dtype=np.int8), 6)
+        assert (found.solves, found.states[0], found.trial.shear[0]) == (2, 1, 0.0)

@@ -15,11 +15,10 @@ MKDOCS = Path(sys.executable).with_name("mkdocs")
 REQUEST = re.compile(r"""<(?:script|link|img|iframe)[^>]*(?:src|href)=["']?(https?:)?//""")
 
 
-def test_every_page_is_in_the_navigation_and_every_entry_is_a_page() -> None:
+def test_every_entry_of_the_navigation_is_a_page() -> None:
     listed = re.findall(r"[ :](\S+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.M)
-    pages = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md")}
-    made = {"reference/index.md"}  # added by the hook
-    assert sorted(listed) == sorted(set(listed)) and set(listed) | made == pages
+    assert len(listed) == len(set(listed)) > 15
+    assert not [name for name in listed if not (DOCS / name).is_file()]
 
 
 @pytest.mark.long
@@ -35,6 +34,7 @@ def test_the_site_builds_strictly_and_asks_no_network(tmp_path: Path) -> None:
     for path in pages:
         assert not REQUEST.search(path.read_text(encoding="utf-8")), path
     names = {path.stem for path in pages}
+    assert {path.stem for path in DOCS.glob("*.md")} <= names
     assert {"index", "tutorial", "dda.scheme", "fem_reference.exact", "validation.gates"} <= names
 
 
@@ -81,7 +81,7 @@ def test_the_tutorial_prints_what_it_says(tmp_path: Path, finished_cases: Path) 
         elif language == "text" and printed:
             assert_all(text, printed)
             checked += 1
-    assert checked == 3
+    assert checked == 4
 
 
 def assert_all(lines: str, printed: str) -> None:

@@ -1,9 +1,12 @@
 """Blocks with friction under two corners: histories that are known by their events, and invariants of any history."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from dda import Block, Material, Unilateral, UnilateralModel
+import numpy as np
+from oracles.unilateral_checks import checked, random_model
+
+from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
 
 YOUNG = 1e9
 
@@ -47,3 +50,81 @@ KNOWN = {
         {0.05: (8.660335668094e-4, -9.241387969921e-5, -5.024326498383e-5)},
     ),
 }
+
+
+def rubbing_model(seed):
+    """Return a random block whose corners rub: outline, loads, slope, friction and cohesion; some are symmetric."""
+    rng, model = np.random.default_rng(1000 + seed), random_model(seed, glued=True)
+    law = replace(model.contact, friction=rng.uniform(0.05, 1.0), cohesion=(seed % 5 == 2) * rng.uniform(0.0, 1e5))
+    if seed % 3 == 1:
+        return replace(model, contact=law)
+    sideways = model.block.material.young * rng.uniform(-1e-3, 1e-3)
+    return replace(model, contact=law, traction=sideways, slope=rng.uniform(-40, 40))
+
+
+def coulomb(model, result):
+    """|T| <= tan(phi) N + c, met by what slips; slip opposes T; friction never gives energy."""
+    law, size = model.contact, np.max(result.normal) + model.contact.cohesion
+    limit = np.where(result.closed, law.friction * result.normal + law.cohesion, 0.0)
+    assert np.max(np.abs(result.shear) - limit) <= 2e-12 * size
+    slips = np.abs(result.states) == 2
+    assert np.max(np.abs(np.abs(result.shear) - limit)[slips], initial=0.0) <= 1e-14 * size
+    assert np.all(result.shear[slips] * result.states[slips] <= 0)
+    assert np.all((result.states == 0) == ~result.closed)
+    slipped = result.history.slipped() * np.array([[1.0]] * result.form.contacts)
+    states = result.states[-result.form.contacts :]
+    assert np.all(slipped[(np.abs(states) != 2) & (result.step_cuts == 0)] == 0)
+    assert np.all((slipped * states)[:, result.step_cuts == 0] >= 0)
+    assert np.min(np.diff(result.energies["friction"]), initial=0.0) >= 0
+
+
+def held(seed, scheme, steps=300):
+    """Run a random block and check every invariant."""
+    model = rubbing_model(seed)
+    result = checked(model, scheme, steps)
+    coulomb(model, result)
+    return result
+
+
+def free_fall(scheme, steps, acceleration):
+    """Return the scheme's own displacement under a constant acceleration."""
+    D = V = 0.0
+    A = acceleration if scheme.start == "consistent" else 0.0
+    dt, found = scheme.step, []
+    for _ in range(steps):
+        V *= scheme.gg
+        D += dt * V + dt * dt * ((0.5 - scheme.alpha) * A + scheme.alpha * acceleration)
+        V += dt * ((1 - scheme.delta) * A + scheme.delta * acceleration)
+        A = acceleration
+        found.append(D)
+    return np.array(found)
+
+
+def sliding(model, scheme, steps):
+    """Return u + tan(phi) v of a block as long as it slips towards +x, what it must be, and how large its parts are."""
+    both = "horizontal_displacement", "displacement"
+    result = solve_unilateral(model, scheme, steps, both)
+    assert result.outcome == "completed"
+    slips = np.append(np.all((result.states == 2) | (result.states == 0), axis=0), False)
+    n = int(slips.argmin())
+    u, v = (result.columns[name][:n] for name in both)
+    right, up = model.applied.falling
+    tangent = model.contact.friction
+    return u + tangent * v, free_fall(scheme, n, model.gravity * (right + tangent * up)), np.abs(u) + np.abs(v)
+
+
+def shaken(rng, size=1e-3):
+    """Return a base that moves to and fro in both directions."""
+    moved = np.concatenate([[[0.0, 0.0]], np.cumsum(rng.uniform(-size, size, (20, 2)), axis=0)])
+    return BaseMotion(np.linspace(0.0, 0.05, 21), moved)
+
+
+def cases(count, every=1):
+    """Return seeds, each with one of four schemes."""
+    schemes = (
+        (0.5, 1.0, 1.0, "zero"),
+        (0.25, 0.5, 1.0, "consistent"),
+        (0.3025, 0.6, 0.97, "zero"),
+        (0.7, 0.8, 0.99, "zero"),
+    )
+    return [(seed, Scheme(*schemes[seed % 4][:3], 3e-4, schemes[seed % 4][3])) for seed in range(0, count, every)]

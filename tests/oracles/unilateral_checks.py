@@ -36,7 +36,7 @@ def mirrored(model):
     corners = model.block.corners * [-1, 1]
     order = [1, 0, 3, 2]  # counter-clockwise again, the base first
     block = Block(corners[order], model.block.material)
-    return replace(model, block=block, eccentricity=-model.eccentricity, traction=-model.traction)
+    return replace(model, block=block, eccentricity=-model.eccentricity, traction=-model.traction, slope=-model.slope)
 
 
 def sums(result):
@@ -44,7 +44,7 @@ def sums(result):
     e = result.energies
     return (
         e["kinetic"] + e["strain"] + e["springs"] + e["load"],
-        e["algorithmic"] + e["kinetic damping"] + e["switching"],
+        e["algorithmic"] + e["kinetic damping"] + e["switching"] + e["friction"],
     )
 
 
@@ -67,7 +67,9 @@ def momentum(model, scheme, result):
     x, y = model.block.corners[[model.top, (model.top + 1) % 4]].T
     part = 1 - 2 * abs(model.eccentricity) / np.hypot(x[1] - x[0], y[1] - y[0])
     length = np.hypot(x[1] - x[0], y[1] - y[0])
-    loads = (model.traction * length, -model.pressure * part * length - mass * model.gravity)
+    right, up = model.applied.falling
+    weight = mass * model.gravity
+    loads = (model.traction * length + weight * right, -model.pressure * part * length + weight * up)
     contact = (result.shear_force_m + result.shear_force_n, result.normal_force_m + result.normal_force_n)
     starts = (0.0, model.velocity)
     for V, N, load, start in zip((result.horizontal_velocity, result.velocity), contact, loads, starts, strict=True):

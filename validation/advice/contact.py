@@ -21,7 +21,7 @@ import numpy as np
 from validation.gates import closed_forms
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.rigid import impact_statistics
+from validation.solvers.rigid.impacts import impact_statistics
 
 RAISES, LEAST_RAISE = 8, 1.2  # of p, until the exact block stays above the penetration asked for
 WRONG, ARBITRARY = 0.3, 2.0  # Omega beyond which the restitution is off by a fifth, and depends on the phase alone

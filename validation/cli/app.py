@@ -35,8 +35,8 @@ FullOption = Annotated[
     bool,
     typer.Option(
         "--full",
-        help="Switch the numerical savings off: no dropped unknowns, no single column, no half block, no small space, "
-        "no blocked steps.",
+        help="Run the full model: without the shortcuts that leave out unknowns that do not move, take one column of "
+        "elements or half the block, or take many steps at once.",
     ),
 ]
 RanksOption = Annotated[

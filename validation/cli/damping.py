@@ -50,14 +50,18 @@ def advise(
         ),
     ] = "dt",
     fmax: Annotated[
-        float | None, typer.Option("--fmax", help="Or: highest frequency of a wave that must arrive.", metavar="HZ")
+        float | None,
+        typer.Option(
+            "--fmax", help="Instead of --damping: highest frequency of a wave that must arrive.", metavar="HZ"
+        ),
     ] = None,
     loss: Annotated[float, typer.Option("--loss", help="Share of the wave's amplitude that may be lost.")] = 0.1,
     wavelengths: Annotated[
-        float | None, typer.Option("--wavelengths", help="The wave's way; without it the height of the column.")
+        float | None,
+        typer.Option("--wavelengths", help="How many wavelengths the wave runs; without it the height of the column."),
     ] = None,
     phase_error: Annotated[
-        float, typer.Option("--phase-error", help="Periods by which the wave may arrive early or late.")
+        float, typer.Option("--phase-error", help="Parts of a period by which the wave may arrive early or late.")
     ] = 0.05,
     assignments: SetOption = None,
     as_json: JsonOption = False,

@@ -26,7 +26,15 @@ COMMANDS = (
     waves,
     work,
 )  # importing them declares their commands
+FIRST = ("list", "show", "run", "solve", "report", "figures", "gallery", "compare", "damping", "advise")  # of the help
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
+
+
+def _place(name: str | None) -> int:
+    return FIRST.index(name) if name in FIRST else len(FIRST)
+
+
+app.registered_commands.sort(key=lambda command: _place(command.name or getattr(command.callback, "__name__", None)))
 
 
 @caught()

@@ -38,9 +38,12 @@ def export_pack(
     Example: [bold]dda-validate export-pack pack[/bold]
     """
     from validation.studies.contact.pack import write_contact_pack
+    from validation.studies.contact.slipping_pack import write_slipping_pack
     from validation.studies.pack import write_pack
     from validation.studies.waves.pack import write_waves_pack
 
     written, numbers, waves = write_pack(directory), write_contact_pack(directory), write_waves_pack(directory)
+    slipping = write_slipping_pack(directory)
     counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
-    typer.echo(f"wrote {directory}: {counts}; of contact that opens {numbers} exact numbers, of waves {waves}")
+    exact = f"of contact that opens {numbers} exact numbers, of contact that slips {slipping}, of waves {waves}"
+    typer.echo(f"wrote {directory}: {counts}; {exact}")

@@ -26,7 +26,7 @@ PEAKS = 3  # that are printed
 @app.command()
 def response(
     scene: SceneArgument,
-    solver: Annotated[str, typer.Option("--solver", help="Solver whose model answers.", metavar="NAME")] = "dda",
+    solver: Annotated[str, typer.Option("--solver", help="Solver whose model is asked.", metavar="NAME")] = "dda",
     low: Annotated[float, typer.Option("--from", help="Lowest frequency.", metavar="HZ")] = 0.1,
     high: Annotated[float, typer.Option("--to", help="Highest frequency.", metavar="HZ")] = 200.0,
     points: Annotated[int, typer.Option("--points", help="Number of frequencies.", min=1)] = 1000,
@@ -36,7 +36,7 @@ def response(
     figure: FigureOption = None,
     assignments: SetOption = None,
 ) -> None:
-    """Give the answer to a load or a base that vibrates, over frequency; no step is run.
+    """Show how a scene answers a load or a base that vibrates, over frequency; no step is run.
 
     Example: [bold]dda-validate response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
     """
@@ -129,7 +129,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         for i in range(max(map(len, columns), default=0)):
             cells = [(f"{p[i][0]:.6g}", f"{p[i][1]:.6g}") if i < len(p) else ("", "") for p in columns]
             rows.append((label, *cells[0], *cells[1]))
-    print_table(rows if len(rows) > 1 else [("no peak between the ends",)])
+    print_table(rows if len(rows) > 1 else [("no peak in this range",)])
     limit = 0.5 / case.time.step
     if found.frequency[-1] > limit * (1 + 1e-12):
         typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
@@ -143,22 +143,27 @@ def rayleigh(
     alpha: Annotated[float | None, typer.Option("--alpha", help="The scheme's alpha.")] = None,
     delta: Annotated[float | None, typer.Option("--delta", help="The scheme's delta.")] = None,
     gg: Annotated[float | None, typer.Option("--gg", help="Discount of a step.")] = None,
-    a0: Annotated[float | None, typer.Option("--a0", help="Back: mass damping that is wanted.", metavar="1/S")] = None,
-    a1: Annotated[float | None, typer.Option("--a1", help="Back: stiffness damping.", metavar="S")] = None,
+    a0: Annotated[
+        float | None, typer.Option("--a0", help="In reverse: the mass damping you want.", metavar="1/S")
+    ] = None,
+    a1: Annotated[
+        float | None, typer.Option("--a1", help="In reverse: the stiffness damping you want.", metavar="S")
+    ] = None,
     ratios: Annotated[
         list[str] | None,
-        typer.Option("--ratio", help="Back: a ratio at a frequency, 5=0.02; give two.", metavar="HZ=XI"),
+        typer.Option("--ratio", help="In reverse: a damping ratio at a frequency, 5=0.02; give two.", metavar="HZ=XI"),
     ] = None,
-    keep_step: Annotated[bool, typer.Option("--keep-dt", help="Back: find delta and gg at this dt.")] = False,
+    keep_step: Annotated[bool, typer.Option("--keep-dt", help="In reverse: keep dt and find delta and gg.")] = False,
     low: Annotated[float | None, typer.Option("--from", help="Lowest frequency shown.", metavar="HZ")] = None,
     high: Annotated[float | None, typer.Option("--to", help="Highest frequency shown.", metavar="HZ")] = None,
     figure: FigureOption = None,
 ) -> None:
-    """Translate the damping that a time step hides into Rayleigh's a0 and a1, or a wanted one into dt, delta and gg.
+    """Translate the damping that a time step hides into Rayleigh's a0 and a1, or what you want into dt, delta and gg.
 
     Example: [bold]dda-validate rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
 
-    C = a0 M + a1 K, as other codes take it. Back: --ratio 2=0.05 --ratio 20=0.05, or --a0 and --a1.
+    C = a0 M + a1 K, as other codes take it. In reverse, say what you want: --ratio 2=0.05 --ratio 20=0.05, or --a0
+    and --a1.
     """
     from dataclasses import replace
 

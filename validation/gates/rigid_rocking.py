@@ -45,34 +45,30 @@ class Rectangle:
 
     def quarter_period(self, tilt: float) -> float:
         """Return the time from rest at a tilt [rad] until the base lies flat [s]."""
+        return _time(lambda x: 2 * self.rate2 * _less(self.alpha - tilt, x), tilt)
 
-        def rate2(theta: Array) -> Array:
-            return 2 * self.rate2 * _cosines(self.alpha - tilt, self.alpha - theta)
-
-        return _time(rate2, tilt, 0.0)
+    def landing_rate(self, tilt: float) -> float:
+        """Return the rate at which the base of a block that was let go at a tilt comes down [rad/s]."""
+        return math.sqrt(2 * self.rate2 * float(_less(self.alpha - tilt, np.array(tilt))))
 
     def fall_time(self, start: float, turned: float) -> float:
         """Return the time from rest at psi = `start` until it has turned by `turned` [rad], in s."""
-
-        def rate2(psi: Array) -> Array:
-            return 2 * self.rate2 * _cosines(start, psi)
-
-        return _time(rate2, start, start + turned)
+        return _time(lambda x: 2 * self.rate2 * _less(start, x), turned)
 
     def squared_rate(self, start: float, duration: float) -> float:
         """Return the integral of psi'^2 over a time from rest at psi = `start` [rad^2/s]."""
         turned = _root(lambda angle: self.fall_time(start, angle) - duration, 0.0, math.pi - start)
-        rates = np.sqrt(2 * self.rate2 * _cosines(start, start + turned * (1 + NODES) / 2))
+        rates = np.sqrt(2 * self.rate2 * _less(start, turned * (1 + NODES) / 2))
         return float(turned / 2 * np.sum(WEIGHTS * rates))
 
     def pulse_rate2(self, k: float, theta: Array) -> Array:
         """Return theta'^2 of a block that was at rest when its base began to accelerate by k g [rad^2/s^2]."""
-        rise = k * (math.sin(self.alpha) - np.sin(self.alpha - theta)) - _cosines(self.alpha - theta, self.alpha)
-        return np.asarray(2 * self.rate2 * rise)
+        pushed = 2 * k * np.cos(self.alpha - theta / 2) * np.sin(theta / 2)
+        return np.asarray(2 * self.rate2 * (pushed + _less(self.alpha, -theta)))
 
     def pulse_end(self, k: float, duration: float) -> float:
         """Return the tilt at the end of the pulse [rad]."""
-        return _root(lambda theta: _time(lambda x: self.pulse_rate2(k, x), 0.0, theta) - duration, 0.0, 2 * self.alpha)
+        return _root(lambda theta: _time(lambda x: self.pulse_rate2(k, x), theta) - duration, 0.0, 2 * self.alpha)
 
     def pulse_threshold(self, duration: float) -> float:
         """Return the least k that overturns the block.
@@ -82,7 +78,7 @@ class Rectangle:
 
         def spare(k: float) -> float:
             theta = self.alpha - math.asin(math.sin(self.alpha) - (1 - math.cos(self.alpha)) / k)
-            return duration - _time(lambda x: self.pulse_rate2(k, x), 0.0, theta)
+            return duration - _time(lambda x: self.pulse_rate2(k, x), theta)
 
         return _root(spare, math.tan(self.alpha) * (1 + 1e-6), 100.0)
 
@@ -96,24 +92,18 @@ class Rectangle:
         """Return the time at which the centroid passes over the corner after a pulse that overturns the block [s]."""
         end = self.pulse_end(k, duration)
         held = float(self.pulse_rate2(k, np.array(end)))
-
-        def rate2(theta: Array) -> Array:
-            return np.asarray(held + 2 * self.rate2 * _cosines(self.alpha - end, self.alpha - theta))
-
-        return duration + _time(rate2, end, self.alpha)
+        return duration + _time(lambda x: held + 2 * self.rate2 * _less(self.alpha - end, -x), self.alpha - end)
 
 
-def _cosines(one: float | Array, other: float | Array) -> Array:
-    """Return cos(one) - cos(other) without loss of digits."""
-    first, second = np.asarray(one), np.asarray(other)
-    return np.asarray(2 * np.sin((first + second) / 2) * np.sin((second - first) / 2))
+def _less(angle: float, turned: Array) -> Array:
+    """Return cos(angle) - cos(angle + turned) without loss of digits."""
+    return np.asarray(2 * np.sin(angle + turned / 2) * np.sin(turned / 2))
 
 
-def _time(rate2: Callable[[Array], Array], start: float, end: float) -> float:
-    """Return the time between two angles, at the first of which the block may be at rest [s]."""
+def _time(rate2: Callable[[Array], Array], turned: float) -> float:
+    """Return the time of a turn by its squared rate over the angle turned; the block may be at rest at first [s]."""
     s = (1 + NODES) / 2
-    rates = np.sqrt(rate2(start + (end - start) * s * s))
-    return float(abs(end - start) * np.sum(WEIGHTS * s / rates))
+    return float(turned * np.sum(WEIGHTS * s / np.sqrt(rate2(turned * s * s))))
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:

@@ -54,7 +54,7 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
-NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.FRICTION, features.LAGGED}
+NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.LAGGED}
 
 
 class OneBlock(Prepared):

@@ -171,7 +171,7 @@ class AdaptiveMesh(Prepared):
         return to_run(self.scene, found, built=own.building)
 
 
-# J, in the order of `STORED` and `LOST`, without friction
+# J, in the order of `STORED` and `LOST`
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
 
@@ -217,7 +217,7 @@ class OpeningMesh(Prepared):
         from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 
         found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
-        seen, energies = found.columns, zip((*STORED, *LOST[:3]), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
+        seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = seen["contact_pressure"] * self.scene.block.base_length
         return ContactRecord(
             time=found.time,
@@ -269,7 +269,7 @@ class FiniteElements(Solver):
         return tuple(dict.fromkeys((*own, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or what does not go together with unilateral contact."""
+        """Return None, or what does not go together with damping."""
         return features.damping_apart(scene)
 
     def build(self, scene: Scene, full: bool) -> Prepared:

@@ -13,7 +13,7 @@ from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-INSIDE = 15  # characters of a block's width in the drawing
+INSIDE, NARROWEST = 15, 5  # characters of a block's width in the drawing
 SCHEMES = {
     (0.5, 1.0): "constant acceleration",
     (0.25, 0.5): "average acceleration",
@@ -96,45 +96,59 @@ def _table(found: Sequence[numbers.Range]) -> list[Line]:
 
 
 def block(scene: Scene) -> Iterator[str]:
-    """Yield a block on its springs, with its parameters beside it."""
-    b, c = scene.block, scene.contact
-    material = f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}"
-    walls = [_centred(text) for text in ("", _size(scene), _cut(scene), "")]
-    yield from _loads(scene)
-    yield f"  +{'-' * INSIDE}+"
-    for text, beside in zip(walls, ("", material, _start(scene), ""), strict=True):
-        yield f"  |{text}|   {beside}".rstrip()
-    yield f"  +{'-' * INSIDE}+"
-    if c.gap:
-        yield f"{' ' * (INSIDE + 7)}gap {c.gap:g} m"
-    yield f"  {'z' if c.law == 'locked' else 'x'}{' ' * INSIDE}{'z' if c.law == 'locked' else 'x'}   {_springs(scene)}"
-    yield f" {'=' * (INSIDE + 4)}  {_base(scene)}".rstrip()
+    """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
+    across, rows = _extent(scene)
+    beside = [*filter(None, (_size(scene), _material(scene), _start(scene)))]
+    foot = "z" if scene.contact.law == "locked" else "x"
+    yield f"  {_arrows(scene, across).ljust(across + 2)}   {_loads(scene)}"
+    yield f"  +{'-' * across}+"
+    for text in (*beside, *[""] * (rows - len(beside))):
+        yield f"  |{' ' * across}|   {text}".rstrip()
+    yield f"  +{'-' * across}+"
+    first, *more = _springs(scene)
+    yield f"  {foot}{' ' * across}{foot}   {first}"
+    yield f" {'=' * (across + 4)}  {', '.join(more)}".rstrip()
 
 
-def _centred(text: str) -> str:
-    return text[:INSIDE].center(INSIDE)
+def _extent(scene: Scene) -> tuple[int, int]:
+    """Return columns and rows of the block's inside; a row is as high as two columns are wide."""
+    points = scene.block.outline
+    slenderness = (max(x for x, _ in points) - min(x for x, _ in points)) / (
+        max(y for _, y in points) - min(y for _, y in points)
+    )
+    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+    return across, min(max(3, round(across / slenderness / 2)), INSIDE // 2)
 
 
 def _size(scene: Scene) -> str:
-    points = scene.block.outline
-    xs, ys = [x for x, _ in points], [y for _, y in points]
-    return f"{max(xs) - min(xs):.3g} x {max(ys) - min(ys):.3g} m"
-
-
-def _cut(scene: Scene) -> str:
     b = scene.block
-    if b.subdivide is not None:
-        return f"{b.subdivide[0]} x {b.subdivide[1]} {b.pattern[:-1]}s"[:INSIDE]
-    return "" if b.vertices is None else f"{len(b.vertices)} vertices"
+    xs, ys = [x for x, _ in b.outline], [y for _, y in b.outline]
+    cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
+    shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
+    return f"{max(xs) - min(xs):.3g} m wide, {max(ys) - min(ys):.3g} m high{shape}{cut}"
+
+
+def _material(scene: Scene) -> str:
+    b = scene.block
+    return f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}"
 
 
 def _start(scene: Scene) -> str:
-    b = scene.block
-    parts = (f"v(0) = {b.velocity:g} m/s" if b.velocity else "", f"tilted by {b.tilt:g} deg" if b.tilt else "")
+    b, c = scene.block, scene.contact
+    parts = (
+        f"starts at {b.velocity:g} m/s" if b.velocity else "",
+        f"tilted by {b.tilt:g} deg" if b.tilt else "",
+        f"gap of {c.gap:g} m" if c.gap else "",
+    )
     return ", ".join(filter(None, parts))
 
 
-def _loads(scene: Scene) -> Iterator[str]:
+def _arrows(scene: Scene, across: int) -> str:
+    mark = "v" if scene.load.pressure else ">" if scene.load.traction else ""
+    return " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
+
+
+def _loads(scene: Scene) -> str:
     load = scene.load
     said = [
         f"{word} = {value:g} {unit}"
@@ -147,22 +161,18 @@ def _loads(scene: Scene) -> Iterator[str]:
         )
         if value
     ]
-    mark = "v" if load.pressure else ">" if load.traction else " "
-    arrows = "   ".join([mark] * (INSIDE // 4 + 1))
-    yield f"   {arrows.ljust(INSIDE)}    {', '.join(said) or 'no load'}"
+    moved = [] if load.base_motion is None else [f"base moved by {load.base_motion.rpartition('/')[2]}"]
+    return ", ".join([*said, *moved]) or "no load"
 
 
-def _springs(scene: Scene) -> str:
+def _springs(scene: Scene) -> Iterator[str]:
+    """Yield the springs of the corners, then how they hold."""
     c = scene.contact
     springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
-    shear = "" if c.shear_stiffness is None else f", shear {c.shear_stiffness:g} N/m"
-    law = "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
-    friction = "" if c.friction is None else f", friction {c.friction:g} deg, cohesion {c.cohesion:g} Pa"
-    return f"{springs}{shear}; {law}{friction}"
-
-
-def _base(scene: Scene) -> str:
-    return "" if scene.load.base_motion is None else f"moved by {scene.load.base_motion.rpartition('/')[2]}"
+    yield springs + ("" if c.shear_stiffness is None else f", shear {c.shear_stiffness:g} N/m")
+    yield "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
+    if c.friction is not None:
+        yield f"friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
 
 
 def column(scene: Scene) -> Iterator[str]:
@@ -175,8 +185,8 @@ def column(scene: Scene) -> Iterator[str]:
     told = what if drive.shape is None else f"{what}, {strength}"
     yield f"  +{'-' * INSIDE}+   {f'{told} on the top, {drawn.motion} waves' if drive.at == 'top' else 'free top'}"
     for layer in reversed(drawn.layer):
-        cut = f"{layer.thickness:g} m in {layer.blocks}"
-        yield f"  |{_centred(cut)}|   rho = {layer.density:g} kg/m3, E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
+        yield f"  |{cut}|   rho = {layer.density:g} kg/m3, E = {layer.young:g} Pa, mu = {layer.poisson:g}"
         yield f"  +{'-' * INSIDE}+"
     for joint in drawn.joint:
         yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {joint.stiffness:g} Pa/m"

@@ -178,4 +178,5 @@ def print_changes(found: list[Change]) -> None:
         printer.print(table)
     kinds = [c.kind for c in found]
     words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
-    printer.print(f"{len(found)} gates differ: {words}" if found else "no gate differs", markup=False)
+    many = "1 gate differs" if len(found) == 1 else f"{len(found)} gates differ"
+    printer.print(f"{many}: {words}" if found else "no gate differs", markup=False)

@@ -16,7 +16,7 @@ from validation.runs.files import write_csv
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.solvers.rigid import impact_restitution
+from validation.solvers.rigid.impacts import impact_restitution
 from validation.studies.bands import cases
 from validation.studies.contact.rebound import STIFF
 from validation.studies.opening import front
@@ -78,8 +78,8 @@ def write_contact_pack(directory: Path) -> int:
         write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
         for motion in scene.run.solvers:
             rows += numbers(scene, motion, place / "histories")
-    write_text(place / NUMBERS, _as_csv(rows))
-    write_text(place / MAP, _as_csv(list(restitutions())))
+    write_text(place / NUMBERS, as_csv(rows))
+    write_text(place / MAP, as_csv(list(restitutions())))
     write_text(place / "README.md", README)
     return len(rows)
 
@@ -132,9 +132,10 @@ def restitutions() -> Iterator[dict[str, float]]:
                 yield {"alpha": alpha, "delta": delta, "omega": omega, "theta": theta, "restitution": e}
 
 
-def _as_csv(rows: list[Any]) -> str:
+def as_csv(rows: list[Any]) -> str:
+    """Return rows as a table, with all digits of its floats."""
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)  # a float is written with all its digits
+    writer.writerows(rows)
     return text.getvalue()

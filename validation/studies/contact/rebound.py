@@ -20,7 +20,7 @@ from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.rigid import impact_restitution, impact_statistics
+from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
 

@@ -81,12 +81,13 @@ def swing_gates() -> Iterator[Gate]:
     """Yield the gates on blocks that are let go."""
     why = (
         "rigid block, by quadrature; below: the corner settles by up to 2 m g / p, which the tilt need not go back; "
-        "above: a straight line beyond a step, (dt / T)^2"
+        "both: the gap's straight line within a step, dt^2 theta'' / (theta' T) at the landing"
     )
     falls = "delta = 1 gains no energy; how much an impact takes depends on step and springs and is no property of DDA"
     for case in cases(*LET_GO):
         block, tilt = rectangle(case), math.radians(case.block.tilt)
-        late = (case.time.step / block.quarter_period(tilt)) ** 2
+        line = case.time.step**2 * block.rate2 * math.sin(block.alpha) / block.landing_rate(tilt)
+        late = line / block.quarter_period(tilt)
         early = settlement(case) / (block.width * tilt) + late
         yield Gate(case.name, (SWING,), "quarter period", 1 - early, 1 + late, why)
         yield Gate(case.name, (SWING,), "rate ratio", 0.0, 1.0, falls)

@@ -1,4 +1,4 @@
-"""Adapters of rigid bodies: the restitution of a mass on a penalty contact."""
+"""The restitution of a rigid mass on a penalty contact."""
 
 from __future__ import annotations
 

@@ -1,0 +1,310 @@
+"""A rigid block that rocks on a rigid base about its lower corners.
+
+With a and h width and height, R half of the diagonal, alpha = atan(a / h), p^2 = 3 g / (4 R) and theta the rotation,
+positive about the right corner and towards +x, under an acceleration A(t) of the base towards +x::
+
+    theta'' = -p^2 (sin(alpha s - theta) + A / g cos(alpha s - theta)),    s = sign(theta)
+
+nothing being small. It rises from rest once |A| > g tan(alpha), and each time it comes down on the other corner its
+rate is multiplied by a restitution, Housner's 1 - 3/2 sin^2(alpha) where no other is given: the moment of momentum
+about the new corner is kept. Sliding and bouncing are left out.
+
+Sources: G. W. Housner, The behavior of inverted pendulum structures during earthquakes, Bulletin of the Seismological
+Society of America 53 (1963); the quarter period is the incomplete elliptic integral of an inverted pendulum.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate import solve_ivp
+from scipy.special import ellipkinc
+
+from fem_reference.problem.problem import Array
+
+ACCURACY = 1e-13
+"""Relative tolerance of the integration."""
+STILL = 1e-9
+"""Rate below which the block has come to rest, over p."""
+LONG = 60.0
+"""Time in which what is not at its balance to the last digit has left it, times p."""
+SWINGS = 10_000
+"""Greatest number of swings."""
+FALLEN = math.pi / 2
+"""Rotation at which the block lies on its side and the motion ends [rad]."""
+
+
+@dataclass(frozen=True)
+class RockingBlock:
+    """A rigid rectangle on a rigid base.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    width: float  # a [m]
+    height: float  # h [m]
+    gravity: float = 9.81  # g [m/s2]
+    restitution: float | None = None  # rate after over rate before an impact [-]; None: Housner's
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height", "gravity"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise ValueError(f"{name}: must be positive and finite, got {getattr(self, name)!r}")
+        if self.restitution is not None and not 0 <= self.restitution <= 1:
+            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
+
+    @property
+    def alpha(self) -> float:
+        """Rotation at which the centre stands above the corner, atan(a / h) [rad]; also the slope that topples it."""
+        return math.atan2(self.width, self.height)
+
+    @property
+    def p(self) -> float:
+        """sqrt(3 g / (4 R)), the rate of the upright pendulum of this inertia [1/s]."""
+        return math.sqrt(1.5 * self.gravity / math.hypot(self.width, self.height))
+
+    @property
+    def lifting(self) -> float:
+        """Acceleration of the base at which a corner lifts, g tan(alpha) = g a / h [m/s2]."""
+        return self.gravity * self.width / self.height
+
+    @property
+    def ratio(self) -> float:
+        """Rate after over rate before an impact [-]; its square is the share of energy that is left."""
+        return 1 - 1.5 * math.sin(self.alpha) ** 2 if self.restitution is None else self.restitution
+
+    def quarter_period(self, tilt: float) -> float:
+        """Time in which the block comes down, released at rest from a tilt [s]; infinite at alpha, where it balances.
+
+        With psi = alpha - tilt it is F(x, k) / p, k = cos(psi / 2) and
+        tan(x) = sqrt(sin(alpha - tilt / 2) sin(tilt / 2)) / (cos(alpha / 2) sin(psi / 2)).
+        """
+        self._check_tilt(tilt)
+        if tilt == self.alpha:
+            return math.inf
+        psi = self.alpha - tilt
+        rise = math.sqrt(math.sin(self.alpha - tilt / 2) * math.sin(tilt / 2))
+        angle = math.atan2(rise, math.cos(self.alpha / 2) * math.sin(psi / 2))
+        return float(ellipkinc(angle, math.cos(psi / 2) ** 2)) / self.p
+
+    def slender_quarter_period(self, tilt: float) -> float:
+        """Housner's quarter period of a slender block, acosh(1 / (1 - tilt / alpha)) / p [s]."""
+        self._check_tilt(tilt)
+        return math.inf if tilt == self.alpha else math.acosh(1 / (1 - tilt / self.alpha)) / self.p
+
+    def small_quarter_period(self, tilt: float) -> float:
+        """Limit of the quarter period for a small tilt, sqrt(2 tilt I / (m g a / 2)) [s]."""
+        self._check_tilt(tilt)
+        return math.sqrt(2 * tilt / math.sin(self.alpha)) / self.p
+
+    def _check_tilt(self, tilt: float) -> None:
+        if not 0 <= tilt <= self.alpha:
+            raise ValueError(f"tilt: must be from 0 to alpha = {self.alpha:g} rad, got {tilt!r}")
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """Acceleration of the base towards +x from t = 0 on for a time, a half sine or a rectangle.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    amplitude: float = 0.0  # A [m/s2]
+    duration: float = 0.0  # [s]
+    shape: str = "half-sine"  # ``"half-sine"`` or ``"rectangle"``
+
+    def __post_init__(self) -> None:
+        if self.shape not in ("half-sine", "rectangle"):
+            raise ValueError(f"shape: must be 'half-sine' or 'rectangle', got {self.shape!r}")
+        if not (math.isfinite(self.amplitude) and math.isfinite(self.duration) and self.duration >= 0):
+            raise ValueError(f"pulse: must be finite numbers, got {self.amplitude!r} for {self.duration!r} s")
+
+    def __call__(self, time: float) -> float:
+        """Acceleration at an instant of the pulse [m/s2]."""
+        return self.amplitude * (math.sin(math.pi * time / self.duration) if self.shape == "half-sine" else 1.0)
+
+    def exceeds(self, acceleration: float) -> float | None:
+        """The first instant at which its size is beyond a positive acceleration [s], None if it never is."""
+        if not (self.duration and abs(self.amplitude) > acceleration):
+            return None
+        if self.shape == "rectangle":
+            return 0.0
+        return self.duration / math.pi * math.asin(acceleration / abs(self.amplitude))
+
+
+STILL_BASE = Pulse()
+
+
+@dataclass(frozen=True)
+class Swing:
+    """The block on one of its corners."""
+
+    start: float  # first instant [s]
+    values: Callable[[Array], Array]  # rotation [rad] and its rate [rad/s] at instants, shape (2, times)
+
+
+@dataclass(frozen=True)
+class RockingMotion:
+    """Motion of a block from t = 0 to `end`."""
+
+    end: float  # last instant [s]
+    swings: tuple[Swing, ...]  # in the order of time
+    impacts: tuple[float, ...]  # instants at which it came down on the other corner [s]
+    overturned: bool  # whether it fell on its side
+
+    def at(self, times: ArrayLike) -> tuple[Array, Array]:
+        """Rotation [rad] and its rate [rad/s] at instants, after an impact at it.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
+        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
+            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
+        index = np.searchsorted([swing.start for swing in self.swings], t, side="right") - 1
+        found = np.empty((2, len(t)))
+        for i in np.unique(index):
+            found[:, index == i] = self.swings[i].values(t[index == i])
+        return found[0], found[1]
+
+
+def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STILL_BASE) -> RockingMotion:
+    """The motion of a block that is released at rest, from impact to impact.
+
+    Parameters
+    ----------
+    block
+        The block.
+    end
+        Last instant [s]; the motion ends earlier if the block falls on its side.
+    tilt
+        Rotation at t = 0 [rad], positive about the right corner.
+    pulse
+        Acceleration of the base.
+
+    Raises
+    ------
+    ValueError
+        If `end` is not positive and finite or the tilt not below a right angle.
+    ArithmeticError
+        If the block comes down more than 10000 times.
+    """
+    if not (math.isfinite(end) and end > 0):
+        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    if not abs(tilt) < FALLEN:
+        raise ValueError(f"tilt: must be below a right angle, got {tilt!r}")
+    time, angle, rate, fallen = 0.0, tilt, 0.0, False
+    swings: list[Swing] = []
+    impacts: list[float] = []
+    while time < end and not fallen:
+        if len(swings) > SWINGS:
+            raise ArithmeticError(f"more than {SWINGS} swings by {time:g} s")
+        if angle == 0 and abs(rate) < STILL * block.p:
+            wakes = _wakes(block, pulse, time)
+            swings.append(Swing(time, lambda t: np.zeros((2, len(t)))))
+            time, rate = (end if wakes is None else min(wakes, end)), 0.0
+            if time == end:
+                break
+        side = _sign(angle) or _sign(rate) or -_sign(pulse.amplitude)
+        last = pulse.duration if time < pulse.duration < end else end
+        done = _swing(block, pulse, side, (time, last), (angle, rate))
+        swings.append(Swing(time, done.sol))
+        time, angle, rate = float(done.t[-1]), float(done.y[0, -1]), float(done.y[1, -1])
+        fallen = len(done.t_events[1]) > 0
+        if len(done.t_events[0]):
+            impacts.append(time)
+            angle, rate = 0.0, rate * block.ratio
+    return RockingMotion(min(time, end), tuple(swings), tuple(impacts), fallen)
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+def _wakes(block: RockingBlock, pulse: Pulse, time: float) -> float | None:
+    """When a block at rest begins to rock."""
+    first = pulse.exceeds(block.lifting)
+    if first is None or time >= pulse.duration - first:
+        return None
+    return max(first, time)
+
+
+def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, float], start: tuple[float, float]) -> Any:
+    """The block on a corner until it comes down or falls, or to the end of a span."""
+    alpha, square, g = block.alpha * side, block.p**2, block.gravity
+
+    def motion(t: float, y: Array) -> list[float]:
+        pushed = pulse(t) / g if span[1] <= pulse.duration else 0.0
+        lean = alpha - y[0]
+        return [y[1], -square * (math.sin(lean) + pushed * math.cos(lean))]
+
+    def lands(t: float, y: Array) -> float:
+        return side * float(y[0])
+
+    def falls(t: float, y: Array) -> float:
+        return FALLEN - side * float(y[0])
+
+    for event in (lands, falls):
+        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+    return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=[lands, falls], dense_output=True)
+
+
+def overturns(block: RockingBlock, pulse: Pulse) -> bool:
+    """Whether a block at rest falls under a pulse, at whatever time: its energy at the end of the pulse decides."""
+    first = pulse.exceeds(block.lifting)
+    if first is None:
+        return False
+    motion = solve(block, pulse.duration, pulse=pulse)
+    if motion.overturned:
+        return True
+    angle, rate = (float(x[0]) for x in motion.at([motion.end]))
+    side = _sign(angle) or _sign(rate)
+    if rate**2 / 2 + block.p**2 * math.cos(block.alpha - abs(angle)) < block.p**2:
+        return abs(angle) > block.alpha
+    return rate * side >= 0 or solve(block, pulse.duration + LONG / block.p, pulse=pulse).overturned
+
+
+def overturning_amplitude(block: RockingBlock, duration: float, shape: str = "half-sine") -> float:
+    """The least amplitude of a pulse that overturns a block at rest [m/s2].
+
+    Closed forms of slender blocks, with x = A / (g alpha): a rectangle overturns at cosh(p T) = 1 + 1 / (2 x (x - 1)),
+    a half sine of rate w = pi / T, which lifts the block at sin(w t0) = 1 / x, at
+    x p (w e^(-p (T - t0)) + p sin(w t0) + w cos(w t0)) = p^2 + w^2.
+
+    Parameters
+    ----------
+    block
+        The block.
+    duration
+        Duration of the pulse [s].
+    shape
+        ``"half-sine"`` or ``"rectangle"``.
+
+    Raises
+    ------
+    ValueError
+        If the duration is not positive.
+    """
+    if not (math.isfinite(duration) and duration > 0):
+        raise ValueError(f"duration: must be positive and finite, got {duration!r}")
+    low = high = block.lifting
+    while not overturns(block, Pulse(high, duration, shape)):
+        low, high = high, 2 * high
+    while high - low > 1e-12 * high:
+        middle = (low + high) / 2
+        fell = overturns(block, Pulse(middle, duration, shape))
+        low, high = (low, middle) if fell else (middle, high)
+    return high

@@ -1,0 +1,336 @@
+"""Newmark's sliding block: a rigid mass on a base that moves along its slope, exact from stick to slip.
+
+With b the slope, Y = g cos(b) tan(phi) + C what friction and cohesion resist per mass, a(t) the acceleration of the
+base towards +x (down the slope) and s the slide of the mass over the base::
+
+    at rest on the base   |g sin b - a| <= Y
+    sliding               s'' = g sin b - a - Y sign(s')
+
+Between the changes of a(t) the slide is a polynomial, with a sine where the base vibrates; the instants at which the
+mass sticks and slips are the roots of these. It is what a block on ever stiffer springs tends to.
+
+Source: N. M. Newmark, Effects of earthquakes on dams and embankments, Geotechnique 15 (1965); a rectangular pulse of
+acceleration A g on level ground that gives the base the velocity V moves the mass by V^2 / (2 g N) (1 - N / A).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from fem_reference.problem.problem import Array
+
+NOISE = 1e-12
+"""Share of an acceleration, or of a time, that counts as rounding."""
+ROUNDING = 4 * np.finfo(float).eps
+"""Relative width of a root's bracket."""
+
+
+@dataclass(frozen=True)
+class SlidingBlock:
+    """A rigid mass on a slope.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    slope: float  # angle b of the base, down towards +x [deg]
+    friction: float  # angle phi of friction [deg]
+    gravity: float = 9.81  # acceleration of gravity [m/s2]
+    cohesion: float = 0.0  # C, cohesive force over mass [m/s2]
+    two_way: bool = True  # whether it also slides up the slope; Newmark's own analysis holds it there
+
+    def __post_init__(self) -> None:
+        for name in ("slope", "friction", "gravity", "cohesion"):
+            if not math.isfinite(getattr(self, name)):
+                raise ValueError(f"{name}: must be a finite number, got {getattr(self, name)!r}")
+        if not -90 < self.slope < 90:
+            raise ValueError(f"slope: must be between -90 and 90, got {self.slope!r}")
+        if not 0 <= self.friction < 90:
+            raise ValueError(f"friction: must be at least 0 and below 90, got {self.friction!r}")
+        for name in ("gravity", "cohesion"):
+            if getattr(self, name) < 0:
+                raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
+
+    @property
+    def driving(self) -> float:
+        """G sin b [m/s2]."""
+        return self.gravity * math.sin(math.radians(self.slope))
+
+    @property
+    def resistance(self) -> float:
+        """Y = g cos(b) tan(phi) + C [m/s2]."""
+        return self.gravity * math.cos(math.radians(self.slope)) * math.tan(math.radians(self.friction)) + self.cohesion
+
+    @property
+    def yield_acceleration(self) -> float:
+        """Acceleration of the base up the slope at which the mass begins to slide down, Y - g sin b [m/s2]."""
+        return self.resistance - self.driving
+
+    def push(self, way: int) -> float:
+        """Acceleration towards +x of a mass that slides towards +x (1) or -x (-1) over a base at rest [m/s2]."""
+        return self.driving - way * self.resistance
+
+
+@dataclass(frozen=True)
+class Segment:
+    """The base's acceleration over a time, a0 + a1 s + A sin(w s + p), after a jump of its velocity."""
+
+    start: float  # first instant [s]
+    end: float  # last instant [s]
+    jump: float = 0.0  # jump of the base's velocity at the first instant [m/s]
+    a0: float = 0.0  # acceleration at the first instant [m/s2]
+    a1: float = 0.0  # its rate [m/s3]
+    amplitude: float = 0.0  # A [m/s2]
+    rate: float = 1.0  # w [rad/s]
+    phase: float = 0.0  # p [rad]
+
+    def acceleration(self, s: ArrayLike) -> Array:
+        """Acceleration a time s after the start [m/s2]."""
+        t = np.asarray(s, dtype=float)
+        return np.asarray(self.a0 + self.a1 * t + self.amplitude * np.sin(self.rate * t + self.phase))
+
+    def velocity(self, s: ArrayLike) -> Array:
+        """Velocity gained since just after the start [m/s]."""
+        t = np.asarray(s, dtype=float)
+        swing = math.cos(self.phase) - np.cos(self.rate * t + self.phase)
+        return np.asarray(self.a0 * t + self.a1 * t**2 / 2 + self.amplitude / self.rate * swing)
+
+    def displacement(self, s: ArrayLike) -> Array:
+        """Displacement since the start, of a base that is at rest just after it [m]."""
+        t = np.asarray(s, dtype=float)
+        swing = t * math.cos(self.phase) - (np.sin(self.rate * t + self.phase) - math.sin(self.phase)) / self.rate
+        return np.asarray(self.a0 * t**2 / 2 + self.a1 * t**3 / 6 + self.amplitude / self.rate * swing)
+
+    @property
+    def grows(self) -> float:
+        """Rate of the acceleration at the start [m/s3]."""
+        return self.a1 + self.amplitude * self.rate * math.cos(self.phase)
+
+    def after(self, s: float) -> Segment:
+        """What is left of the segment a time s later."""
+        phase = math.remainder(self.phase + self.rate * s, 2 * math.pi)
+        return replace(self, start=self.start + s, jump=0.0, a0=self.a0 + self.a1 * s, phase=phase)
+
+    def reaches(self, value: float) -> list[float]:
+        """Times after the start at which the acceleration is a value [s], in their order, without the start."""
+        length = self.end - self.start
+        found = [(value - self.a0) / self.a1] if self.a1 else []
+        if self.amplitude:
+            found = list(self._swings(value, length))
+        return [s for s in found if NOISE * min(length, 1 / self.rate) < s <= length]
+
+    def _swings(self, value: float, length: float) -> Iterator[float]:
+        ratio = value / self.amplitude
+        if abs(ratio) < 1:
+            first = math.asin(ratio)
+            for turn in range(-1, math.ceil((self.rate * length + abs(self.phase)) / (2 * math.pi)) + 1):
+                angles = sorted((first, math.pi - first))
+                yield from ((angle + 2 * math.pi * turn - self.phase) / self.rate for angle in angles)
+
+
+def harmonic(amplitude: float, rate: float, duration: float) -> tuple[Segment, ...]:
+    """A base that vibrates with the acceleration A sin(w t), and then goes on at its velocity.
+
+    Parameters
+    ----------
+    amplitude
+        A [m/s2].
+    rate
+        w [rad/s].
+    duration
+        How long it vibrates [s].
+    """
+    if not (math.isfinite(amplitude) and rate > 0 and duration > 0):
+        raise ValueError(f"harmonic: rate and duration must be positive, got {rate!r} and {duration!r}")
+    return (Segment(0.0, duration, amplitude=amplitude, rate=rate), Segment(duration, math.inf))
+
+
+def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
+    """A record of the acceleration from t = 0 on, linear between its rows; a repeated instant is a jump, then zero.
+
+    Parameters
+    ----------
+    time
+        Instants [s], not falling, shape (rows,).
+    acceleration
+        Accelerations towards +x [m/s2], shape (rows,).
+    """
+    t, a = _rows("recorded", time, acceleration)
+    rises = [
+        Segment(p, q, a0=x, a1=(y - x) / (q - p))
+        for (p, q), (x, y) in zip(pairwise(t), pairwise(a), strict=True)
+        if q > p
+    ]
+    return (*rises, Segment(t[-1], math.inf))
+
+
+def moved(time: ArrayLike, displacement: ArrayLike) -> tuple[Segment, ...]:
+    """A record of the displacement from t = 0 on, linear between its rows: the base's velocity jumps, and ends at zero.
+
+    Parameters
+    ----------
+    time
+        Instants [s], rising, shape (rows,).
+    displacement
+        Displacements towards +x [m], shape (rows,).
+    """
+    t, x = _rows("moved", time, displacement)
+    if np.any(np.diff(t) <= 0):
+        raise ValueError("moved: instants must rise, got some that do not")
+    speeds = [0.0, *(np.diff(x) / np.diff(t)).tolist(), 0.0]
+    ends = [*t[1:], math.inf]
+    return tuple(Segment(p, q, jump=w - v) for p, q, (v, w) in zip(t, ends, pairwise(speeds), strict=True))
+
+
+def _rows(what: str, time: ArrayLike, values: ArrayLike) -> tuple[list[float], list[float]]:
+    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    if t.ndim != 1 or t.shape != x.shape or not len(t) or not np.all(np.isfinite([t, x])):
+        raise ValueError(f"{what}: must be finite numbers at as many instants, got shapes {t.shape} and {x.shape}")
+    if t[0] != 0 or np.any(np.diff(t) < 0):
+        raise ValueError(f"{what}: instants must begin at 0 and not fall, got the first {float(t[0])!r}")
+    return t.tolist(), x.tolist()
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The mass between two changes."""
+
+    base: Segment  # the base from the beginning of the stretch on
+    way: int  # 1 sliding towards +x, -1 towards -x, 0 at rest on the base
+    slide: float  # slide at the beginning [m]
+    velocity: float  # its rate [m/s]
+    push: float  # acceleration over a base at rest [m/s2]
+
+    def at(self, time: ArrayLike) -> tuple[Array, Array]:
+        """Slide [m] and its rate [m/s] at instants."""
+        s = np.asarray(time, dtype=float) - self.base.start
+        if self.way == 0:
+            return np.full_like(s, self.slide), np.zeros_like(s)
+        slide = self.slide + self.velocity * s + self.push * s**2 / 2 - self.base.displacement(s)
+        return slide, self.velocity + self.push * s - self.base.velocity(s)
+
+
+@dataclass(frozen=True)
+class SlidingMotion:
+    """Exact motion of a mass from t = 0 to `end`."""
+
+    block: SlidingBlock
+    end: float  # last instant [s]
+    stretches: tuple[Stretch, ...]  # the motion in the order of time
+
+    def at(self, times: ArrayLike) -> tuple[Array, Array]:
+        """Slide over the base towards +x [m], and its rate [m/s], each of shape (times,).
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
+        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
+            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
+        index = np.searchsorted([one.base.start for one in self.stretches], t, side="right") - 1
+        found = np.empty((2, len(t)))
+        for i in np.unique(index):
+            found[:, index == i] = self.stretches[i].at(t[index == i])
+        return found[0], found[1]
+
+    @property
+    def switches(self) -> tuple[tuple[float, int], ...]:
+        """Instants [s] at which the mass begins to slide (1, -1: the way) or comes to rest on the base (0)."""
+        ways = [(0.0, 0), *((one.base.start, one.way) for one in self.stretches)]
+        return tuple(after for before, after in pairwise(ways) if before[1] != after[1])
+
+    @property
+    def slip(self) -> float:
+        """Length of the way over the base, both directions added [m]."""
+        ends = [*(float(self.at([one.base.start])[0][0]) for one in self.stretches), float(self.at([self.end])[0][0])]
+        return math.fsum(abs(after - before) for before, after in pairwise(ends))
+
+
+def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
+    """The exact motion of a mass that is at rest with its base before t = 0.
+
+    Parameters
+    ----------
+    block
+        The mass and its slope.
+    base
+        The base, by `harmonic`, `recorded` or `moved`.
+    end
+        Last instant [s].
+
+    Raises
+    ------
+    ValueError
+        If `end` is not positive and finite.
+    """
+    if not (math.isfinite(end) and end > 0):
+        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    slide, velocity, found = 0.0, 0.0, list[Stretch]()
+    for segment in base:
+        left: Segment | None = replace(segment, end=min(segment.end, end))
+        while left is not None and left.start < left.end:
+            stretch = _begin(block, left, slide, velocity - left.jump)
+            found.append(stretch)
+            after = _change(block, stretch)
+            s = left.end - left.start if after is None else after
+            slide, velocity = (float(x) for x in stretch.at(stretch.base.start + s))
+            velocity = velocity if after is None else 0.0
+            left = None if after is None else left.after(s)
+    return SlidingMotion(block, float(end), tuple(found))
+
+
+def _begin(block: SlidingBlock, base: Segment, slide: float, velocity: float) -> Stretch:
+    """The mass from an instant on."""
+    way = int(np.sign(velocity)) or _yields(block, base)
+    if way < 0 and not block.two_way:
+        way, velocity = 0, 0.0
+    return Stretch(base, way, slide, velocity if way else 0.0, block.push(way))
+
+
+def _yields(block: SlidingBlock, base: Segment) -> int:
+    """The way in which a mass at rest on its base begins to slide, 0 if it stays."""
+    now = float(base.acceleration(0.0))
+    for way in (1, -1):
+        excess, size = way * (block.push(way) - now), block.gravity + abs(now)
+        if excess > NOISE * size or (abs(excess) <= NOISE * size and way * base.grows < 0):
+            return way
+    return 0
+
+
+def _change(block: SlidingBlock, stretch: Stretch) -> float | None:
+    """Time after the beginning at which the mass sticks or slips, None if it does not within the segment."""
+    return _slips(block, stretch.base) if stretch.way == 0 else _sticks(stretch)
+
+
+def _slips(block: SlidingBlock, base: Segment) -> float | None:
+    found = []
+    for way in (1, -1) if block.two_way else (1,):
+        for s in base.reaches(block.push(way)):
+            if way * base.after(s).grows < 0:
+                found.append(s)
+    return min(found, default=None)
+
+
+def _sticks(stretch: Stretch) -> float | None:
+    """The first root of the rate of the slide, which is monotone between the roots of its own rate."""
+    base, way = stretch.base, stretch.way
+
+    def rate(s: float) -> float:
+        return way * (stretch.velocity + stretch.push * s - float(base.velocity(s)))
+
+    bounds = [0.0, *base.reaches(stretch.push), base.end - base.start]
+    for low, high in pairwise(bounds):
+        if rate(high) < 0:
+            return float(brentq(rate, low, high, xtol=1e-300, rtol=ROUNDING)) if rate(low) > 0 else low
+    return None

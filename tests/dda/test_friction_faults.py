@@ -1,0 +1,271 @@
+"""Slips that frictional contact codes are known for, each put in once: some check must notice it."""
+
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.frictional import KNOWN, cases, held, sliding, square
+
+import dda.contact.friction as friction
+import dda.contact.glued as glued
+import dda.contact.rubbing_points as rubbing_points
+import dda.contact.rules as rules
+import dda.one_block.unilateral as unilateral
+import dda.one_block.unilateral_step as step
+from dda import (
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    opening_subdivided,
+    solve_opening_system,
+    solve_unilateral,
+)
+from dda.contact.iteration import NONE, Iteration
+from dda.contact.lagged import lagged
+from dda.contact.unilateral import OPEN, SLIP
+
+PLACE = ("horizontal_displacement", "displacement", "rotation")
+MODEL = KNOWN["incline"].model
+
+
+def invariants():
+    for seed, scheme in cases(12):
+        held(seed, scheme, 120)
+
+
+def events():
+    """Of second order: three times the steps, a ninth of the error, but for where a switch falls within its step."""
+    for name, time in (("rubbing", 0.01), ("pulled", 0.03)):
+        errors = []
+        for steps in (500, 1500):
+            scheme = Scheme(0.25, 0.5, 1.0, time / steps, "consistent")
+            result = solve_unilateral(KNOWN[name].model, scheme, steps, PLACE)
+            errors.append(np.linalg.norm([result.columns[c][-1] for c in PLACE] - np.array(KNOWN[name].at[time])))
+        assert errors[1] < errors[0] / 5
+
+
+def identity():
+    model = UnilateralModel(square(), Unilateral(1e9, 3e9, gap=1e-4, friction=0.27), gravity=9.81, slope=35.0)
+    own, must, size = sliding(model, Scheme(0.5, 1.0, 0.99, 3e-4), 120)
+    assert len(own) > 12 and np.max(np.abs(own - must)) < 1e-12 * np.max(size)
+
+
+def cutting():
+    """A step that is repeated begins where the failed one did: in free fall the velocity is that of the recursion."""
+    flying = replace(MODEL, contact=replace(MODEL.contact, gap=1.0), gravity=0.0, velocity=-0.8)
+    real = unilateral.advance
+    for model, first, steps in ((MODEL, 20, 30), (flying, 1, 3)):
+        calls = []
+
+        def stubborn(law, length, state, limit, carried=None, calls=calls, first=first):
+            calls.append(([*map(list, state[:3])], state.corners))
+            after, found = real(law, length, state, limit, carried)
+            fails = first < len(calls) <= first + 2
+            return (None, Iteration(None, limit, NONE)) if fails else (after, found)
+
+        unilateral.advance = stubborn
+        try:
+            result = solve_unilateral(model, Scheme(0.5, 1.0, 0.9, 2e-4), steps)
+        finally:
+            unilateral.advance = real
+        assert result.step_cuts[first] == 2 and calls[first] == calls[first + 1] == calls[first + 2]
+    assert result.velocity == pytest.approx([-0.8 * 0.9, -0.8 * 0.81, -0.8 * 0.729], rel=1e-14)
+
+
+def points():
+    """One sub-block, whose points are solved by another code, is the block."""
+    scheme = Scheme(0.5, 1.0, 1.0, 2e-4)
+    model = KNOWN["rubbing"].model
+    block = solve_unilateral(model, scheme, 150)
+    one = solve_opening_system(opening_subdivided(model, 1, 1, 1e15), scheme, 150)
+    assert np.max(np.abs(one.shear - block.shear)) < 1e-9 * np.max(np.abs(block.shear))
+    assert np.max(np.abs(one.slip - block.slip)) < 1e-9 * np.max(block.slip)
+
+
+CHECKS = (invariants, events, identity, cutting, points)
+
+
+def notices(check):
+    """Whether a check fails."""
+    with suppress(AssertionError):
+        check()
+        return False
+    return True
+
+
+def of_the_solve_before(monkeypatch):
+    """Friction takes N of the solve before."""
+    monkeypatch.setattr(rules, "rubbing", lagged)
+
+
+def outside_the_test(monkeypatch):
+    """The iteration ends where nothing opens or closes, whatever sticks and slips."""
+    real = friction.states_after
+
+    def faulty(law, tried):
+        agreed = real(law, tried)
+        same = all((now == OPEN) == (was == OPEN) for now, was in zip(agreed, tried.state, strict=True))
+        return tried.state if same else agreed
+
+    monkeypatch.setattr(friction, "states_after", faulty)
+
+
+def any_direction(monkeypatch):
+    """A contact goes on slipping in its direction, wherever it moves."""
+    real = friction._agreeing.__name__
+    own = getattr(friction, real)
+
+    def faulty(law, state, gap, N, T, slipped):
+        return own(law, state, gap, N, T, abs(slipped) * state)
+
+    monkeypatch.setattr(friction, real, faulty)
+
+
+def kept_reference(monkeypatch):
+    """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
+    real = rules.rubbing
+
+    def faulty(law, before, free, limit):
+        found = real(law, before, free, limit)
+        if found.corners is None:
+            return found
+        c = found.corners
+        stretch = tuple(s + way for s, way in zip(c.stretch, c.slipped, strict=True))
+        return found._replace(corners=c._replace(stretch=stretch))
+
+    monkeypatch.setattr(rules, "rubbing", faulty)
+
+
+def old_reference(monkeypatch):
+    """A contact that closes again is held from where it was when it opened."""
+    real, kept = rules.rubbing, {}
+
+    def faulty(law, before, free, limit):
+        for i, shut in enumerate(before.closed):
+            kept[i] = before.reference[i] if shut else kept.get(i, 0.0)
+        r = [kept[i] for i in range(len(before.closed))]
+        stretch = tuple(s + now - old for s, now, old in zip(before.stretch, before.reference, r, strict=True))
+        every = friction.states(before)
+        return real(law, before._replace(closed=(True,) * len(every), stretch=stretch, state=every), free, limit)
+
+    monkeypatch.setattr(rules, "rubbing", faulty)
+
+
+def crossed_at_start(monkeypatch):
+    """A contact closes with the reference of the step's start, not of the crossing."""
+    for module in (glued, friction):
+        monkeypatch.setattr(module, "slipped_share", lambda law, before, N: (1.0, 0.0))
+
+
+def kept_shear(monkeypatch):
+    """A contact that opens goes on pulling along the base."""
+    real = rules.rubbing
+
+    def faulty(law, before, free, limit):
+        found = real(law, before, free, limit)
+        if found.corners is None:
+            return found
+        every = zip(found.corners.shear, found.corners.closed, before.shear, strict=True)
+        shear = tuple(T if now else 0.5 * old for T, now, old in every)
+        return found._replace(corners=found.corners._replace(shear=shear))
+
+    monkeypatch.setattr(rules, "rubbing", faulty)
+
+
+def pushed_along(monkeypatch):
+    """Friction pushes in the direction of the slip."""
+    real = friction.pressed
+
+    def faulty(law, before, free, state, follows, held):
+        turned = tuple(-now if abs(now) == SLIP else now for now in state)
+        return real(law, before, free, turned, follows, held)._replace(state=state)
+
+    monkeypatch.setattr(friction, "pressed", faulty)
+
+
+def forgotten_coupling(monkeypatch):
+    """T of a slipping contact is set, but N is found as if there were none."""
+    sliding_contacts = friction.__dict__[friction._Sliding.__name__]
+    monkeypatch.setattr(sliding_contacts, "drag", lambda self, A, rows: None)
+
+
+def damped_again(monkeypatch):
+    """Gg stands in a shorter step as in a whole one."""
+    real = step.replace
+    monkeypatch.setattr(step, "replace", lambda scheme, gg, **given: real(scheme, gg=scheme.gg, **given))
+
+
+def velocity_twice(monkeypatch):
+    """A step that is repeated begins with the velocity of the failed one."""
+    real = unilateral.advance
+
+    def faulty(law, length, state, limit, carried=None):
+        after, found = real(law, length, state, limit, carried)
+        if length.ratio == 1 and after is not None:
+            state.P[:] = after.P
+        return after, found
+
+    monkeypatch.setattr(unilateral, "advance", faulty)
+
+
+def gap_of_the_increment(monkeypatch):
+    """A force is the sum of p times increments: contact remembers tension."""
+    real = rules.rubbing
+
+    def faulty(law, before, free, limit):
+        start = [0.0 if shut else w for shut, w in zip(before.closed, before.gap, strict=True)]
+        return real(law, before, free._replace(gap=[w - w0 for w, w0 in zip(free.gap, start, strict=True)]), limit)
+
+    monkeypatch.setattr(rules, "rubbing", faulty)
+
+
+def points_without_coupling(monkeypatch):
+    """T of a slipping point is set, but N is found as if there were none."""
+    sliding_points = rubbing_points.__dict__[rubbing_points._Rubbing.__name__]
+    monkeypatch.setattr(sliding_points, "drag", lambda self, A, b, rows: None)
+
+
+def points_any_direction(monkeypatch):
+    """A point goes on slipping in its direction, wherever it moves."""
+    real = rubbing_points.agreeing
+
+    def faulty(law, tried):
+        along = np.abs(tried.slipped) * np.sign(tried.state)
+        return real(law, replace(tried, slipped=along))
+
+    monkeypatch.setattr(rubbing_points, "agreeing", faulty)
+
+
+FAULTS = {
+    of_the_solve_before: [invariants, events, identity],
+    outside_the_test: [invariants, events],
+    any_direction: [invariants, events],
+    kept_reference: [events],
+    old_reference: [events],
+    crossed_at_start: [events],
+    kept_shear: [invariants],
+    pushed_along: [invariants, identity],
+    forgotten_coupling: [invariants],
+    gap_of_the_increment: [invariants],
+    points_without_coupling: [points],
+    points_any_direction: [points],
+    damped_again: [cutting],
+    velocity_twice: [cutting],
+}
+
+
+def marked(items, short):
+    """Mark all but the named ones as long."""
+    return [pytest.param(item, marks=[pytest.mark.long] * (item not in short), id=item.__name__) for item in items]
+
+
+@pytest.mark.parametrize("check", marked(CHECKS, (identity, cutting)))
+def test_nothing_is_noticed_without_a_fault(check):
+    assert not notices(check)
+
+
+@pytest.mark.parametrize("fault", marked(FAULTS, (pushed_along, velocity_twice)))
+def test_a_known_slip_is_noticed(monkeypatch, fault):
+    fault(monkeypatch)
+    assert all(map(notices, FAULTS[fault]))

@@ -1,0 +1,164 @@
+"""The rocking of a rigid block: closed forms of slender blocks, energy, thresholds, an independent integral."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+
+from fem_reference.exact.rocking import Pulse, RockingBlock, overturning_amplitude, overturns, solve
+from validation.solvers.rigid import rocking as adapter
+
+BLOCK = RockingBlock(0.8, 2.0)
+
+
+def quarter(block: RockingBlock, tilt: float) -> float:
+    """The time of the descent by quadrature in 30 digits of the energy integral, rotation = tilt (1 - x^2)."""
+    with mpmath.workdps(30):
+        alpha, p = mpmath.atan(mpmath.mpf(block.width) / block.height), mpmath.mpf(block.p)
+
+        def slow(x):
+            fallen = 2 * mpmath.sin(alpha - tilt + tilt * x * x / 2) * mpmath.sin(tilt * x * x / 2)
+            return 2 * tilt * x / mpmath.sqrt(2 * fallen) if x else 0
+
+        return float(mpmath.quad(slow, [0, 0.01, 0.1, 0.5, 1]) / p)
+
+
+@pytest.mark.parametrize("share", [1e-6, 0.01, 0.5, 0.99])
+@pytest.mark.parametrize("size", [(1.0, 1.0), (0.8, 2.0), (0.05, 3.0)])
+def test_the_quarter_period_is_the_energy_integral(share: float, size: tuple[float, float]) -> None:
+    block = RockingBlock(*size)
+    tilt = share * block.alpha
+    assert block.quarter_period(tilt) == pytest.approx(quarter(block, tilt), rel=1e-11)
+    assert adapter.quarter_period(*size, tilt) == block.quarter_period(tilt)
+
+
+def test_limits_of_the_quarter_period() -> None:
+    assert [RockingBlock(2.0, h).small_quarter_period(1e-3) for h in (2.0, 4.0, 8.0)] == pytest.approx(
+        [0.02332, 0.03687, 0.06798], abs=6e-6
+    )
+    slender = RockingBlock(0.002, 2.0)
+    for share in (0.01, 0.5, 0.9):
+        tilt = share * slender.alpha  # the rest is alpha^2 = 1e-6
+        assert slender.quarter_period(tilt) == pytest.approx(slender.slender_quarter_period(tilt), rel=3e-6)
+    # cubic in the tilt's root: what the small-tilt form leaves out is of the order of tilt / alpha
+    assert BLOCK.quarter_period(1e-7) == pytest.approx(BLOCK.small_quarter_period(1e-7), rel=1e-6)
+    assert BLOCK.quarter_period(BLOCK.alpha) == math.inf
+    assert BLOCK.quarter_period(0.0) == 0.0
+
+
+def test_housners_restitution_and_static_limits() -> None:
+    assert [RockingBlock(1.0, h).ratio for h in (1.0, 2.0, 4.0)] == pytest.approx([0.25, 0.70, 0.912], abs=3e-4)
+    assert replace(BLOCK, restitution=0.9).ratio == 0.9
+    assert BLOCK.lifting == pytest.approx(9.81 * 0.4)
+    assert math.tan(BLOCK.alpha) == pytest.approx(0.4)
+    # the moment of momentum about the new corner: I0 w1 = I0 w0 - 2 m R b sin(alpha) w0 with b = R sin(alpha)
+    R, alpha = math.hypot(0.8, 2.0) / 2, BLOCK.alpha
+    assert BLOCK.ratio == pytest.approx((4 / 3 * R**2 - 2 * R**2 * math.sin(alpha) ** 2) / (4 / 3 * R**2))
+
+
+def energy(block: RockingBlock, angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    return rate**2 / 2 + block.p**2 * (np.cos(block.alpha - np.abs(angle)) - math.cos(block.alpha))
+
+
+@pytest.mark.parametrize("restitution", [None, 0.8])
+def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_between(restitution: float | None) -> None:
+    block = replace(BLOCK, restitution=restitution)
+    tilt = 0.6 * block.alpha
+    motion = solve(block, 4.0, tilt)
+    assert motion.impacts[0] == pytest.approx(block.quarter_period(tilt), rel=1e-11)
+    top = energy(block, *motion.at([0.0]))[0]
+    for n, (before, after) in enumerate(pairwise(motion.impacts[:5]), start=1):
+        own = energy(block, *motion.at(np.linspace(before, after, 20)[1:-1]))
+        assert own == pytest.approx(np.full(18, top * block.ratio ** (2 * n)), rel=1e-9)
+        # half a period at the tilt to which the energy that is left carries it
+        reached = block.alpha - math.acos(math.cos(block.alpha) + own[0] / block.p**2)
+        assert after - before == pytest.approx(2 * block.quarter_period(reached), rel=1e-8)
+    signs = np.sign(motion.at((np.array(motion.impacts[:3]) + np.array(motion.impacts[1:4])) / 2)[0])
+    assert signs.tolist() == [-1.0, 1.0, -1.0]
+    assert not motion.overturned
+
+
+def test_a_block_beyond_its_balance_falls() -> None:
+    motion = solve(BLOCK, 50.0, 1.001 * BLOCK.alpha)
+    assert motion.overturned
+    assert not motion.impacts
+    assert motion.at([motion.end])[0] == pytest.approx(math.pi / 2)
+    assert not solve(BLOCK, 5.0, 0.999 * BLOCK.alpha).overturned
+    assert motion.end < 50
+
+
+def test_below_the_lifting_acceleration_nothing_moves() -> None:
+    still = solve(BLOCK, 2.0, pulse=Pulse(0.999 * BLOCK.lifting, 1.0))
+    assert not np.any(still.at(np.linspace(0, 2, 9))[0])
+    rocked = solve(BLOCK, 2.0, pulse=Pulse(1.5 * BLOCK.lifting, 0.3))
+    lift = 0.3 / math.pi * math.asin(1 / 1.5)
+    angles = rocked.at([0.99 * lift, 1.3 * lift])[0]
+    assert angles[0] == 0.0
+    assert angles[1] < 0.0  # the base goes to +x, the block tips back to -x
+    assert rocked.impacts
+
+
+@pytest.mark.parametrize("x", [1.2, 2.5])
+def test_the_work_of_a_rectangle_is_the_energy_of_the_block(x: float) -> None:
+    """With u = -rotation: u'^2 / 2 = p^2 (cos alpha - cos(alpha - u) + A / g (sin alpha - sin(alpha - u)))."""
+    motion = solve(BLOCK, 0.3, pulse=Pulse(x * BLOCK.lifting, 0.3, "rectangle"))
+    angle, rate = motion.at([0.1, 0.2, 0.3])
+    lean, alpha = BLOCK.alpha + angle, BLOCK.alpha
+    work = math.cos(alpha) - np.cos(lean) + x * BLOCK.lifting / 9.81 * (math.sin(alpha) - np.sin(lean))
+    assert rate**2 / 2 == pytest.approx(BLOCK.p**2 * work, rel=1e-10)
+    assert (angle < 0).all()
+
+
+def slender(x: float, pT: float, shape: str) -> float:
+    """Positive where a slender block overturns, x = A / (g alpha)."""
+    if shape == "rectangle":
+        return math.cosh(pT) - 1 - 1 / (2 * x * (x - 1))
+    w = math.pi / pT  # over p
+    lift = math.asin(1 / x)
+    return x * (w * math.exp(-pT + lift / w) + math.sin(lift) + w * math.cos(lift)) - (1 + w * w)
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "half-sine"])
+@pytest.mark.parametrize("duration", [0.3, 0.7])
+def test_the_overturning_threshold_of_a_slender_block_is_in_closed_form(shape: str, duration: float) -> None:
+    block = RockingBlock(0.004, 2.0)  # the rest is alpha^2 = 4e-6
+    found = overturning_amplitude(block, duration, shape) / (9.81 * block.alpha)
+    under, over = (slender(found * (1 + shift), block.p * duration, shape) for shift in (-2e-5, 2e-5))
+    assert under < 0 < over
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "half-sine"])
+def test_the_threshold_parts_what_falls_from_what_rocks_on(shape: str) -> None:
+    limit = overturning_amplitude(BLOCK, 0.4, shape)
+    assert limit > BLOCK.lifting
+    for share in (0.999, 1.001):
+        motion = solve(BLOCK, 12.0, pulse=Pulse(share * limit, 0.4, shape))
+        assert motion.overturned == (share > 1) == overturns(BLOCK, Pulse(share * limit, 0.4, shape))
+    assert adapter.overturning_acceleration(0.8, 2.0, 0.4, shape) == limit
+    other = solve(BLOCK, 12.0, pulse=Pulse(-1.001 * limit, 0.4, shape))
+    assert other.overturned
+    assert other.at([other.end])[0] > 0
+
+
+def test_rocking_in_plain_numbers() -> None:
+    t = np.linspace(0.1, 2.0, 20)
+    found = adapter.rocking(0.8, 2.0, 0.1, t)
+    motion = solve(BLOCK, 2.0, 0.1)
+    assert np.array_equal(found.rotation, motion.at(t)[0])
+    assert found.impacts == motion.impacts
+
+
+def test_bad_input_is_refused_by_name() -> None:
+    for field, value in [("width", 0.0), ("height", -1.0), ("gravity", math.inf), ("restitution", 1.1)]:
+        with pytest.raises(ValueError, match=field):
+            replace(BLOCK, **{field: value})
+    with pytest.raises(ValueError, match="shape"):
+        Pulse(1.0, 1.0, "square")
+    with pytest.raises(ValueError, match="tilt"):
+        BLOCK.quarter_period(1.0)
+    for make in (lambda: solve(BLOCK, 0.0), lambda: solve(BLOCK, 1.0, 2.0), lambda: overturning_amplitude(BLOCK, 0.0)):
+        with pytest.raises(ValueError, match="must"):
+            make()

@@ -1,0 +1,87 @@
+"""Elements with friction beside the block of one strain: the rigid limit, statics, refusals."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import thinned
+
+from validation import solve
+from validation.errors import InputError
+from validation.runs.contact import LOST, STORED
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
+
+CONTACT = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 25.0, "cohesion": 2e3}
+LOAD = {"gravity": 9.81, "slope": 28.0, "pressure": 5e4, "eccentricity": 0.5, "traction": -2e4}
+COLUMNS = ["displacement", "contact_pressure", "horizontal_displacement"]
+
+
+@pytest.fixture
+def scene() -> Scene:
+    """A block on an incline with two corners, its load off its middle."""
+    values = {"contact": CONTACT, "load": LOAD, "time.step": 1e-3, "time.steps": 150, "run.columns": COLUMNS}
+    return load_scene("unlocked").expand()[1].with_values(values | {"fem": {"elements": 2, "foundation": "corner"}})
+
+
+def far(scene: Scene) -> float:
+    """Largest difference of `fem` from `dda` in a column, a slip or an energy, over its size."""
+    prepared = [get_solver(name).prepare(scene) for name in ("dda", "fem")]
+    histories = [one.run().history for one in prepared]
+    assert histories[0] is not None and histories[1] is not None
+    dda, fem = (one.contact_record() for one in prepared)
+    assert dda.slip is not None and fem.slip is not None and dda.slip[-1] > 1e-4
+    pairs = [(histories[0].columns[name], histories[1].columns[name]) for name in COLUMNS]
+    found = [float(np.abs(a - b).max() / np.abs(a).max()) for a, b in [*pairs, (dda.slip, fem.slip)]]
+    scale = max(np.abs(energy).max() for energy in dda.energies.values())
+    assert fem.energies["friction"][-1] > 0.01 * scale
+    found += [float(np.abs(fem.energies[name] - dda.energies[name]).max() / scale) for name in (*STORED, *LOST)]
+    return max(found)
+
+
+@pytest.mark.parametrize("values", thinned([{}, {"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}], 2))
+def test_stiff_elements_on_corners_tend_to_the_stiff_block(scene: Scene, values: dict[str, object]) -> None:
+    """Both tend to the rigid block with p/E, two decades of which take two decades of what is between them."""
+    moved = {"load.base_motion": str(Path(__file__).with_name("shake.csv")), "time.start": "consistent", **values}
+    soft, stiff = (far(scene.with_values({"block.young": young, **moved})) for young in (1e13, 1e15))
+    # p/E is 1e-6 at the stiffer; impacts have multiplied it by less than 500
+    assert stiff < 5e-4 and 50 < soft / stiff < 200
+
+
+def test_a_block_at_rest_on_its_incline_bears_its_weight_in_two_parts(scene: Scene) -> None:
+    """Statics of both models: N = W cos b and T = -W sin b, whatever has slid before."""
+    at_rest = {"load": {"gravity": 9.81, "slope": 20.0}, "contact.friction": 30.0, "time.step": 0.02, "time.gg": 0.5}
+    weight, angle = 10800 * 9.81, np.radians(20.0)
+    case = scene.with_values({**at_rest, "run.columns": [*COLUMNS[1:2], "base_shear"], "fem.foundation": "distributed"})
+    found = solve(case, "fem").history
+    assert found is not None
+    assert 2.0 * found.columns["contact_pressure"][-1] == pytest.approx(weight * np.cos(angle), rel=1e-6)
+    assert 2.0 * found.columns["base_shear"][-1] == pytest.approx(-weight * np.sin(angle), rel=1e-6)
+    case = scene.with_values({**at_rest, "run.columns": ["contact_pressure", "shear_force_m", "shear_force_n"]})
+    block = solve(case, "dda").history
+    assert block is not None
+    assert 2.0 * block.columns["contact_pressure"][-1] == pytest.approx(weight * np.cos(angle), rel=1e-6)
+    shear = block.columns["shear_force_m"][-1] + block.columns["shear_force_n"][-1]
+    assert shear == pytest.approx(-weight * np.sin(angle), rel=1e-6)
+
+
+def test_what_elements_do_not_take_is_refused_by_name(scene: Scene) -> None:
+    turning = scene.with_values({"run.geometry": "updated"})
+    for name in ("fem", "fenicsx"):
+        with pytest.raises(InputError, match="does not handle lagged friction"):
+            solve(scene.with_values({"contact.rules": "lagged"}), name)
+        with pytest.raises(InputError, match="does not handle large rotation"):
+            solve(turning, name)
+    locked = scene.with_values({"contact": {"stiffness": 1e9}, "load": {"gravity": 9.81, "slope": 5.0}})
+    for name in ("bar", "continuum"):
+        with pytest.raises(InputError, match=r"does not handle .*slope"):
+            solve(locked, name)
+    with pytest.raises(InputError, match="must be among"):
+        solve(scene.with_values({"run.columns": ["slide_m"]}), "fem")
+
+
+def test_without_friction_no_slip_is_reported(scene: Scene) -> None:
+    glued = {key: value for key, value in CONTACT.items() if key not in ("friction", "cohesion")}
+    prepared = get_solver("fem").prepare(scene.with_values({"contact": glued, "time.steps": 5}))
+    prepared.run()
+    assert prepared.contact_record().slip is None

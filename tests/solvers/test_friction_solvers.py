@@ -1,0 +1,99 @@
+"""Scenes with friction, slopes and a moving base, as the solver dda takes them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.runs.contact import LOST, STORED
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.dda import DDA, model_of
+
+COLUMNS = ["displacement", "horizontal_displacement", "state_m", "state_n", "slide_m", "slide_n", "shear_force_n"]
+
+
+def scene(contact=None, load=None, block=None, columns=COLUMNS, steps=120) -> Scene:
+    """Return a block of 2 m on an incline of 20 degrees."""
+    return parse_scene(
+        {
+            "title": "incline",
+            "block": {"side": 2.0, "density": 2700.0, "young": 1e9} | (block or {}),
+            "contact": {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 30.0}
+            | (contact or {}),
+            "load": {"gravity": 9.81, "slope": 20.0} | (load or {}),
+            "time": {"step": 2e-4, "steps": steps},
+            "run": {"columns": columns},
+        },
+        "incline.toml",
+    )
+
+
+def record(given: Scene):
+    """Return the history's columns and the contact's record."""
+    prepared = DDA().build(given, False)
+    return prepared.run().history.columns, prepared.contact_record()
+
+
+@pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])
+def test_friction_is_reported(block):
+    columns, seen = record(scene(block=block))
+    assert {1.0, 2.0} <= set(columns["state_m"])
+    assert seen.slip[-1] > 0 and columns["slide_m"][-1] > seen.slip[-1] / 2
+    assert set(seen.energies) == {*STORED, *LOST} and seen.energies["friction"][-1] > 0
+    total = sum(seen.energies.values())
+    assert np.ptp(total) < 1e-9 * np.max(np.abs(list(seen.energies.values())))
+
+
+def test_cohesion_is_a_stress_over_the_whole_base():
+    held = 10800 * 9.81 * math.sin(math.radians(20)) / 2.0  # Pa over 2 m: what pulls down the slope
+    slips = [record(scene({"friction": 0.0, "cohesion": share * held}))[1].slip[-1] for share in (0.0, 0.8, 2.5)]
+    # a weight that is switched on pulls twice as much, and a corner that opens for a while holds nothing
+    assert slips[0] > 2 * slips[1] > 20 * slips[2]
+
+
+def test_lagged_friction_and_its_bands_are_taken():
+    lagged = scene({"rules": "lagged", "band": [1e-3, 1e-6]})
+    assert not np.array_equal(record(lagged)[0]["displacement"], record(scene())[0]["displacement"])
+    with pytest.raises(InputError, match="rubs under lagged rules only"):
+        DDA().build(scene({"band": [0.0, 1e-6]}), False)
+    with pytest.raises(InputError, match="lagged friction together with sub-blocks"):
+        DDA().build(scene({"rules": "lagged"}, block={"subdivide": [2, 1]}), False)
+
+
+def test_a_slope_is_a_turned_weight_on_locked_springs_too():
+    beta = math.radians(20)
+    locked = {"law": "locked", "stiffness": 1e9, "shear_stiffness": 4e8}
+    both = ["displacement", "horizontal_displacement"]
+    for cut in ({}, {"subdivide": [2, 2]}):
+        given = {
+            "title": "locked",
+            "contact": locked,
+            "load": {"gravity": 9.81, "slope": 20.0},
+            "run": {"columns": both},
+        }
+        given |= {"block": {"side": 2.0, "density": 2700.0, "young": 1e9} | cut, "time": {"step": 1e-3, "steps": 100}}
+        found = DDA().build(parse_scene(given, "locked.toml"), False)
+        history = found.run().history.columns
+        assert np.max(history["horizontal_displacement"]) > 0 > np.min(history["displacement"])
+        static = found.static()
+        weight = 10800 * 9.81
+        settled = -weight * math.cos(beta) * (1 / 2e9 + 1 / 4e9)  # of the springs, and of the strain under W/2
+        assert static["contact_pressure"] == pytest.approx(weight * math.cos(beta) / 2.0, rel=1e-6)
+        assert cut or static["displacement"] == pytest.approx(settled, rel=1e-12)
+    model = model_of(parse_scene(given, "locked.toml"))
+    assert model.load[:2] == pytest.approx([weight * math.sin(beta), -weight * math.cos(beta)], rel=1e-14)
+
+
+def test_a_base_that_shakes_carries_a_block_that_rubs(tmp_path):
+    time = np.linspace(0.0, 0.05, 51)
+    path = tmp_path / "base.csv"
+    rows = np.column_stack([time, 1e-3 * np.sin(200 * time) ** 2, 1e-5 * np.sin(100 * time)])
+    np.savetxt(path, rows, delimiter=",", header="time,x,y", comments="")
+    moved, seen = record(scene(load={"base_motion": str(path)}))
+    still, rests = record(scene())
+    assert np.max(np.abs(moved["horizontal_displacement"] - still["horizontal_displacement"])) > 1e-4
+    total = sum(seen.energies.values())
+    assert np.ptp(total) < 1e-11 * np.max(np.abs(list(seen.energies.values()))) and seen.slip[-1] > rests.slip[-1]
+    with pytest.raises(InputError, match="base motion, unilateral contact and sub-blocks"):
+        DDA().build(scene(load={"base_motion": str(path)}, block={"subdivide": [2, 1]}), False)

@@ -1,0 +1,241 @@
+"""The studies of rocking and toppling: gates that faults bite, closed forms against scipy, numbers of the text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from faults import seams
+from faults.fault import Fault
+from faults.kill_matrix import check_kill_matrix
+from scipy.integrate import solve_ivp
+
+from dda.rotation.body import EXACT, FIRST_ORDER, turned
+from validation.engine.study import Study
+from validation.gates.rigid_rocking import Rectangle
+from validation.studies.bands import cases
+from validation.studies.rocking import rocking, toppling
+
+DDA = ("dda",)
+Wrapper = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def setting(**changes: Callable[[Any], Any]) -> Wrapper:
+    """Return a wrapper that changes what stays the same from step to step."""
+
+    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+        def faulty(*given: Any) -> Any:
+            made = sound(*given)
+            return replace(made, **{name: change(getattr(made, name)) for name, change in changes.items()})
+
+        return faulty
+
+    return wrap
+
+
+def inertia(body: Any) -> Any:
+    M = body.M.copy()
+    M[2, 2] *= 1.02
+    return replace(body, M=M)
+
+
+def rubbing(factor: float) -> Callable[[Any], Any]:
+    return lambda law: law if law.friction is None else replace(law, friction=factor * law.friction)
+
+
+def tilted(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Start 1 % further up."""
+    return lambda model, *given: sound(replace(model, tilt=1.01 * model.tilt), *given)
+
+
+def quicker(share: float) -> Wrapper:
+    """Add a share to the velocities in every step."""
+
+    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+        def faulty(*given: Any) -> Any:
+            made = sound(*given)
+            if made.state is None:
+                return made
+            return made._replace(state=made.state._replace(V=(1 + share) * made.state.V))
+
+        return faulty
+
+    return wrap
+
+
+def turning_by(rotation: str) -> Wrapper:
+    return lambda sound: lambda Q, r, _: sound(Q, r, rotation)
+
+
+def grown_twice(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def faulty(Q: Any, r: float, rotation: str) -> Any:
+        made = sound(Q, r, rotation)
+        return made if rotation == EXACT else made._replace(end=math.sqrt(1 + r * r) * made.end)
+
+    return faulty
+
+
+def doubled(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def faulty(*given: Any) -> Any:
+        columns = sound(*given)
+        return columns | {"rotation": 2 * columns["rotation"]}
+
+    return faulty
+
+
+def moved(factor: float) -> Wrapper:
+    return lambda sound: lambda *given: factor * sound(*given)
+
+
+LIGHT = Fault("weight 1 % less", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: 0.99 * g))
+STEEP = Fault("slope 0.5 deg more", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: turned(math.radians(0.5)) @ g))
+HEAVY = Fault("moment of inertia 2 % more", DDA, seams.ROLLING_SETTING, setting(body=inertia))
+SOFT = Fault(
+    "springs a tenth", DDA, seams.ROLLING_SETTING, setting(law=lambda law: replace(law, stiffness=law.stiffness / 10))
+)
+QUICK = Fault("velocities 1 % more in every step", DDA, seams.ROLLING_ADVANCE, quicker(0.01))
+TILTED = Fault("tilt 1 % more", DDA, seams.ROLLING_START, tilted)
+FAULTS = {
+    "rocking": [
+        LIGHT,
+        HEAVY,
+        SOFT,
+        QUICK,
+        Fault("velocities 5 % more in every step", DDA, seams.ROLLING_ADVANCE, quicker(0.05)),
+        TILTED,
+        Fault("rotation reported twice its size", DDA, seams.ROLLING_OBSERVED, doubled),
+        Fault("forces at the end of the step", DDA, seams.ROLLING_LATE, lambda sound: lambda delta: 1.0),
+        Fault("base moves 2 % more", DDA, seams.ROLLING_BASE, moved(1.02)),
+        Fault("base moves 30 % more", DDA, seams.ROLLING_BASE, moved(1.3)),
+    ],
+    "toppling": [
+        LIGHT,
+        STEEP,
+        HEAVY,
+        SOFT,
+        TILTED,
+        Fault("friction 1 % less", DDA, seams.ROLLING_SETTING, setting(law=rubbing(0.99))),
+        Fault("first-order rotation", DDA, seams.ROLLING_TURN, turning_by(FIRST_ORDER)),
+        Fault("exact rotation where first-order is asked for", DDA, seams.ROLLING_TURN, turning_by(EXACT)),
+        Fault("the outline grows twice", DDA, seams.ROLLING_TURN, grown_twice),
+        Fault("velocities a thousandth more in every step", DDA, seams.ROLLING_ADVANCE, quicker(1e-3)),
+    ],
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("study", [rocking.STUDY, toppling.STUDY], ids=lambda study: study.name)
+def test_every_gate_is_bitten_and_every_fault_is_seen(study: Study, tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
+
+
+def rigid(block: Rectangle, k: Callable[[float], float], start: float, end: float, slope: float = 0.0) -> Any:
+    """Return the motion of a rigid block about a corner by DOP853, with its events: flat, over the corner."""
+
+    def rate(t: float, y: Any) -> list[float]:
+        angle = block.alpha - slope - y[0]
+        return [y[1], block.rate2 * (k(t) * math.cos(angle) - math.sin(angle))]
+
+    def flat(t: float, y: Any) -> float:
+        return float(y[0])
+
+    def over(t: float, y: Any) -> float:
+        return float(y[0] - block.alpha)
+
+    flat.direction = -1
+    return solve_ivp(
+        rate,
+        (0, end),
+        [start, 0.0],
+        "DOP853",
+        events=(flat, over),
+        rtol=1e-12,
+        atol=1e-14,
+        max_step=0.01,
+        dense_output=True,
+    )
+
+
+def test_quarter_periods_and_falls_are_those_of_the_differential_equation() -> None:
+    for height, tilt in ((2.0, 1e-3), (8.0, 1e-3), (4.0, 0.2)):
+        block = Rectangle(2.0, height, 9.81)
+        exact = rigid(block, lambda t: 0.0, tilt, 2.0).t_events[0][0]
+        assert block.quarter_period(tilt) == pytest.approx(exact, rel=1e-9)
+    tower, slope = Rectangle(10.0, 25.0, 9.81), math.radians(40.0)
+    motion = rigid(tower, lambda t: 0.0, 0.0, 3.0, slope)
+    duration = tower.fall_time(slope - tower.alpha, 0.5)
+    assert motion.sol(duration)[0] == pytest.approx(0.5, rel=1e-8)
+    rates = motion.sol(np.linspace(0, duration, 4001))[1]
+    squared = np.trapezoid(rates**2, dx=duration / 4000)
+    assert tower.squared_rate(slope - tower.alpha, duration) == pytest.approx(squared, rel=1e-6)
+
+
+def test_the_small_quarter_period_and_the_rate_ratio_are_the_textbook_ones() -> None:
+    for ratio, housner in ((1.0, 0.25), (2.0, 0.70), (4.0, 0.912)):
+        block, tilt = Rectangle(2.0, 2.0 * ratio, 9.81), 1e-7
+        inertia_by_mass = (block.width**2 + block.height**2) / 3
+        small = math.sqrt(2 * tilt * inertia_by_mass / (block.gravity * block.width / 2))
+        assert block.quarter_period(tilt) == pytest.approx(small, rel=1e-6)
+        assert block.housner == pytest.approx(housner, abs=5e-4)
+
+
+def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
+    page = (Path(__file__).parents[2] / "docs/rotation.md").read_text(encoding="utf-8")
+    blocks = [Rectangle(2.0, height, 9.81) for height in (2.0, 4.0, 8.0)]
+    rows = [line.split("|")[2:5] for line in page.splitlines() if line.startswith("|")]
+    times, constant, ratios = ([float(word) for word in row] for row in rows[2:5])
+    assert times == [round(block.quarter_period(1e-3), 5) for block in blocks]
+    small = [math.sqrt(2e-3 * (b.width**2 + b.height**2) / 3 / (b.gravity * b.width / 2)) for b in blocks]
+    assert constant == [round(value, 5) for value in small]
+    assert ratios == [round(block.housner, 3) for block in blocks]
+    (growing,), standing = cases("toppling-growth"), [case.load.slope for case in cases("toppling-threshold")]
+    assert "by 0.51 % at dt = 20 ms" in page and growing.time.step == 0.02 and standing == [21.6, 22.0]
+    assert toppling.growth(growing) == pytest.approx(0.0051, abs=1e-4)  # DDA's is gated beside it
+    assert f"tan(b) = a/h at {math.degrees(math.atan(10 / 25)):.2f} deg" in page
+
+
+@pytest.mark.parametrize("size", [0.9, 1.02])
+def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
+    block, duration = Rectangle(1.0, 4.0, 9.81), 0.36
+    k = size * block.pulse_threshold(duration)
+    during = rigid(block, lambda t: k, 0.0, duration)
+    angle, rate = during.y[:, -1]
+    assert block.pulse_end(k, duration) == pytest.approx(angle, rel=1e-9)
+    after = solve_ivp(
+        lambda t, y: [y[1], -block.rate2 * math.sin(block.alpha - y[0])],
+        (0, 1.5),
+        [angle, rate],
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-14,
+        dense_output=True,
+    )
+    tilts = after.sol(np.linspace(0, 1.5, 20001))[0]
+    if size < 1:
+        assert block.pulse_peak(k, duration) == pytest.approx(np.max(tilts), rel=1e-7) and np.max(tilts) < block.alpha
+    else:
+        assert after.sol(block.pulse_overturning(k, duration) - duration)[0] == pytest.approx(block.alpha, rel=1e-7)
+
+
+def test_the_record_of_the_base_is_the_pulse_of_the_study() -> None:
+    from validation.scenes.record import base_record
+
+    for case in cases(rocking.PULSE):
+        record = base_record(case)
+        assert record is not None
+        inside = record.time <= rocking.DURATION + 1e-12
+        assert np.allclose(record.x[inside], rocking.PUSH * record.time[inside] ** 2 / 2, atol=1e-12)
+        end, last = rocking.DURATION, record.time[-1]
+        assert (
+            record.x[-1] == pytest.approx(rocking.PUSH * (end**2 / 2 + end * (last - end)))
+            and last >= case.time.duration
+        )
+    sizes = [
+        rocking.PUSH / 9.81 / Rectangle(c.block.width, 4.0, 9.81).pulse_threshold(0.36) for c in cases(rocking.PULSE)
+    ]
+    assert sizes == pytest.approx([0.9, 0.99, 1.01], abs=1e-9)

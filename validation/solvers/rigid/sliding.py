@@ -1,0 +1,104 @@
+"""Newmark's sliding block for scenes and for plain numbers: the limit of stiff springs without their errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import Array
+from validation.scenes.record import base_record
+from validation.scenes.scene import Scene
+from validation.solvers.opened import mass
+
+if TYPE_CHECKING:
+    from fem_reference.exact.sliding_block import SlidingBlock, SlidingMotion
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Motion of a rigid mass over its base."""
+
+    time: Array  # instants [s], shape (times,)
+    slide: Array  # slide towards +x, down a slope [m], shape (times,)
+    velocity: Array  # its rate [m/s], shape (times,)
+    slip: float  # length of the way until the last instant, both directions added [m]
+    switches: tuple[tuple[float, int], ...]  # instants [s]; 1 and -1: it begins to slide towards +x or -x, 0: it sticks
+
+
+def rigid_slide(scene: Scene) -> Slide:
+    """Return how a rigid mass in the place of a scene's block slides, at the end of each step.
+
+    Its base follows the scene's record, linear between rows; what presses it down is its weight.
+
+    Raises
+    ------
+    InputError
+        The scene has no friction, other loads than weight and base motion, or a base that moves upwards.
+    """
+    from fem_reference.exact.sliding_block import moved, solve
+
+    record, load = base_record(scene), scene.load
+    if scene.contact.friction is None:
+        raise InputError(f"{scene.name}: contact.friction is required for a sliding block, got none")
+    if load.pressure or load.traction:
+        raise InputError(f"{scene.name}: load must be weight and base motion for a sliding block, got another one")
+    if record is not None and np.any(record.y):
+        raise InputError(f"{scene.name}: load.base_motion must be along x for a sliding block, got a motion in y")
+    base = moved([0.0], [0.0]) if record is None else moved(*_from_start(record.time, record.x))
+    t = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    return _reported(solve(block_of(scene), base, float(t[-1])), t)
+
+
+def _from_start(time: Array, x: Array) -> tuple[Array, Array]:
+    """Return a record from t = 0 on, held before its first row."""
+    later = time > 0
+    start = np.interp(0.0, time, x)
+    return np.concatenate([[0.0], time[later]]), np.concatenate([[start], x[later]])
+
+
+def block_of(scene: Scene) -> SlidingBlock:
+    """Return the rigid mass of a scene with friction."""
+    from fem_reference.exact.sliding_block import SlidingBlock
+
+    c, load = scene.contact, scene.load
+    return SlidingBlock(
+        slope=load.slope,
+        friction=c.friction or 0.0,
+        gravity=load.gravity,
+        cohesion=c.cohesion * scene.block.base_length / mass(scene),
+    )
+
+
+def harmonic_slide(
+    slope: float, friction: float, amplitude: float, rate: float, duration: float, time: Array, two_way: bool = True
+) -> Slide:
+    """Return how a rigid mass slides on a base with the acceleration A sin(w t).
+
+    Parameters
+    ----------
+    slope, friction
+        Angles of the base and of friction [deg].
+    amplitude, rate, duration
+        A [m/s2], w [rad/s] and how long the base vibrates [s]; after it the base goes on at its velocity.
+    time
+        Instants that are reported [s], shape (times,); the slip is that until the last one.
+    two_way
+        Whether it also slides up the slope; Newmark's own analysis holds it there.
+
+    Raises
+    ------
+    ValueError
+        A number is out of its range.
+    """
+    from fem_reference.exact.sliding_block import SlidingBlock, harmonic, solve
+
+    block = SlidingBlock(slope, friction, two_way=two_way)
+    return _reported(solve(block, harmonic(amplitude, rate, duration), float(np.max(time))), time)
+
+
+def _reported(motion: SlidingMotion, time: Array) -> Slide:
+    slide, velocity = motion.at(time)
+    return Slide(time, slide, velocity, motion.slip, motion.switches)

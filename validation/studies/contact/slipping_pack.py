@@ -1,0 +1,201 @@
+"""The part of the reference pack on contact that slips: exact motions with friction, and rigid blocks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.files import write_csv
+from validation.runs.history import History
+from validation.runs.modes import Switch
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
+from validation.solvers.rigid.rocking import overturning_acceleration, quarter_period
+from validation.solvers.rigid.sliding import harmonic_slide
+from validation.studies.contact.pack import ROUNDED, as_csv
+from validation.studies.pack import as_toml, make_directory, slug, write_text
+
+MOTION = "block-events"
+HALF = math.degrees(math.atan(0.5))  # deg: tan(phi) = 0.5
+INCLINE = {"load.pressure": 0.0, "load.gravity": 9.81, "load.slope": 20.0, "contact.shear_stiffness": 4.0e8}
+CASES: dict[str, dict[str, Any]] = {
+    "glued": {"load.eccentricity": 0.3, "time.steps": 30},
+    "off-centre": {"load.eccentricity": 0.3, "contact.friction": HALF, "time.steps": 30},
+    "sideways": {"load.traction": 2.0e6, "block.poisson": 0.25, "contact.friction": HALF, "time.steps": 30},
+    "incline": {**INCLINE, "contact.friction": 30.0, "time.steps": 50},
+    "creep": {**INCLINE, "contact.friction": 30.0, "time.steps": 400},
+    "creep-low-friction": {**INCLINE, "contact.friction": 22.0, "time.steps": 400},
+    "creep-stiff-shear": {
+        **INCLINE,
+        "contact.friction": 22.0,
+        "contact.shear_stiffness": 1.0e9,
+        "time.steps": 400,
+    },
+    "sliding": {**INCLINE, "load.slope": 28.9, "contact.friction": 15.0, "time.steps": 200},
+}
+STEP = 1e-3  # s, at which the motions are sampled
+TOLD = 12  # switches of a motion that are numbers of their own
+VALUES = {"horizontal_displacement": "m", "displacement": "m", "rotation": "rad"}
+BASE = ("slide_m", "slide_n")
+STATES = ("state_m", "state_n")
+FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")
+# slope and phi [deg], A [m/s2], w [rad/s] and how long the base vibrates [s]; sampled at the end and a second later
+SHAKES = (
+    (0.0, HALF, 6.0, 10.0, 3.0),
+    (20.0, 30.0, 6.0, 10.0, 3.0),
+    (20.0, 30.0, 16.0, 10.0, 3.0),
+    (15.0, 25.0, 4.0, 6.0, 5.0),
+)
+BLOCKS = ((1.0, 1.0), (1.0, 2.0), (0.5, 2.0))  # width and height [m]
+TILTS = (1e-3, 0.5, 0.9)  # over alpha
+PULSES = (0.2, 0.5)  # s
+BISECTED = 1e-10  # of an overturning acceleration: integrated to 1e-13, which the balance of the block amplifies
+
+README = """\
+# Contact that slips: exact motions
+
+A part of the reference pack of dda-validation; nothing needs to be installed.
+
+| what | where |
+|---|---|
+| scenes, SI units | `scenes/NAME.toml` |
+| exact motions, one row a step | `histories/NAME.block-events.csv` |
+| single numbers with their uncertainties | `numbers.csv`: `scene,quantity,value,unit,uncertainty` |
+| rigid block on a base that vibrates along its slope | `newmark.csv` |
+| rigid block that rocks | `rocking.csv` |
+
+One block stands on two springs that carry no tension, `contact.stiffness` = p and `contact.shear_stiffness` = p_s (p
+where absent), without damping. With w the gap of a corner and s its slide along the base, N = -p w while w < 0. The
+corner sticks, T = -p_s (s - r), as long as |T| <= tan(phi) N; it slips with |T| = tan(phi) N against its motion and
+takes r = s + T / p_s along; where it opens N = T = 0, and where it closes r = s. Without `contact.friction` it never
+slips. `load.slope` turns gravity to g (sin, -cos) in x and y. All loads act from t = 0 on.
+
+Columns: `displacement`, `horizontal_displacement` (m) and `rotation` (rad, counter-clockwise) of the centroid; `gap_*`
+and `slide_*` (m); `normal_force_*` and `shear_force_*` (N, on the block, upwards and towards +x); `state_*`: 0 open,
+1 sticks, 2 and -2 slips towards +x and -x. M is the corner at x = 0, N that at x = a. Compare forces and gaps rather
+than states.
+
+`creep`, `creep-low-friction` and `creep-stiff-shear` are stable blocks, tan(slope) < tan(phi), that shift by a few
+millimetres while they ring on their springs: nothing damps them.
+
+`sliding`: while every corner slips one way or is open, u + tan(phi) v of the centroid accelerates by exactly
+g (sin b - tan(phi) cos b), whatever springs, time step and scheme: compare your code's own run with that.
+
+`newmark.csv`: a rigid block under the base's acceleration A sin(w t) down the slope for a time, then at constant
+velocity. `two_way` 0 holds it against sliding up the slope. `slide` is where it is over its base a second after,
+`slip` the length of its way. `rocking.csv`: the time in which a rigid block that is released at a tilt comes down, and
+the least amplitude of a half sine of the base's acceleration that overturns it. Both are what stiff springs tend to.
+"""
+
+
+def slipping_cases() -> Iterator[Scene]:
+    """Yield the scenes of the part."""
+    plain = load_scene("unlocked").with_values({"contact.stiffness": 1e9, "time.step": STEP, "run.solvers": [MOTION]})
+    columns = [*VALUES, "gap_m", "gap_n", *BASE, *FORCES, *STATES]
+    for name, values in CASES.items():
+        said = {"title": f"Block with friction: {name.replace('-', ' ')}", "run.columns": columns}
+        yield plain.with_values(said | values).model_copy(update={"name": name})
+
+
+def write_slipping_pack(directory: Path) -> int:
+    """Write the part into `friction` of a pack's directory, and return how many numbers it holds.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+    place = directory / "friction"
+    for part in ("scenes", "histories"):
+        make_directory(place / part)
+    rows: list[dict[str, Any]] = []
+    for scene in slipping_cases():
+        write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+        rows += numbers(scene, place / "histories")
+    shaken, rocked = list(shakes()), list(rockings())
+    for name, table in (("numbers", rows), ("newmark", shaken), ("rocking", rocked)):
+        write_text(place / f"{name}.csv", as_csv(table))
+    write_text(place / "README.md", README)
+    return len(rows) + len(shaken) + len(rocked)
+
+
+def numbers(scene: Scene, histories: Path) -> Iterator[dict[str, Any]]:
+    """Run an exact motion, write its history and yield its single numbers.
+
+    Raises
+    ------
+    InputError
+        The motion did not complete.
+    """
+    prepared = get_solver(MOTION).prepare(scene)
+    history = prepared.run().history
+    if history is None:
+        raise InputError(f"{scene.name} {MOTION}: no history")
+    write_csv(history, histories / f"{slug(scene.name)}.{MOTION}.csv")
+    for n, switch in enumerate(prepared.switches()[:TOLD], start=1):
+        said = f"switch {n}: {switch.corner} {kind(switch)}"
+        yield _number(scene, said, switch.time, "s", ROUNDED * switch.time)
+    yield from _instants(scene, history)
+
+
+def kind(switch: Switch) -> str:
+    """Return what a corner begins to do."""
+    if switch.opens is None:
+        return "slips" if switch.slips else "sticks"
+    return "opens" if switch.opens else "closes"
+
+
+def _instants(scene: Scene, history: History) -> Iterator[dict[str, Any]]:
+    """Yield the centroid and the mean slide of the base at the end, and at each 0.1 s of a longer motion."""
+    mean = np.mean([history.columns[name] for name in BASE], axis=0)
+    columns = {name: history.columns[name] for name in VALUES} | {"mean slide": mean}
+    every = min(100, scene.time.steps)
+    for n in range(every - 1, scene.time.steps, every):
+        for name, column in columns.items():
+            said = f"{name} at {float(history.time[n])!r} s"
+            yield _number(scene, said, float(column[n]), VALUES.get(name, "m"), ROUNDED * float(np.abs(column).max()))
+
+
+def _number(scene: Scene, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
+    named = {"scene": slug(scene.name), "quantity": quantity}
+    return named | {"value": value, "unit": unit, "uncertainty": _rounded(uncertainty)}
+
+
+def _rounded(uncertainty: float) -> float:
+    return float(f"{uncertainty:.1e}")
+
+
+def shakes() -> Iterator[dict[str, float]]:
+    """Yield the slide of rigid blocks on bases that vibrate."""
+    for slope, phi, amplitude, rate, duration in SHAKES:
+        for two_way in (True, False):
+            end = np.array([duration + 1.0])
+            found = harmonic_slide(slope, phi, amplitude, rate, duration, end, two_way)
+            given = {"slope": slope, "friction": phi, "amplitude": amplitude, "rate": rate, "duration": duration}
+            answer = {"two_way": int(two_way), "slide": float(found.slide[0]), "slip": found.slip}
+            yield given | answer | {"uncertainty": _rounded(ROUNDED * found.slip)}
+
+
+def rockings() -> Iterator[dict[str, Any]]:
+    """Yield quarter periods of rigid blocks, and accelerations that overturn them."""
+    for width, height in BLOCKS:
+        size = {"width": width, "height": height}
+        for share in TILTS:
+            tilt = share * math.atan2(width, height)
+            value = quarter_period(width, height, tilt)
+            yield {
+                **size,
+                "quantity": "quarter period [s]",
+                "at": tilt,
+                "value": value,
+                "uncertainty": _rounded(ROUNDED * value),
+            }
+        for duration in PULSES:
+            value = overturning_acceleration(width, height, duration)
+            said = {"quantity": "overturning half sine [m/s2]", "at": duration}
+            yield {**size, **said, "value": value, "uncertainty": _rounded(BISECTED * value)}
