@@ -227,6 +227,14 @@ def test_a_polygon_rolls_over_its_corners():
     assert len(touched) >= 4
 
 
+def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
+    scheme = Scheme(*CONSTANT, 1.0, 5e-3)
+    sound = solve_rolling(HEAVY, scheme, 120)
+    with patch.object(step, "REACH", -100.0):
+        blind = solve_rolling(HEAVY, scheme, 120)
+    assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.of_points("state"))) > 1
+
+
 def test_overflow_is_an_outcome():
     model = RollingModel(QUADRILATERAL, FAR, Load(gravity=-1e300))
     result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 1e6), 20)
