@@ -210,10 +210,6 @@ class DDA(Solver):
         own = set(features.of(scene))
         if features.ROTATION in own:
             return rotation_apart(scene)
-        if {features.SUB_BLOCKS, features.UNILATERAL, features.BASE_MOTION} <= own:
-            return (
-                f"it does not handle {features.BASE_MOTION}, {features.UNILATERAL} and {features.SUB_BLOCKS} together"
-            )
         if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
