@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import made_history, made_row
+from oracles.made_cases import made_case, made_group, made_history, made_row
 
 from validation.advice import budget
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
+from validation.report.appendix import alarms as appendix_alarms
 from validation.report.chapters import damping as chapters_damping
-from validation.report.chapters.damping import agreement_table, ringing_table, tension_table
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 
@@ -114,20 +115,41 @@ def test_ringing_falls_to_one_per_cent_in_so_many_steps(root: float, radius: flo
     assert (None if alarm is None else alarm.sentence) == words
 
 
-def test_the_tables_of_alarms_hold_their_numbers_in_their_columns() -> None:
-    labels = {"s": "dt = 1 s"}
-    agreed = Alarm(AGREEMENT, "s", "", {"agreement": 0.0123, "removed": 0.87, "time error": 0.456}).record()
-    assert agreement_table([agreed], labels).rows == (("dt = 1 s", "1.23\u00a0%", "87\u00a0%", "45.6\u00a0%"),)
+def test_the_worst_of_a_scenes_alarms_is_told_with_its_numbers() -> None:
+    labels = {"s": "dt = 1 s", "t": "dt = 2 s"}
+    agreed = [Alarm(AGREEMENT, scene, "", {"agreement": 0.0123, "removed": removed, "time error": 0.456}).record()
+              for scene, removed in (("s", 0.87), ("t", 0.86))]  # fmt: skip
+    assert appendix_alarms.agreement(agreed, labels) == (
+        "dt = 1 s: DDA within 1.23\u00a0% of the elastic block, of whose motion damping removed 87\u00a0%; both are "
+        "45.6\u00a0% off in time."
+    )
     values = {"dda.minimum": -1.234e6, "dda.time": 0.0567, "dda.duration": 0.0089}
-    pulled = Alarm(TENSION, "s", "", values | {"bar.minimum": -2e5, "bar.time": 0.01, "bar.duration": 0.002}).record()
-    table = tension_table([pulled], labels)
-    assert [c.title for c in table.columns] == ["Case", "Solver", "Least pressure [MPa]", "at [ms]", "tension for [ms]"]
-    assert table.rows == (("dt = 1 s", "dda", "−1.23", "56.7", "8.9"), ("", "bar", "−0.200", "10", "2"))
-    rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-1, 1))]
-    assert [row[1:] for row in ringing_table(rings, labels).rows] == [
-        ("−0.9500", "0.9800", "228"),
-        ("−1.000", "1.000", "∞"),
-    ]
+    bar = {"bar.minimum": -2e6, "bar.time": 0.01, "bar.duration": 0.002}
+    less = Alarm(TENSION, "s", "", values | {"dda.minimum": -1e6}).record()
+    pulled = Alarm(TENSION, "t", "", values | bar).record()
+    said = "dda −1.23 MPa at 56.7 ms, tension for 8.9 ms."
+    assert appendix_alarms.tension([less, pulled], labels) == said
+    assert appendix_alarms.tension([Alarm(TENSION, "s", "", bar).record()], labels).startswith("bar −2.00 MPa at 10 ms")
+    rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-0.9, 0.9))]
+    assert appendix_alarms.ringing(rings, labels) == ("dt = 1 s: root −0.9500, |λ| = 0.9800: 228 steps to fall to 1 %.")
+    assert "∞ steps" in appendix_alarms.ringing([Alarm(RINGING, "s", "", {"root": -1, "radius": 1}).record()], labels)
+
+
+def test_alarms_are_told_by_kind_scene_and_number_of_cases() -> None:
+    def group(name: str, *kinds: str) -> Any:
+        own = tuple(Alarm(kind, f"{name}[{i}]", f"it is {name}", {"root": -1.0, "radius": 1.0}).record()
+                    for i, kind in enumerate(kinds))  # fmt: skip
+        return replace(made_group(made_case(SCENE, {}), made_case(SCENE, {}), alarms=own), name=name)
+
+    found = {name: group(name, RINGING, "odd") for name in "abcdefghi"}
+    (_, table) = appendix_alarms.alarm_table(found)
+    rings = [row for row in table.rows if row[0] == RINGING]
+    assert [row[1] for row in rings] == [*"abcdefg", "2 more"] and rings[0][2] == "1 of 2"
+    assert rings[-1][2:] == ("2", "h, i.")
+    assert [row[1:] for row in table.rows if row[0] == "odd"] == [
+        ("a", "1 of 2", "It is a."), ("8 more", "8", "b, c, d, e, f, g, h, i.")
+    ]  # fmt: skip
+    assert appendix_alarms.alarm_table({"a": group("a")}) == []
 
 
 def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:

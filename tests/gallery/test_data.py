@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from validation.gallery.cases import GalleryCase, GalleryScene
 from validation.gallery.histories import LEAST, MOST, STEPS, Sampling, lines_of, packed, samples_for, unpacked
+from validation.gallery.scene_data import FEWEST, MOST_LINES, all_lines, drawn, most_lines
 from validation.gallery.svg import Sheet, slim
 from validation.runs.history import History
+from validation.runs.run import Outcome
 
 FIGURE = """<?xml version="1.0"?><!DOCTYPE svg><svg xmlns:xlink="x" width="10pt" viewBox="0 0 10 10" xmlns="y">
  <metadata>when</metadata><defs><style type="text/css">*{}</style></defs>
@@ -82,3 +87,22 @@ def test_letters_are_drawn_once_a_page_and_other_names_are_a_figure_s_own() -> N
     assert '<use href="#l0" x="63.62" y="0.125"/>' in first
     assert '<use href="#l0" transform="translate(1 38.97) scale(0.7)"/>' in first
     assert 'aria-label="a &quot;b&quot; &lt;c&gt;"' in first and "width=" not in first.partition(">")[0]
+
+
+def scene_of(name: str, cases: int, solvers: int) -> GalleryScene:
+    """Return a scene of so many cases, each finished by so many solvers, of two columns."""
+    row = SimpleNamespace(outcome=Outcome.COMPLETED)
+    scene = SimpleNamespace(run=SimpleNamespace(columns=("displacement", "contact_pressure")))
+    listed = [GalleryCase(str(i), str(i), scene, dict.fromkeys(range(solvers), row)) for i in range(cases)]  # type: ignore[arg-type]
+    return GalleryScene(name, name, f"{name}.html", tuple(listed), (), ())
+
+
+def test_large_scenes_are_thinned_and_small_ones_are_not() -> None:
+    scenes = [scene_of("small", 9, 2), *(scene_of(f"large {i}", 144, 7) for i in range(20))]
+    most = most_lines(scenes)
+    assert 0.8 * MOST_LINES < all_lines(scenes, most) <= MOST_LINES
+    assert len(drawn(scenes[0], most)) == 9
+    chosen = [case.name for case in drawn(scenes[1], most)]
+    assert FEWEST <= len(chosen) < 144 and chosen[0] == "0" and chosen[-1] == "143"
+    alone = scene_of("alone", 100, 7)
+    assert len(drawn(alone, most_lines([alone]))) == 100

@@ -168,11 +168,11 @@ def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme(
 
 
 def extreme(solver: str, ratio: float, step: float, error: float | None, **more: Any) -> Cell:
-    start, outcome = more.get("start", "zero"), more.get("outcome", Outcome.COMPLETED)
+    outcome = more.get("outcome", Outcome.COMPLETED)
     metrics = {"stability.kind": more.get("kind", "stable")} | more.get("metrics", {})
     errors = {} if error is None else {"displacement": error, "pressure": 10 * error}
     row = made_row(solver, metrics, outcome=outcome)
-    return Cell(more.get("scene", "extremes-a"), solver, ratio, step, start, row, errors)
+    return Cell(more.get("scene", "extremes-a"), solver, ratio, step, row, errors)
 
 
 def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() -> None:
@@ -221,15 +221,14 @@ def test_a_map_of_digits_shows_the_worst_of_a_place_at_its_stiffness_and_step(
         extreme("dda", 1.0, 1e-1, 0.9e-12),
         extreme("dda", 1e3, 1e-1, 0.9e-7),
     ]
-    (block,) = chapters_stability._maps("s", own, chapters_stability.STARTS["zero"], tmp_path)
-    assert block.file == "s-digits-dda-zero.svg" and block.caption.startswith("dda from A(0) = 0: correct digits, the")
+    (block,) = chapters_stability._maps("s", own, tmp_path)
+    assert block.file == "s-digits-dda.svg" and block.caption.startswith("dda: correct digits, the worst of all")
     left, right = drawn[block.file].axes
     assert {text.get_position(): text.get_text() for text in left.texts} == {(0, 0): "9", (1, 0): "12", (1, 1): "7"}
     assert {text.get_position(): text.get_text() for text in right.texts} == {(0, 0): "8", (1, 0): "11", (1, 1): "6"}
     assert [label.get_text() for label in left.get_yticklabels()] == ["$10^{0}$", "$10^{3}$"]
     assert [label.get_text() for label in left.get_xticklabels()] == ["$10^{-3}$", "$10^{-1}$"]
     assert (left.get_title(loc="left"), right.get_title(loc="left")) == ("Displacement", "Contact pressure")
-    assert chapters_stability.STARTS["consistent"] == "from the consistent start"
 
 
 def test_the_one_factor_table_shows_radius_condition_residual_and_digits() -> None:
@@ -243,3 +242,12 @@ def test_the_one_factor_table_shows_radius_condition_residual_and_digits() -> No
     heads = [c.title for c in table.columns]
     assert heads == ["Scene", "|λ|", "condition", "residual", "dda", "dda-textbook", "fem"]
     assert table.rows == (("extreme-a", "0.98", "4.5×10⁷", "6.1×10⁻¹⁷", "13 / 12", "6 / 5", "refused"),)
+
+
+def test_of_many_extremes_the_table_shows_those_of_the_fewest_digits() -> None:
+    errors = {f"extreme-{i}": 10.0 ** -(15 - i % 3) / 2 for i in range(chapters_stability.MOST_ROWS + 6)}
+    found = [extreme("dda", 1.0, 1e-3, error, scene=scene) for scene, error in errors.items()]
+    _, table = chapters_stability.factor_tables(found)
+    assert table.caption == f"The 16 of {len(errors)} runs in which dda keeps the fewest digits."
+    left = set(errors) - {row[0] for row in table.rows}
+    assert len(left) == 6 and all(errors[scene] == min(errors.values()) for scene in left)

@@ -12,10 +12,11 @@ from oracles.made_cases import line_in, lines_of, made_history, names_at, places
 from validation.report.figures import (
     cost as figures_cost,
 )
-from validation.report.figures import curves
+from validation.report.figures import curves, motion
 from validation.report.figures import (
     histories as figures,
 )
+from validation.report.figures import ledger as figures_ledger
 from validation.report.figures import (
     paper as figures_paper,
 )
@@ -47,7 +48,9 @@ def towards_ends(names: Any = ENDS, count: int = 50) -> dict[str, Any]:
 
 def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> None:
     histories = towards_ends()
-    figure = figures.history_figure([curves.Panel("", histories, -0.01, "bar")], "displacement")
+    figure = motion.history_figure(
+        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+    )
     top, below = figure.axes
     found = names_at(top)
     assert set(found) == set(ENDS)
@@ -65,9 +68,9 @@ def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> Non
 
 
 def test_crowded_names_keep_the_order_of_the_lines() -> None:
-    ends = {"bar": 1.000, "dda": 1.002, "fem": 0.998, "continuum": 1.001}
+    ends = {"bar": 1.000, "dda": 1.012, "fem": 0.988, "continuum": 1.006}
     lines = {name: made_history(0.1, np.linspace(0, last, 5)) for name, last in ends.items()}
-    figure = figures.history_figure([curves.Panel("", lines, 1.0, "bar")], "displacement")
+    figure = motion.history_figure([curves.Panel("", lines, {"displacement": 1.0}, "bar")], "displacement")
     placed = places_of(figure.axes[0])
     assert sorted(placed, key=placed.__getitem__) == sorted(ends, key=ends.__getitem__)
     assert min(np.diff(sorted(placed.values()))) > 0.1  # of 24 mm: letters are 2.5 mm high
@@ -75,7 +78,9 @@ def test_crowded_names_keep_the_order_of_the_lines() -> None:
 
 def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
     histories = {"bar": made_history(0.1, np.full(40, -0.02)), "dda": made_history(0.1, np.full(40, -0.021))}
-    figure = figures.history_figure([curves.Panel("", histories, -0.01, "bar")], "displacement")
+    figure = motion.history_figure(
+        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+    )
     _, y = line_in(figure.axes[1], color("dda"))
     assert np.allclose(y, 0.1)
     assert len(lines_of(figure.axes[1])) == 1
@@ -94,14 +99,18 @@ def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
 
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
-    parts = {"code": (1e-13, 2e-13), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
-    figure = figures.ledger_figure([figures.LedgerLine("one", {}), figures.LedgerLine("two", parts)])
+    parts = {"code": (1e-13, 2e-11), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
+    figure = figures_ledger.ledger_figure(
+        [figures_ledger.LedgerLine("one", {}), figures_ledger.LedgerLine("two", parts)]
+    )
     assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 0), ("two", 1)]
+    rounding = np.sqrt(figures_ledger.EDGE * figures_ledger.ROUNDING)  # a strip without places of its own
     for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
         assert axes.get_title(loc="left") == part
         shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
-        filled, hollow = shown[to_hex(figures.DOT)], shown.get("#ffffff")
-        assert filled.get_xdata()[0] == displacement
+        filled = shown[to_hex(figures_ledger.ROUNDED if part == "code" else figures_ledger.DOT)]
+        hollow = shown.get("#ffffff")
+        assert filled.get_xdata()[0] == (rounding if part == "code" else displacement)
         assert round(filled.get_ydata()[0]) == 1  # the second line of the ledger
         assert (None if hollow is None else hollow.get_xdata()[0]) == pressure
 
@@ -264,7 +273,8 @@ def test_a_hollow_mark_at_the_top_has_not_settled() -> None:
         figures_stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
     ]
     (axes,) = figures_stability.settling_figure(lines, 1000.0).axes
-    assert names_at(axes) == {"one": (pytest.approx(40.0), color("one")), "two": (pytest.approx(100.0), color("two"))}
+    first, second, *_ = figures_stability.COLORS
+    assert names_at(axes) == {"one": (pytest.approx(40.0), first), "two": (pytest.approx(100.0), second)}
     hollow = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines
               if to_hex(line.get_markerfacecolor()) == "#ffffff" and len(line.get_xdata())]  # fmt: skip
     assert hollow == [([10.0], [1000.0])]

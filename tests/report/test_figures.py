@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from validation.report.figures import curves
+from validation.report.figures import curves, ledger, motion
 from validation.report.figures import histories as figures
 from validation.runs.history import History
 
@@ -28,7 +28,7 @@ def histories(solvers=SOLVERS, steps=300, static=-0.01, blown=None):
 
 
 def panel(title="dt = 0.001 s", reference="bar", **kwargs):
-    return curves.Panel(title, histories(**kwargs), -0.01, reference)
+    return curves.Panel(title, histories(**kwargs), {"displacement": -0.01}, reference)
 
 
 def texts(axes, renderer):
@@ -88,7 +88,9 @@ def test_differences_are_scaled_by_the_static_value():
     time = np.arange(1.0, 5.0)
     first = History(time, {"displacement": np.array([0.0, -0.5, -1.0, -2.0])})
     second = History(time, {"displacement": np.array([0.0, -0.5, -1.5, -2.5])})
-    found = curves.differences(curves.Panel("", {"dda": first, "bar": second}, -2.0, "bar"), "displacement")
+    found = curves.differences(
+        curves.Panel("", {"dda": first, "bar": second}, {"displacement": -2.0}, "bar"), "displacement"
+    )
     assert list(found) == ["dda"]
     assert found["dda"][1].tolist() == [0.0, 0.0, 0.25, 0.25]
 
@@ -98,7 +100,7 @@ def test_a_run_that_blew_up_neither_warns_nor_sets_the_scale():
     low, high = curves.common_range(some, "displacement")
     assert low == min(h.displacement.min() for h in histories().values())
     assert high == pytest.approx(0.06)  # six static values cut the one that blew up
-    figures.history_figure(some, "displacement").savefig(io.BytesIO(), format="svg")
+    motion.history_figure(some, "displacement").savefig(io.BytesIO(), format="svg")
 
 
 @pytest.mark.parametrize(
@@ -125,7 +127,7 @@ def test_each_solver_has_one_style_and_no_two_share_it():
 
 @pytest.mark.parametrize("count", [1, 3, 5, 7])
 def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
-    figure = figures.history_figure([panel(f"dt = {i}") for i in range(count)], "contact_pressure")
+    figure = motion.history_figure([panel(f"dt = {i}") for i in range(count)], "contact_pressure")
     renderer = FigureCanvasAgg(figure).get_renderer()
     labelled = [axes for axes in figure.axes if axes.texts]
     assert labelled
@@ -137,9 +139,9 @@ def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
 
 
 def test_axes_carry_units_and_share_their_limits():
-    figure = figures.history_figure([panel(static=-0.01), panel(static=-0.02)], "displacement")
+    figure = motion.history_figure([panel(static=-0.01), panel(static=-0.02)], "displacement", apart=True)
     top, bottom = figure.axes[:2], figure.axes[2:]
-    assert top[0].get_ylabel() == "Displacement [mm]"
+    assert top[0].get_ylabel() == "Displacement\n[mm]"
     assert top[0].get_ylim() == top[1].get_ylim()
     assert top[0].get_ylim()[0] < -20  # mm: the deeper history fits
     assert [axes.get_xlabel() for axes in bottom] == ["Time [s]", "Time [s]"]
@@ -147,7 +149,7 @@ def test_axes_carry_units_and_share_their_limits():
 
 def test_the_same_data_give_the_same_bytes(tmp_path):
     first, second = (
-        figures.save(figures.history_figure([panel()], "displacement"), tmp_path / f"{i}.svg") for i in "ab"
+        figures.save(motion.history_figure([panel()], "displacement"), tmp_path / f"{i}.svg") for i in "ab"
     )
     assert first.read_bytes() == second.read_bytes()
     assert b"<text" not in first.read_bytes()  # letters are paths: no font is needed to show them
@@ -155,10 +157,10 @@ def test_the_same_data_give_the_same_bytes(tmp_path):
 
 def test_ledger_figure_shows_each_number_once():
     lines = [
-        figures.LedgerLine("one", {"code": (1e-13, 2e-13), "mesh": (None, None)}),
-        figures.LedgerLine("two", {"code": (1e-12, None), "mesh": (1e-6, 1e-5)}),
+        ledger.LedgerLine("one", {"code": (1e-13, 2e-13), "mesh": (None, None), "time": (None, None)}),
+        ledger.LedgerLine("two", {"code": (1e-12, None), "mesh": (1e-6, 1e-5)}),
     ]
-    figure = figures.ledger_figure(lines)
+    figure = ledger.ledger_figure(lines)
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]
 

@@ -7,10 +7,8 @@ import pytest
 
 from validation.engine.run import run_study
 from validation.report.blocks import FigureBlock, Heading, Paragraph, Table
-from validation.report.chapters.damping import remark
 from validation.report.chapters.opened import impacts as impacts_chapter
 from validation.report.chapters.opened import rebound as rebound_chapter
-from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.studies.contact import impacts, rebound
@@ -69,9 +67,3 @@ def test_the_chapter_of_impacts_marks_what_is_exact(results: Results, tmp_path: 
     rows = {row[1]: row for row in table.rows}
     assert rows["block-events (exact)"][2:4] == ("540.31", "885.46") and rows["dda"][2] == "541.00"
     assert rows["block-events (exact)"][7] == "748.07"  # mm
-
-
-def test_alarms_of_one_kind_make_one_remark() -> None:
-    alarms: list[AlarmRecord] = [{"kind": "k", "scene": f"s{n}", "sentence": f"it is {n}"} for n in range(3)]
-    assert remark(alarms[:1]) == "It is 0."
-    assert remark(alarms) == "It is 0 (the first of 3 cases with this alarm)."

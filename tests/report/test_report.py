@@ -15,14 +15,27 @@ import pytest
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
-from validation.report.blocks import Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
+from validation.report.appendix import provenance as appendix_provenance
+from validation.report.blocks import (
+    Beside,
+    Callout,
+    Column,
+    FigureBlock,
+    Heading,
+    Lines,
+    PageBreak,
+    Paragraph,
+    Points,
+    Table,
+)
 from validation.report.book import build, figures, ordered_studies
 from validation.report.chapters import data as chapters_data
-from validation.report.chapters import front as chapters_front
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
+from validation.report.front.found import found_scenes
+from validation.report.front.pages import front_pages
 from validation.report.typesetting import typeset
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -227,25 +240,27 @@ def test_the_report_imports_no_solver(small, tmp_path):
     assert done.stdout.strip() == "[]"
 
 
-def test_front_page_counts_and_names_failures_first(results, tmp_path):
-    blocks = chapters_front.front_matter(results, ["core"], tmp_path)
-    assert blocks[0].text.startswith("1 of 3 gates fails and 1 did not run:")
-    assert blocks[1] == Callout("One gate fails.", "fail")
-    rows = [row for row in blocks[2].rows if len(row) > 1]
-    assert [row[0] for row in rows] == ["FAIL", "NOT RUN"]
-    assert rows[0][1] == FAILS.gate.id
-    assert ("fenicsx: dolfinx is not installed",) in blocks[2].rows
-    counts = next(b for b in blocks if isinstance(b, Table) and b.columns[0].title == "Study")
-    assert counts.rows[0] == ("core", "all scenes", "1", "1", "1")
+def front_of(results, studies, directory):
+    return front_pages(found_scenes(results, studies), results.verdicts(), studies, directory)
 
 
-def test_headline_is_computed_from_the_comparisons(results):
-    found = [group_of(results, "figures-3-4")]
-    values = [found[0].compared(case, "dda", "bar")["displacement.l2"] for case in found[0].cases]
-    text = chapters_front.headline(found, [{"verdict": "PASS"}, {"verdict": "PASS"}])
-    assert text.startswith("All 2 gates pass: ")
-    assert f"by {chapters_text.percent(min(values))} to {chapters_text.percent(max(values))} in displacement" in text
-    assert f"code and rounding are at most {chapters_text.percent(CODE)}" in text
+def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_band_and_reason(results, tmp_path):
+    blocks = front_of(results, ["core"], tmp_path)
+    assert Callout("3 gates: 1 passed, 1 failed, 1 not run.", "fail") in blocks
+    assert Callout("One gate fails.", "fail") in blocks
+    table = next(b for b in blocks if isinstance(b, Table) and b.columns[0].title == "Verdict")
+    assert table.rows == (
+        ("FAIL", FAILS.gate.id, "0.0567", "0.03 … 0.04"),
+        ("the model form at this step, known from both sides [exact]",),
+        ("NOT RUN", WAITS.gate.id, "–", "0 … 1×10⁻⁶"),
+        ("another code [other code ± 1×10⁻⁹] Fenicsx: dolfinx is not installed.",),
+    )
+    kinds = [type(b) for b in blocks]
+    assert (
+        kinds.index(PageBreak)
+        < blocks.index(table)
+        < next(i for i, b in enumerate(blocks) if isinstance(b, Heading) and b.text.startswith("Decision 1"))
+    )  # on a page of its own, before the decisions
 
 
 @pytest.mark.parametrize(
@@ -259,31 +274,14 @@ def test_ledger_takes_the_comparison_of_its_pair(results, scene, part, expected)
     group = group_of(results, scene)
     for case in group.cases:
         found = chapters_ledger.entry(group, case, part)
-        assert found.values == (pytest.approx(expected, rel=1e-2),) * 2  # rounding of 1 + CODE
-        assert not found.reason
+        assert found == (pytest.approx(expected, rel=1e-2),) * 2  # rounding of 1 + CODE
 
 
-@pytest.mark.parametrize(
-    ("scene", "part", "words"),
-    [
-        ("figure-8", "code", "dda-textbook: not applicable (alpha must be above 0)."),
-        ("poisson", "mesh", "The scene does not ask for bar."),
-        ("corner-springs", "model form", "fem on corner point springs has no fine-mesh limit."),
-    ],
-)
-def test_ledger_gives_a_reason_where_a_part_does_not_apply(results, scene, part, words):
+@pytest.mark.parametrize(("scene", "part"), [("figure-8", "code"), ("poisson", "mesh"), ("poisson", "model form")])
+def test_a_pair_that_was_not_compared_has_no_part_of_the_ledger(results, scene, part):
     group = group_of(results, scene)
-    assert chapters_ledger.entry(group, group.cases[0], part) == chapters_ledger.Entry(reason=words)
-    table = chapters_ledger.ledger_table([group])
-    assert any(note.endswith(words) for note in table.notes)
-
-
-def test_ledger_marks_model_form_against_fem(results):
-    group = group_of(results, "poisson")
-    found = chapters_ledger.entry(group, group.cases[0], "model form")
-    assert found.values[0] == group.compared(group.cases[0], "dda", "fem")["displacement.l2"]
-    assert "against fem" in found.remark
-    assert chapters_ledger.part_values([group], "model form", 0) == []  # not mixed with the bar's
+    assert chapters_ledger.entry(group, group.cases[0], part) == chapters_ledger.NOTHING
+    assert chapters_ledger.part_values([group], part, 0) == []
 
 
 def test_scene_page_names_every_outcome_other_than_completed(results):
@@ -310,18 +308,10 @@ def test_drift_of_corner_springs_is_fitted(results, tmp_path):
     assert chapters.drift_values(group) == [
         (n, pytest.approx(-0.010 - 0.005 * math.log2(n))) for n in (4, 8, 16, 32, 64)
     ]
-    blocks = chapters.scene_page(group, tmp_path)
+    blocks = chapters.scene_section(group, tmp_path)
     assert "−5.00 mm with every halving" in all_text(blocks)
     assert (tmp_path / "corner-springs-drift.svg").exists()
     assert chapters.drift_values(group_of(results, "poisson")) == []
-
-
-def test_gates_share_their_reason_and_failures_come_first(results):
-    group = group_of(results, "figures-3-4")
-    table = chapters.gate_table(group.verdicts, {case.name: case.label for case in group.cases})
-    assert table.rows[0] == ("the model form at this step, known from both sides [exact]",)
-    assert table.rows[1] == ("FAIL", "dt = 0.01 s", "dda – bar", "pressure.l2", "0.0567", "0.03 … 0.04")
-    assert table.rows[2] == ("PASS", "dt = 0.002 s", "dda – bar", "displacement.l2@0.2s", "0.0363", "0.03 … 0.04")
 
 
 @pytest.mark.parametrize(
@@ -338,17 +328,17 @@ def test_a_band_shows_as_many_digits_as_tell_its_edges_apart(band, text):
     assert chapters_gates.band({"band": band}) == text
 
 
-def test_damping_table_tells_undefined_from_not_reported(results):
+def test_damping_table_joins_solvers_that_read_alike_and_tells_what_is_undefined(results):
     table = chapters.damping_table(group_of(results, "figures-3-4"))
     row = dict(zip([(c.group, c.title) for c in table.columns], table.rows[0], strict=True))
     assert row["", "Case"] == "dt = 0.01 s"
-    assert row["ω₁ [rad/s]", "model"] == "344.6"
-    assert row["ξ₁ [%]", "operator"] == "30.000"
-    assert row["ξ₁ [%]", "history"] == "n. r."
+    assert row["", "Solver"] == "dda, dda-textbook"  # whose numbers read alike
+    assert row["", "ω₁ [rad/s]"] == "344.6"
+    assert row["", "ξ₁ [%]"] == "30.000"
     assert row["Settling step", "displ."] == "44"
     assert row["Settling step", "press."] == "undef."
-    assert row["Least press.", "MPa"] == "−0.3380"
-    assert [note.split(":")[0] for note in table.notes] == ["undef.", "n. r."]
+    assert row["Least pressure", "MPa"] == "−0.3380"
+    assert [note.split(":")[0] for note in table.notes] == ["undef."]
 
 
 @pytest.mark.parametrize(
@@ -407,10 +397,8 @@ def test_labels_that_would_read_alike_keep_their_steps():
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
     paths = figures("mine", small, tmp_path / "new" / "out")
     assert sorted(p.name for p in paths) == [
-        "my-scene-1-contact-pressure.png",
-        "my-scene-1-contact-pressure.svg",
-        "my-scene-1-displacement.png",
-        "my-scene-1-displacement.svg",
+        "my-scene-1-history.png",
+        "my-scene-1-history.svg",
     ]
     assert {p.read_bytes()[:4] for p in paths} == {b"\x89PNG", b"<?xm"}
 
@@ -427,7 +415,7 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
 
 
 def test_provenance_says_versions_and_cost(results):
-    blocks = chapters_front.provenance(results, ["core"])
+    blocks = appendix_provenance.provenance(results, ["core"])
     text = all_text(blocks)
     for words in ("numpy 2.4.0", "0123abc", "a processor"):
         assert words in text
@@ -445,6 +433,9 @@ def test_every_kind_of_block_is_set(tmp_path):
         Callout("careful", "warn"),
         PageBreak(),
         Table((Column("x", "decimal"), Column("id", "id")), (("1.5", "a:b[c=d]"),)),
+        Points((("One.", "This *is* #not markup"),)),
+        Beside((Paragraph("left"),), (Callout("right", "rule"),), 0.4),
+        Lines((("core", "why", (("a", "b", "1", "0 … 2"),)),)),
     ]
     assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 
@@ -481,9 +472,9 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     manifest = {"study": "mine", "cases": entries, "comparisons": []}
     directory.write_json("studies/mine.json", manifest)
     page = chapters.scene_chapter(directory, manifest, tmp_path)
-    front = chapters_front.front_matter(directory, ["mine"], tmp_path)
+    front = front_of(directory, ["mine"], tmp_path)
     assert not [b for b in (*page, *front) if isinstance(b, FigureBlock)]
     said = [b.text for b in page if isinstance(b, Callout)]
     assert said[0] == f"dda: overflow. {Outcome.OVERFLOW.sentence} step 7; too long"
     assert said[1].startswith("bar: refused.")
-    assert chapters_front.headline([], []) == "No gate was judged; DDA was not compared with the exact bar."
+    assert front == [Paragraph("1 scene of mine: one chapter a study.", "lead"), Callout("No gate was judged.", "warn")]

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from matplotlib.figure import Figure
 
 from validation.engine.run import run_study
 from validation.engine.study import Study
@@ -44,11 +43,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return kept
 
 
-def test_the_chapter_tells_error_against_time_locking_glue_and_rocking(
-    results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # a page's histories are drawn in the chapters of other studies
-    monkeypatch.setattr("validation.report.figures.histories.history_figure", lambda *of: Figure())
+def test_the_chapter_tells_error_against_time_locking_glue_and_rocking(results: Results, tmp_path: Path) -> None:
     blocks = chapter(results, results.manifest("subblocks"), tmp_path)
     headings = [block.text for block in blocks if isinstance(block, Heading)]
     assert headings[:4] == ["Sub-blocks", "Error against run time", "Glue", "Rocking"]

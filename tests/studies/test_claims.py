@@ -1,6 +1,7 @@
 """The register of claims: computed, gated, and not deaf: thresholds and code turn verdicts over."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,20 +11,21 @@ from conftest import typed
 from faults import seams
 from faults.fault import soft_springs, with_scheme
 
-from dda import UnilateralResult
+from dda import Unilateral, UnilateralResult
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.studies.paper.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.paper.friction import ON_SLOPES
 from validation.studies.paper.open_close import OPEN_CLOSE
 from validation.studies.paper.study import CLAIMS, NUMBERS, PAPER
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
-OPENED = {need for claim in OPEN_CLOSE for need in claim.needs}
+OPENED = {need for claim in (*OPEN_CLOSE, *ON_SLOPES) for need in claim.needs}
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +45,7 @@ def findings(finished: Finished) -> dict[str, Finding]:
 
 def test_every_claim_has_its_expected_verdict(sound: Finished) -> None:
     assert findings(sound) == {claim.id: claim.expected for claim in CLAIMS}
-    assert {f"C{i}" for i in range(1, 19)} <= set(findings(sound))
+    assert {f"C{i}" for i in range(1, 22)} <= set(findings(sound))
     assert all(evaluate(gate, sound).status is Status.PASS for gate in PAPER.gates())
 
 
@@ -72,6 +74,15 @@ def held(found: UnilateralResult) -> UnilateralResult:
     return replace(found, closed_m=shut, closed_n=shut, energies=energies)
 
 
+def rubbing(**changes: object) -> Callable[..., Callable[..., object]]:
+    """Change the contact law where it has friction."""
+
+    def law(contact: Unilateral) -> Unilateral:
+        return contact if contact.friction is None else replace(contact, **changes)  # type: ignore[arg-type]
+
+    return lambda sound: lambda model, *a, **k: sound(replace(model, contact=law(model.contact)), *a, **k)
+
+
 FAULTS = {  # seam, what is made of it, and the claims that it turns over
     "velocity with another delta": (
         seams.DDA_VELOCITY,
@@ -91,6 +102,8 @@ FAULTS = {  # seam, what is made of it, and the claims that it turns over
         lambda sound: lambda *a, **k: held(sound(*a, **k)),
         {"C15", "C16", "C17"},
     ),
+    "friction that lags": (seams.DDA_OPENED, rubbing(rules="lagged"), {"C20"}),
+    "springs under friction 2 % soft": (seams.DDA_OPENED, rubbing(stiffness=0.98e9), {"C21"}),
     "gg missing": (seams.DDA_PREDICTOR, with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
 }
 

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, made_row
 
-from validation.report.blocks import Paragraph
 from validation.report.chapters import subblocks as chapters_subblocks
 from validation.report.chapters import work as chapters_work
 from validation.runs.results import Results
@@ -111,32 +110,17 @@ def test_the_sentences_of_the_work_chapter() -> None:
     )
 
 
-def test_the_table_of_runs_reads_across_as_its_heads_say() -> None:
-    shown = chapters_work.run_table(FOUND)
-    heads = [(c.group, c.title) for c in shown.columns]
-    assert dict(zip(heads, shown.rows[1], strict=True)) == {
-        ("", "Method"): "dda",
-        ("", "dt [ms]"): "2",
-        ("", "n"): "–",
-        ("Error against the bar", "v"): "0.021",
-        ("Error against the bar", "pressure"): "0.022",
-        ("Error against the continuum", "v"): "0.041",
-        ("Error against the continuum", "pressure"): "0.042",
-        ("", "Unknowns"): "31",
-        ("", "Solves"): "17",
-        ("", "Set-up [ms]"): "1.0",
-        ("", "Steps [ms]"): "4.0",
-    }
-    assert shown.rows[3][:3] == ("fem, quadratic", "2", "12")
-
-
-def test_orders_are_shown_with_value_band_and_verdict() -> None:
-    verdicts = [{"scene": "a", "metric": "order.v", "value": 1.98765, "band": [1.98, 2.02], "verdict": "PASS"},
-                {"scene": "b", "metric": "order.p", "value": None, "band": [3.0, 5.0], "verdict": "FAIL"}]  # fmt: skip
-    said, shown = chapters_work.order_blocks(verdicts)
-    assert said == Paragraph("1 of 2 gates fails")
-    assert [c.title for c in shown.columns] == ["Refined", "Metric", "Value", "Band", "Verdict"]
-    assert shown.rows == (("a", "order.v", "1.988", "1.98 … 2.02", "PASS"), ("b", "order.p", "–", "3 … 5", "FAIL"))
+def test_orders_are_shown_by_what_was_refined_and_quantity() -> None:
+    verdicts = [{"scene": scene, "metric": metric, "value": value} for scene, metric, value in
+                (("a", "order.displacement", 1.98765), ("a", "order.pressure", 2.5), ("b", "order.pressure", None),
+                 ("c", "order.pressure", 4.0), ("c", "record.work", 1.0))]  # fmt: skip
+    shown = chapters_work.order_table(verdicts)
+    assert [(c.group, c.title) for c in shown.columns] == [
+        ("", "Refined"),
+        ("Order", "displacement"),
+        ("Order", "pressure"),
+    ]
+    assert shown.rows == (("a", "1.988", "2.500"), ("c", "–", "4.000"))
 
 
 def test_scenes_and_methods_of_the_study_have_their_own_names() -> None:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
+from validation.advice.friction import kept_way
 from validation.advice.instead import instead
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
@@ -320,7 +321,9 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c"
+        left = 100 * kept_way(solution.value, solution.step, 1.0)
+        braked = f"in flight or sliding it leaves {left:.3g} % of the way of a second"
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {braked}"
     return ""
 
 

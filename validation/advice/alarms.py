@@ -9,7 +9,7 @@ contact ringing
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
 
-Those of contact that opens are in `validation.advice.contact_alarms`.
+Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import numpy as np
 
 from validation.advice.alarm import Alarm as Alarm
 from validation.advice.contact_alarms import contact_alarms
+from validation.advice.friction import friction_alarms
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
@@ -58,6 +59,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
         yield from _tension(scene, rows)
         yield from _ringing(scene, rows)
         yield from contact_alarms(scene, rows)
+        yield from friction_alarms(scene, rows)
     yield from fixed_discount(listed)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from validation.advice import contact
+from validation.advice import contact, friction
 from validation.advice.contact_alarms import contact_alarms
 from validation.errors import InputError
 from validation.runs.row import Row, Value
@@ -32,7 +32,9 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
     ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
     ("energy, greatest above the start", "energy.rise", 100.0, " %"),
 )
+SLIPS = (("slip", "contact.slip", 1e3, " mm"), ("slip a second, at the end", "contact.slip_rate", 1e3, " mm/s"))
 LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
+ALARMS = (contact_alarms, friction.friction_alarms)
 
 
 def of_role(role: Role) -> str:
@@ -102,7 +104,8 @@ def answer(
         "needed": contact.as_dict(contact.needed(scene, speed, error, penetration, probe)),
         "hidden_from": contact.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
-        "alarms": [alarm.record() for alarm in contact_alarms(scene, rows)],
+        "sliding": friction.as_dict(friction.sliding(scene)),
+        "alarms": [alarm.record() for find in ALARMS for alarm in find(scene, rows)],
     }
 
 
@@ -139,6 +142,10 @@ def page(scene: Scene, found: Mapping[str, Any], absent: Mapping[str, str]) -> I
     yield from _aligned(table(scene, found["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
+    slides = friction.sliding(scene)
+    if slides is not None:
+        yield from friction.lines(scene, slides)
+        yield ""
     yield from _needed(scene, found)
     for alarm in found["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
@@ -157,9 +164,10 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
-    for words, metric, factor, unit in LINES:
+    rubs = features.FRICTION in features.of(scene)
+    for words, metric, factor, unit in (*LINES, *(SLIPS if rubs else ())):
         lines.append((words, *(_value(run.get(metric), factor, unit) for run in runs.values())))
-    for words, name in LOSSES:
+    for words, name in (*LOSSES, *((("friction", "friction"),) if rubs else ())):
         lines.append(
             (f"energy lost by {words}", *(_value(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()))
         )
@@ -209,7 +217,11 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
             f"{map_['high']:.3g}, and {map_['energy']:.3g} of its energy"
         )
     if scene.time.gg_rate is None and scene.time.discount < 1:
-        yield f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more of a landing it takes"
+        left = 100 * friction.kept_way(scene.time.discount, scene.time.step, 1.0)
+        yield (
+            f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more of a landing it takes; "
+            f"in flight or sliding it leaves {left:.3g} % of the way of a second"
+        )
 
 
 def _depth(need: Mapping[str, Any], asked: float) -> str:

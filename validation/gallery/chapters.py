@@ -68,12 +68,8 @@ def slug(name: str) -> str:
 
 
 def of_history(file: str, scene: GalleryScene) -> bool:
-    """Whether a figure draws a column of histories, which the scene's page has as a chart that can be zoomed."""
-    rest = file.removeprefix(f"{slug(scene.name)}-").removesuffix(".svg").replace("-", "_")
-    columns: set[str] = set()
-    for case in scene.cases:
-        columns.update(case.scene.run.columns)
-    return rest in columns
+    """Whether a figure draws a scene's histories, which its page has as charts that can be zoomed."""
+    return file == f"{slug(scene.name)}-history.svg"
 
 
 def shown(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:

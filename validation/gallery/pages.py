@@ -52,7 +52,7 @@ class Pages:
     def __init__(self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene]) -> None:
         self._environment = _environment()
         self._results, self._studies, self._scenes = results, studies, scenes
-        self._most = scene_data.most_cases(scenes)
+        self._most = scene_data.most_lines(scenes)
         self._samples = LEAST
         self._made = _provenance(studies)
 

@@ -47,22 +47,26 @@ def lines(case: GalleryCase) -> int:
 
 
 def drawn(scene: GalleryScene, most: int) -> list[GalleryCase]:
-    """Return the cases whose curves are drawn: all, or evenly chosen ones, the first and the last among them."""
+    """Return the cases whose curves are drawn: all, or evenly chosen ones, the first and the last among them.
+
+    `most` is the number of curves of a scene; at least `FEWEST` cases are drawn all the same.
+    """
     with_lines = [case for case in scene.cases if lines(case)]
-    chosen = np.unique(np.linspace(0, max(len(with_lines) - 1, 0), most).round().astype(int))
-    return [with_lines[i] for i in chosen] if len(with_lines) > most else with_lines
+    count = max(FEWEST, most // max(map(lines, with_lines), default=1))
+    chosen = np.unique(np.linspace(0, max(len(with_lines) - 1, 0), count).round().astype(int))
+    return [with_lines[i] for i in chosen] if len(with_lines) > count else with_lines
 
 
-def most_cases(scenes: Sequence[GalleryScene]) -> int:
-    """Return how many cases of each scene can be drawn with `MOST_LINES` curves in all, and not fewer than `FEWEST`."""
-    most = max((len(scene.cases) for scene in scenes), default=FEWEST)
-    while most > FEWEST and all_lines(scenes, most) > MOST_LINES:
-        most -= 1
-    return max(most, FEWEST)
+def most_lines(scenes: Sequence[GalleryScene]) -> int:
+    """Return how many curves each scene may have, so that there are `MOST_LINES` in all."""
+    most = max((sum(map(lines, scene.cases)) for scene in scenes), default=1)
+    while most > 1 and all_lines(scenes, most) > MOST_LINES:
+        most = int(0.95 * most)
+    return most
 
 
 def all_lines(scenes: Sequence[GalleryScene], most: int) -> int:
-    """Return the number of curves of all scenes with at most so many cases of each."""
+    """Return the number of curves of all scenes with at most so many of each."""
     return sum(lines(case) for scene in scenes for case in drawn(scene, most))
 
 

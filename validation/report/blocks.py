@@ -74,10 +74,10 @@ class FigureBlock:
 
 @dataclass(frozen=True)
 class Callout:
-    """A framed remark: `fail` in red, `warn` in amber."""
+    """A framed remark: `fail` in red, `warn` in amber, `pass` in green, `rule` in blue."""
 
     text: str
-    tone: Literal["fail", "warn"]
+    tone: Literal["fail", "warn", "pass", "rule"]
 
 
 @dataclass(frozen=True)
@@ -85,5 +85,32 @@ class PageBreak:
     """The rest starts on a new page (nothing happens at the top of a page)."""
 
 
-Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak
+@dataclass(frozen=True)
+class Points:
+    """Numbered points, each opened by its own words in bold."""
+
+    items: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Blocks side by side; `share` of the width goes to those at the left."""
+
+    left: tuple[Block, ...]
+    right: tuple[Block, ...]
+    share: float
+
+
+Line = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Short lines of four cells in small type, in two columns, under the title and the remark that they share."""
+
+    sections: tuple[tuple[str, str, tuple[Line, ...]], ...]  # title, empty where it is the last one's; remark; lines
+
+
+Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
+Part = Block | Points | Beside | Lines  # of the first and the last pages
 Chapter = Callable[[Results, Manifest, Path], list[Block]]

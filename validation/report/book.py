@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Part
 from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
@@ -42,14 +42,18 @@ def build(results: Results, out: Path) -> Path:
     return write_document(out, lambda root: _all_blocks(results, studies, root))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Block]:
-    from validation.report.chapters.front import front_matter, provenance
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Part]:
+    from validation.report.appendix.pages import appendix
+    from validation.report.front.found import found_scenes
+    from validation.report.front.pages import front_pages
 
-    chapters: list[Block] = []
+    chapters: list[Part] = [PageBreak()]
     for study in studies:
-        chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
-    with _told(results, "the first and the last page"):
-        return [*front_matter(results, studies, figures), *chapters, PageBreak(), *provenance(results, studies)]
+        chapters += _chapter_or_why(results, study, figures)
+    with _told(results, "the first and the last pages"):
+        found, verdicts = found_scenes(results, studies), results.verdicts()
+        front = front_pages(found, verdicts, studies, figures)
+        return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, studies)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:

@@ -13,7 +13,7 @@ from typing import Any
 import typst
 
 from validation.errors import InputError
-from validation.report.blocks import Block
+from validation.report.blocks import Beside, Part
 from validation.report.names import unescaped
 from validation.runs.files import write_atomically
 
@@ -21,7 +21,7 @@ TEMPLATE = Path(__file__).with_name("report.typ")
 PIXELS_PER_INCH = 200.0
 
 
-def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Path:
     """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
 
     Raises
@@ -38,13 +38,13 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
     return out
 
 
-def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
+def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     shutil.copyfile(TEMPLATE, root / "report.typ")
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation on the two-block model",
-        "blocks": [{"block": type(block).__name__} | _shown(asdict(block)) for block in blocks],
+        "blocks": [_record(block) for block in blocks],
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
     try:
@@ -52,6 +52,14 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     except typst.TypstError as error:
         raise InputError(f"the report cannot be set: {' '.join(str(error).split())}") from error
     return bytes(pdf)
+
+
+def _record(block: Part) -> dict[str, Any]:
+    """Return a block as plain data with the name of its kind, those within it as well."""
+    data: dict[str, Any] = {"block": type(block).__name__} | _shown(asdict(block))
+    if isinstance(block, Beside):
+        data |= {"left": [_record(part) for part in block.left], "right": [_record(part) for part in block.right]}
+    return data
 
 
 def _shown(data: Any) -> Any:

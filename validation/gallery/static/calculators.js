@@ -106,7 +106,7 @@ const calculators = (() => {
     return s.alpha > 0 && s.delta >= 0.5 && s.delta <= Math.min(1, s.alpha + 0.5) && s.gg > 0 && s.gg <= 1;
   }
 
-  const LEAST_OMEGA = 1e-3;  // thousands of steps in one contact: nothing is to be seen below
+  const LEAST_OMEGA = 0.01;  // hundreds of steps in one contact: nothing is to be seen below
 
   function rebound(s) {
     const block = block_of(s), frequency = f.base_frequency(block), omega = frequency * s.step;
@@ -115,7 +115,7 @@ const calculators = (() => {
     const facts = [["w_c dt", figure(omega)], ["dt for the error allowed", `${figure(limit / frequency)} s`]];
     const values = { frequency, omega, limit, step: limit / frequency, statistics: null };
     if (!map_defined(s) || omega < LEAST_OMEGA) {
-      const why = omega < LEAST_OMEGA ? "w_c dt is below 0.001: the contact is followed in thousands of steps" :
+      const why = omega < LEAST_OMEGA ? "w_c dt is below 0.01: the contact is followed in hundreds of steps" :
         "The map is defined for α > 0 and 1/2 ≤ δ ≤ min(1, α + 1/2)";
       return { values, facts: [[why, "no map"], ...facts], charts: { phase: null, steps: null }, command };
     }

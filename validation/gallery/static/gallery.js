@@ -31,12 +31,12 @@
     if (spec === null) return;
     const axis = { stroke: color("--soft"), grid: { stroke: color("--line"), width: 0.5 }, ticks: { stroke: color("--line") },
       font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 18 };
-    const powers = { values: (u, splits) => splits.map((v) => v === null ? "" : written(v, 3)) };
+    const values = (u, splits) => splits.map((v) => v === null ? "" : written(v, 6));
     const options = {
       width: Math.max(280, place.clientWidth), height: place.clientWidth < 600 ? 260 : 340,
       scales: { x: { time: false, distr: spec.log ? 3 : 1, range: (u, low, high) => [low, high] }, y: { distr: spec.logy ? 3 : 1, range: spec.range } },
-      axes: [{ ...axis, label: spec.xlabel, ...(spec.log ? powers : {}) },
-        { ...axis, label: spec.ylabel, size: 62, values: powers.values }],
+      axes: [{ ...axis, label: spec.xlabel, values, ...(spec.log ? logarithmic : {}) },
+        { ...axis, label: spec.ylabel, size: 62, values, ...(spec.logy ? logarithmic : {}) }],
       legend: { live: true }, cursor: { drag: { x: true, y: false }, points: { size: 6 } },
       series: [{ label: spec.xlabel, value: (u, v) => written(v) }, ...spec.lines.map((line) => ({
         label: line.label, stroke: seen(line.color), dash: line.dash, width: (line.width || 1) * 1.5, pxAlign: 0,
@@ -52,6 +52,24 @@
     place.onkeydown = (event) => key(event, plot, spec);
     plot.root.querySelector("canvas").setAttribute("aria-hidden", "true");
   }
+
+  // Ticks of a logarithmic axis: the library's own do not end where the axis begins beside a power of ten
+  const logarithmic = {
+    splits: (plot, axis, low, high) => {
+      const found = [];
+      for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++)
+        for (let digit = 1; digit < 10; digit++) found.push(Number(`${digit}e${power}`));
+      const inside = found.filter((value) => value >= low && value <= high);
+      return inside.length > 2 ? inside : [0, 1, 2, 3, 4].map((i) => low * (high / low) ** (i / 4));
+    },
+    // labels of all ticks, of 1, 2 and 5, or of powers of ten, as many as there is room for
+    filter: (plot, splits, axis) => {
+      const room = (axis === 0 ? plot.bbox.width / 64 : plot.bbox.height / 20) / devicePixelRatio;
+      const chosen = ["123456789", "125", "15", "1"].map((digits) =>
+        splits.map((value) => digits.includes(value.toExponential()[0]) ? value : null));
+      return chosen.find((some) => some.filter((value) => value !== null).length <= room) || chosen[3];
+    },
+  };
 
   function mark(plot, at) {
     if (at === null || at === undefined) return;

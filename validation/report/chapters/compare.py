@@ -10,7 +10,7 @@ from validation.compare.diagnosis import Answer
 from validation.compare.sentences import told_lines
 from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, parameters, short
-from validation.report.figures import histories
+from validation.report.figures import histories, motion
 from validation.report.figures.curves import Panel
 from validation.report.typesetting import write_document
 from validation.runs.history import DISPLACEMENT, History
@@ -36,7 +36,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
     panel = Panel(
         "displacement of the centroid",
         {name: History(time, {DISPLACEMENT: values}) for name, (time, values) in answer.curves.items()},
-        None,
+        {},
         next(iter(answer.curves)),
     )
     caption = "The file, the scene as DDA with what is no fault, and the best explanation."
@@ -45,7 +45,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         Heading(f"{source} beside {scene.name}"),
         Callout(answer.sentence, "warn") if answer.departure else Paragraph(answer.sentence, "lead"),
         Paragraph(parameters(scene, set()), "small"),
-        histories.saved(histories.history_figure([panel], DISPLACEMENT), directory, FIGURE, caption),
+        histories.saved(motion.history_figure([panel], DISPLACEMENT, apart=True), directory, FIGURE, caption),
         *_facts(answer),
         *_evidence(answer),
         *([_ranking(answer)] if answer.ranking else []),

@@ -1,18 +1,24 @@
-"""Damping budgets and alarms as blocks of a scene's page."""
+"""What a scene's motions are damped by: the budget over the time step, and the table of what was measured."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from validation.advice.alarms import AGREEMENT, RINGING, TENSION
-from validation.report.blocks import Block, Callout, Column, Table, columns
-from validation.report.chapters.data import Group
-from validation.report.chapters.text import percent, plain, short
+from validation.report.blocks import Block, Column, Table
+from validation.report.chapters.data import Case, Group
+from validation.report.chapters.text import DASH, cell, load_size, word_notes
 from validation.report.figures import histories
 from validation.report.figures.paper import BudgetPanel, budget_figure
-from validation.runs.records import AlarmRecord, BudgetRecord
+from validation.runs.records import BudgetRecord
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import is_solver, role
+
+NOISE = 1e-9  # of the load; a smaller least pressure is rounding
+EXACT = (Role.LIMIT, Role.TRUTH)  # in time
 
 
 def budget_blocks(group: Group, directory: Path) -> list[Block]:
@@ -52,73 +58,66 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
     return " ".join(said)
 
 
-def alarm_blocks(group: Group) -> list[Block]:
-    """Return the alarms of a scene: a table for each kind that has numbers side by side, a remark for each other."""
-    labels = {case.name: case.label for case in group.cases}
-    kinds: dict[str, list[AlarmRecord]] = {kind: [] for kind in TABLES}
-    for alarm in group.alarms:
-        kinds.setdefault(alarm["kind"], []).append(alarm)
-    tables = [TABLES[kind](own, labels) for kind, own in kinds.items() if own and kind in TABLES]
-    return [*tables, *(Callout(remark(own), "warn") for kind, own in kinds.items() if kind not in TABLES)]
+# ---- the table of a scene ------------------------------------------------------------------------------------------
 
 
-def remark(alarms: Sequence[AlarmRecord]) -> str:
-    """Return the sentence of an alarm; of several of one kind the first, and how many cases it is raised in."""
-    said = alarms[0]["sentence"]
-    count = f" (the first of {len(alarms)} cases with this alarm)" if len(alarms) > 1 else ""
-    return f"{said[:1].upper()}{said[1:]}{count}."
+@dataclass(frozen=True)
+class Measure:
+    """A column of the damping table: titles, metric, factor and decimals (four digits where None)."""
+
+    title: str
+    over: str
+    metric: str
+    factor: float = 1.0
+    decimals: int | None = None
 
 
-Alarms = Sequence[AlarmRecord]
-Labels = Mapping[str, str]
+_MEASURES = (
+    Measure("ω₁ [rad/s]", "", "mode1.frequency"),
+    Measure("ξ₁ [%]", "", "mode1.damping", 100.0, 3),
+    Measure("displ.", "Settling step", "displacement.settling_step", 1.0, 0),
+    Measure("press.", "Settling step", "pressure.settling_step", 1.0, 0),
+    Measure("mm", "First peak", "displacement.peak", 1e3),
+    Measure("MPa", "First peak", "pressure.peak", 1e-6),
+    Measure("MPa", "Least pressure", "pressure.minimum", 1e-6),
+)
 
 
-def agreement_table(alarms: Alarms, labels: Labels) -> Table:
-    """Return agreement, share of the motion that damping removed and time error, side by side."""
-    rows = tuple(
-        (
-            labels.get(alarm["scene"], alarm["scene"]),
-            percent(alarm["values"]["agreement"]),
-            f"{plain(100 * alarm['values']['removed'], 2)}\u00a0%",
-            percent(alarm["values"]["time error"]),
-        )
-        for alarm in alarms
-    )
-    titles = columns("decimal", "DDA – elastic block", "Motion removed by damping", "Time error of both")
-    caption = "Alarm, agreement by damping: both are damped out (relative L2 of the displacement)."
-    return Table((Column("Case"), *titles), rows, caption)
+LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
 
 
-def tension_table(alarms: Alarms, labels: Labels) -> Table:
-    """Return how deep, when and for how long the locked contact pulls, by solver."""
-    rows = []
-    for alarm in alarms:
-        values, label = alarm["values"], labels.get(alarm["scene"], alarm["scene"])
-        for solver in dict.fromkeys(key.rpartition(".")[0] for key in values):
-            least, when, duration = (values[f"{solver}.{part}"] for part in ("minimum", "time", "duration"))
-            rows.append((label, solver, plain(least / 1e6, 3), short(1e3 * when), short(1e3 * duration)))
-            label = ""
-    titles = (
-        *columns("text", "Case", "Solver"),
-        *columns("decimal", "Least pressure [MPa]", "at [ms]", "tension for [ms]"),
-    )
-    return Table(titles, tuple(rows), "Alarm, hidden tension: the locked contact pulls where a real one opens.")
+def damping_table(group: Group) -> Table:
+    """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver.
+
+    Solvers whose numbers read alike share a line; what is exact in time has no damping to tell, and no line.
+    """
+    long = any(len(case.label) > LONG_LABEL for case in group.cases)
+    rows: list[tuple[str, ...]] = []
+    measured: list[Value] = []
+    for case in group.cases:
+        lines: dict[tuple[str, ...], list[str]] = {}
+        for solver in _finished(case):
+            metrics = case.rows[solver].metrics
+            shown = tuple(_measured(m, metrics.get(m.metric), case.scene) for m in _MEASURES)
+            if set(shown) != {DASH}:
+                lines.setdefault(shown, []).append(solver)
+                measured += [metrics.get(m.metric) for m in _MEASURES]
+        rows += [(case.label,)] if long and lines else []
+        for i, (shown, solvers) in enumerate(lines.items()):
+            rows.append((*(() if long else (case.label if i == 0 else "",)), ", ".join(solvers), *shown))
+    titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
+    return Table(titles if long else (Column("Case"), *titles), tuple(rows), notes=word_notes(measured), ruled=not long)
 
 
-def ringing_table(alarms: Alarms, labels: Labels) -> Table:
-    """Return the root next to -1 and how many steps it takes to fall to 1 %."""
-    rows = []
-    for alarm in alarms:
-        radius = alarm["values"]["radius"]
-        steps = f"{math.log(100) / -math.log(radius):.0f}" if 0 < radius < 1 else "∞"
-        label = labels.get(alarm["scene"], alarm["scene"])
-        rows.append((label, plain(alarm["values"]["root"]), plain(radius), steps))
-    titles = (Column("Case"), *columns("decimal", "Root", "|λ|", "Steps to fall to 1 %"))
-    return Table(titles, tuple(rows), "Alarm, contact ringing: a root of DDA's contact mode lies next to −1.")
+def _finished(case: Case) -> list[str]:
+    finished = [solver for solver, row in case.rows.items() if row.metrics and not solver.endswith(":full")]
+    return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT] or finished
 
 
-TABLES: dict[str, Callable[[Alarms, Labels], Table]] = {
-    AGREEMENT: agreement_table,
-    TENSION: tension_table,
-    RINGING: ringing_table,
-}
+def _measured(measure: Measure, value: Value, scene: Scene) -> str:
+    if not isinstance(value, int | float):
+        return cell(value)
+    if measure.decimals is None:
+        noise = NOISE * load_size(scene) if measure.metric == "pressure.minimum" else 0.0
+        return cell(value if abs(value) > noise else 0.0, measure.factor)
+    return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")

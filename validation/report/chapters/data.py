@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -79,18 +79,19 @@ class Group:
         return float(value) if isinstance(value, int | float) else None
 
 
-def groups(results: Results, manifest: Manifest) -> list[Group]:
-    """Return the scenes of a study in the order of its manifest."""
+def groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[Group]:
+    """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
     rows = results.rows()
     scenes: dict[str, dict[str, list[CaseRecord]]] = {}
     for entry in manifest.get("cases", []):
         scenes.setdefault(scene_of(entry["scene"]), {}).setdefault(entry["scene"], []).append(entry)
     verdicts = results.verdicts(manifest.get("study"))
-    return [_group(results, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
+    history_of = results.history if drawn else lambda _: None
+    return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
 
 
 def _group(
-    results: Results,
+    history_of: Callable[[str], History | None],
     rows: Mapping[str, Row],
     manifest: Manifest,
     base: str,
@@ -99,7 +100,7 @@ def _group(
 ) -> Group:
     scenes = [parse_scene(own[0]["definition"], name) for name, own in entries.items()]
     labels = case_labels(list(entries), scenes)
-    cases = map(partial(_case, results, rows), entries.values(), labels, scenes)
+    cases = map(partial(_case, history_of, rows), entries.values(), labels, scenes)
     return Group(
         base,
         next(iter(entries.values()))[0].get("title") or base,
@@ -111,10 +112,16 @@ def _group(
     )
 
 
-def _case(results: Results, rows: Mapping[str, Row], entries: Sequence[CaseRecord], label: str, scene: Scene) -> Case:
+def _case(
+    history_of: Callable[[str], History | None],
+    rows: Mapping[str, Row],
+    entries: Sequence[CaseRecord],
+    label: str,
+    scene: Scene,
+) -> Case:
     own = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
     drawn = {solver: row for solver, row in own.items() if not solver.endswith(":full")}  # equal to what they repeat
-    histories = {s: history for s, row in drawn.items() if (history := results.history(row.key)) is not None}
+    histories = {s: history for s, row in drawn.items() if (history := history_of(row.key)) is not None}
     return Case(entries[0]["scene"], label, scene, own, histories)
 
 

@@ -1,50 +1,16 @@
-"""Tables of gates: value, band and reason of each."""
+"""What a gate says: its value, its band and the reason of the band."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 
-from validation.report.blocks import Column, Table, columns
+from validation.report.blocks import Block, Callout, Column, Heading, Table
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
 ORDER = {"FAIL": 0, "NOT RUN": 1, "PASS": 2}
 NARROW = 7  # digits; a narrower band is written as middle and half width
-
-
-def gate_table(verdicts: Sequence[VerdictRecord], labels: Mapping[str, str]) -> Table:
-    """Return gates with value and band under the reason that they share, failures first."""
-    titles = (
-        Column("Verdict", "verdict"),
-        *columns("text", "Case", "Pair"),
-        Column("Metric", "code"),
-        Column("Value", "decimal"),
-        Column("Band"),
-    )
-    places = [*labels, *(v["scene"] for v in verdicts)]
-    ordered = sorted(verdicts, key=lambda v: (ORDER.get(v["verdict"], 0), places.index(v["scene"])))
-    return Table(titles, under_headings(ordered, reason, lambda v: _gate_row(v, labels)), ruled=False)
-
-
-def under_headings(
-    verdicts: Sequence[VerdictRecord],
-    heading: Callable[[VerdictRecord], str],
-    row: Callable[[VerdictRecord], tuple[str, ...]],
-) -> tuple[tuple[str, ...], ...]:
-    """Return a row for each verdict, those of one heading together below it; an empty heading takes no line."""
-    together: dict[str, list[tuple[str, ...]]] = {}
-    for verdict in verdicts:
-        said = heading(verdict)
-        together.setdefault(said, [(said,)] if said else []).append(row(verdict))
-    return tuple(itertools.chain(*together.values()))
-
-
-def _gate_row(v: VerdictRecord, labels: Mapping[str, str]) -> tuple[str, ...]:
-    window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
-    case, pair = labels.get(v["scene"], v["scene"]), " – ".join(v["pair"])
-    return (v["verdict"], case, pair, v["metric"] + window, value_cell(v["value"]), band(v))
 
 
 def value_cell(value: Value) -> str:
@@ -68,3 +34,21 @@ def reason(v: VerdictRecord) -> str:
     kind = f" [{v['reference_kind']}" + (f" ± {short(uncertainty, 2)}" if uncertainty else "") + "]"
     why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
     return f"{v['reason']}{kind}{why}"
+
+
+def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
+    """Return the gates that failed or did not run, with value, band and reason; nothing where all passed."""
+    bad = sorted((v for v in verdicts if v["verdict"] != "PASS"), key=lambda v: ORDER[v["verdict"]])
+    if not bad:
+        return []
+    failed = sum(v["verdict"] == "FAIL" for v in bad)
+    said = [Callout(f"{failed} gates fail." if failed > 1 else "One gate fails.", "fail")] if failed else []
+    titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
+    rows: dict[str, list[tuple[str, ...]]] = {}
+    for v in bad:
+        line = (v["verdict"], v["id"], value_cell(v["value"]), band(v))
+        rows.setdefault(reason(v), []).append(line)
+    lines: list[tuple[str, ...]] = []
+    for why, own in rows.items():
+        lines += [*own, (why,)]
+    return [Heading("Gates that did not pass", 2), *said, Table(titles, tuple(lines), ruled=False)]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from pathlib import Path
 
-from validation.report.blocks import Table, columns
+from validation.report.blocks import Block, Heading, Paragraph
 from validation.report.chapters.data import Case, Group
-from validation.report.chapters.text import DASH, bounded, power, raised
-from validation.report.figures.histories import LedgerLine
-from validation.runs.run import Outcome
+from validation.report.chapters.text import percent, span
+from validation.report.figures import histories
+from validation.report.figures.ledger import LedgerLine, ledger_figure
 from validation.scenes import features
 
 PARTS = {
@@ -25,19 +26,8 @@ OPENING_PARTS = {  # contact that opens: no recursion is printed for it, and bot
     "time": ("dda", "block-events"),
 }
 METRICS = ("displacement.l2", "pressure.l2")
-NOT_COMPARED = "The results hold no comparison of this pair."
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One part for one case: relative L2 of displacement and contact pressure [1], or the reason for none.
-
-    A remark says where the numbers come from another place than the part's own pair.
-    """
-
-    values: tuple[float | None, float | None] = (None, None)
-    reason: str = ""
-    remark: str = ""
+Values = tuple[float | None, float | None]  # relative L2 of displacement and contact pressure [1]
+NOTHING: Values = (None, None)
 
 
 def parts_of(case: Case) -> Mapping[str, tuple[str, str]]:
@@ -45,107 +35,78 @@ def parts_of(case: Case) -> Mapping[str, tuple[str, str]]:
     return PARTS if features.linear(case.scene) else OPENING_PARTS
 
 
-def entry(group: Group, case: Case, part: str) -> Entry:
-    """Return a part of the ledger for one case."""
-    solver, reference = parts_of(case)[part]
-    if (found := _compared(group, case, solver, reference)) is not None:
-        return found
-    if parts_of(case) is OPENING_PARTS:
-        return Entry(reason=_absence(case, solver) or _absence(case, reference) or NOT_COMPARED)
-    if part == "code" and (row := case.rows.get("dda")) is not None and row.estimate is not None:
-        return Entry((row.estimate, row.estimate), remark="Code: the solver's own estimate of its rounding.")
-    if part == "model form" and (instead := _against_fem(group, case)) is not None:
-        return instead
-    return Entry(reason=_absence(case, solver) or _absence(case, reference) or NOT_COMPARED)
+def entry(group: Group, case: Case, part: str) -> Values:
+    """Return a part of the ledger for one case: its own pair's numbers, None where the pair was not compared."""
+    displacement, pressure = (group.number_of_pair(case, *parts_of(case)[part], name) for name in METRICS)
+    return displacement, pressure
 
 
-def _compared(group: Group, case: Case, solver: str, reference: str) -> Entry | None:
-    displacement, pressure = (group.number_of_pair(case, solver, reference, name) for name in METRICS)
-    return None if displacement is None and pressure is None else Entry((displacement, pressure))
-
-
-def _against_fem(group: Group, case: Case) -> Entry | None:
-    """Return dda against fem where there is no bar; corner point springs have no limit to compare with."""
-    if case.scene.fem.foundation == "corner":
-        return Entry(reason="fem on corner point springs has no fine-mesh limit.")
-    found = _compared(group, case, "dda", "fem")
-    return None if found is None else Entry(found.values, remark="Model form: against fem, where the bar does not run.")
-
-
-def _absence(case: Case, solver: str) -> str:
-    """Return why a solver has no history of a case, or nothing where it has one."""
-    row = case.rows.get(solver)
-    if row is None:
-        return f"The scene does not ask for {solver}."
-    if row.outcome is Outcome.COMPLETED:
-        return ""
-    return f"{solver}: {row.outcome}" + (f" ({'; '.join(row.notes)})." if row.notes else ".")
-
-
-def with_entries(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]] = PARTS) -> list[Group]:
+def with_entries(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]]) -> list[Group]:
     """Return the groups with the cases of these parts that some of them applies to."""
     kept = []
     for group in groups:
-        cases = tuple(case for case in group.cases if parts_of(case) is parts and _has_entry(group, case))
-        kept += [replace(group, cases=cases)] if cases else []
+        cases = [case for case in group.cases if parts_of(case) is parts]
+        known = tuple(case for case in cases if any(entry(group, case, part) != NOTHING for part in parts))
+        kept += [replace(group, cases=known)] if known else []
     return kept
 
 
-def _has_entry(group: Group, case: Case) -> bool:
-    return any(entry(group, case, part).values != (None, None) for part in PARTS)
+def ledger_blocks(groups: Sequence[Group], name: str, directory: Path) -> list[Block]:
+    """Return the ledger of a study's scenes as a figure and a sentence; nothing where fewer than two cases have one."""
+    blocks: list[Block] = []
+    for parts in (PARTS, OPENING_PARTS):
+        found = with_entries(groups, parts)
+        if sum(len(group.cases) for group in found) > 1:
+            pairs = ", ".join(f"{part}: {solver} − {reference}" for part, (solver, reference) in parts.items())
+            caption = (
+                "Each case on its line; displacement filled, contact pressure open; relative L2 over the history. "
+                f"{pairs}. Grey: below 10⁻¹², which is rounding."
+            )
+            file = f"{name}-ledger{'-opening' * (parts is OPENING_PARTS)}.svg"
+            figure = histories.saved(ledger_figure(ledger_lines(found, parts)), directory, file, caption)
+            blocks += [Heading("What the differences are made of", 2), Paragraph(headline(found)), figure]
+    return blocks
 
 
-def ledger_table(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]] = PARTS) -> Table:
-    """Return the ledger of all cases, which have these parts, reasons and remarks numbered below."""
-    notes: list[str] = []
-    rows = []
-    for group in groups:
-        name = group.name
-        for case in group.cases:
-            rows.append((name, *_row(group, case, notes)))
-            name = ""  # once above its cases
-    titles = columns("text", "Scene", "Case")
-    for part, (solver, reference) in parts.items():
-        over = f"{part}: {solver} − {reference.removeprefix('dda-')}"
-        titles += columns("decimal", "displ.", "pressure", group=over)
-    caption = "Relative L2 difference over the whole history, as a fraction; below 10⁻¹² a bound."
-    return Table(titles, tuple(rows), caption, tuple(f"{raised(i)} {text}" for i, text in enumerate(notes, 1)))
+def headline(found: Sequence[Group]) -> str:
+    """Return what code, mesh and model form contribute, in plain sentences."""
+    form = [part_values(found, "model form", column) for column in (0, 1)]
+    if not all(form):
+        return "The model form is not known here: its pair was not compared."
+    return (
+        f"The model form is {span(form[0])} in displacement and {span(form[1])} in contact pressure "
+        f"(relative L2){_shares(found, min(form[0]))}."
+    )
 
 
-def _row(group: Group, case: Case, notes: list[str]) -> tuple[str, ...]:
-    cells = []
-    for part in PARTS:
-        found = entry(group, case, part)
-        text = found.reason or found.remark
-        if text and text not in notes:
-            notes.append(text)
-        mark = raised(notes.index(text) + 1) if text else ""
-        cells += [_cell(value, mark) for value in found.values]
-    return case.label, *cells
+def _shares(found: Sequence[Group], form: float) -> str:
+    """Say what code and mesh contribute, and that the rest is model form where both are below its least."""
+    parts = {
+        "code and rounding are": part_values(found, "code", 0),
+        "the finite-element mesh is": part_values(found, "mesh", 0),
+    }
+    said = [f"{name} at most {percent(max(values))}" for name, values in parts.items() if values]
+    if not said:
+        return ""
+    small = all(max(values) < form for values in parts.values() if values)
+    rest = ", so that neither explains it: it is one strain in the block in the place of a wave" if small else ""
+    return f"; of the displacement's difference {' and '.join(said)}{rest}"
 
 
-def _cell(value: float | None, mark: str) -> str:
-    if value is None:
-        return f"{DASH}{mark}"
-    return bounded(value, power(value)) + (f" {mark}" if mark else "")
-
-
-def ledger_lines(groups: Sequence[Group]) -> list[LedgerLine]:
+def ledger_lines(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
     """Return the ledger as lines of a figure."""
     lines = []
     for group in groups:
         for case in group.cases:
             label = f"{group.name}: {case.label}" if len(group.cases) > 1 else group.name
-            lines.append(LedgerLine(label, {part: entry(group, case, part).values for part in PARTS}))
+            lines.append(LedgerLine(label, {part: entry(group, case, part) for part in parts}))
     return lines
 
 
 def part_values(groups: Sequence[Group], part: str, column: int) -> list[float]:
-    """Return all numbers of a part that come from its own pair, for displacement (0) or pressure (1)."""
+    """Return all numbers of a part, for displacement (0) or pressure (1)."""
     values = []
     for group in groups:
-        for case in group.cases:
-            found = entry(group, case, part)
-            value = None if found.remark else found.values[column]
-            values += [] if value is None else [value]
+        found = [entry(group, case, part)[column] for case in group.cases]
+        values += [value for value in found if value is not None]
     return values

@@ -1,4 +1,4 @@
-"""The chapter of the study `paper`: claims, figures 1 and 3 to 9, alarms, damping budgets."""
+"""The chapter of the study `paper`: claims, figures 1 and 3 to 9."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, FigureBlock, Heading, PageBreak, Paragraph, Table, columns
-from validation.report.chapters.damping import alarm_blocks, budget_blocks
+from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
 from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures import histories
@@ -62,22 +61,17 @@ COLUMNS = {
 
 
 def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
-    """Return the chapter: conclusion, register of claims, figures, and for each scene its alarms and budget."""
+    """Return the chapter: conclusion, register of claims, figures."""
     found = {group.name: group for group in groups(results, manifest)}
     rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
     claims = manifest.get("data", {}).get("claims", [])
     blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
     for title, letter in (("Statements", "C"), ("Slips of the equations", "S")):
         blocks += [Heading(title, 2), claims_table([c for c in claims if c["id"].startswith(letter)], rows)]
-    blocks += [PageBreak(), Heading("The figures", 2), *figure_1(manifest, found, directory)]
+    blocks += [Heading("The figures", 2), *figure_1(manifest, found, directory)]
     for figure in FIGURES:
         if figure.scene in found:
             blocks.append(figure_block(figure, found[figure.scene], directory))
-    blocks += [PageBreak(), Heading("What the figures hide", 2)]
-    for name in dict.fromkeys(figure.scene for figure in FIGURES if figure.scene in found):
-        group = found[name]
-        own = [*alarm_blocks(group), *budget_blocks(group, directory)]
-        blocks += [Heading(group.title, 3), *own] if own else []
     return blocks
 
 

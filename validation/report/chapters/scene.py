@@ -3,72 +3,75 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, Column, FigureBlock, Heading, PageBreak, Paragraph, Table
-from validation.report.chapters.damping import alarm_blocks, budget_blocks
-from validation.report.chapters.data import Case, Group, groups, varied_fields
-from validation.report.chapters.gates import gate_table
-from validation.report.chapters.ledger import METRICS
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, Paragraph
+from validation.report.chapters.damping import budget_blocks, damping_table
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.ledger import METRICS, ledger_blocks
 from validation.report.chapters.text import (
     AS_STATED,
-    cell,
+    bounded,
     load_size,
-    parameters,
     percent,
     plain,
+    power,
     span,
-    word_notes,
 )
-from validation.report.figures import histories
-from validation.report.figures.curves import COLUMNS, Panel
+from validation.report.figures import histories, motion
+from validation.report.figures.curves import COLUMNS, Panel, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes import features
-from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 MOST_PANELS = 10
-NOISE = 1e-9  # of the load; a smaller least pressure is rounding
+FEW = 4  # scenes of a study; of more of them a figure holds the first column alone
+CALM = 1.5  # times the time in which the slowest line settles
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
 def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
-    """Return the chapter of a study: its purpose, then a page for each scene."""
+    """Return the chapter of a study: its question, then a section for each scene."""
+    found = groups(results, manifest)
     blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
     if manifest.get("purpose"):
         blocks.append(Paragraph(manifest["purpose"]))
-    for i, group in enumerate(groups(results, manifest)):
-        blocks += [PageBreak()] * (i > 0) + scene_page(group, directory)
-    return blocks
+    for group in found:
+        shown = _columns(group)[:1] if len(found) > FEW else None
+        blocks += scene_section(group, directory, shown, apart=len(found) == 1)
+    blocks += ledger_blocks(found, manifest["study"], directory) if len(found) > 1 else []
+    return [*blocks, *budget_blocks(found[0], directory)] if len(found) == 1 else blocks
 
 
-def scene_page(group: Group, directory: Path) -> list[Block]:
-    """Return the page of one scene: data, conclusion, figures, damping, gates."""
-    blocks: list[Block] = [
-        Heading(group.title, 2),
-        Paragraph(parameters(group.cases[0].scene, varied_fields(group)), "small"),
-        Paragraph(conclusion(group)),
-    ]
-    blocks += outcomes(group)
-    blocks += [_history_block(group, column, directory) for column in _columns(group)]
+def scene_section(
+    group: Group,
+    directory: Path,
+    shown: Sequence[str] | None = None,
+    apart: bool = False,
+    without: Sequence[str] = (),
+) -> list[Block]:
+    """Return the section of one scene: what was found, the figure that shows it, the numbers that matter.
+
+    The figure holds the columns that are `shown`, all where none are named, of the solvers but those it is `without`,
+    and where asked for how far they are apart.
+    """
+    blocks: list[Block] = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
+    if columns := [name for name in _columns(group) if shown is None or name in shown]:
+        blocks.append(history_block(group, columns, directory, apart, without))
     if len(drift := drift_values(group)) > 1:
         blocks += _drift_blocks(group, drift, directory)
     first = group.cases[0].scene
-    if any(_finished(case) for case in group.cases) and features.linear(first) and first.column is None:
-        blocks += [Heading("Damping, settling and peaks", 3), damping_table(group)]
-    blocks += [*alarm_blocks(group), *budget_blocks(group, directory)]
-    if group.verdicts:
-        blocks += [Heading("Gates", 3), gate_table(group.verdicts, {case.name: case.label for case in group.cases})]
+    if features.linear(first) and first.column is None and (table := damping_table(group)).rows:
+        blocks.append(table)
     return blocks
 
 
@@ -172,18 +175,25 @@ def _columns(group: Group) -> list[str]:
     return sorted(kept, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
 
 
-def _history_block(group: Group, column: str, directory: Path) -> FigureBlock:
+def history_block(
+    group: Group, columns: Sequence[str], directory: Path, apart: bool = False, without: Sequence[str] = ()
+) -> FigureBlock:
+    """Draw columns of a scene's cases over the time that all of them run, and return the figure with its caption."""
     shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
     window = min(_ends(shown), default=0.0)  # cases of one figure are compared over the same time
-    panels = [_panel(case, column, window) for case in shown]
-    name = COLUMNS.get(column, (column,))[0]
-    less = "" if len(shown) == len(group.cases) else f" ({len(shown)} of {len(group.cases)} cases)"
-    cut = max(_ends(shown), default=0.0) > window * 1.001
-    span = f"The first {plain(window, 3)} s, the time that all cases run." if cut else ""
-    caption = _history_caption(panels) if column == DISPLACEMENT else ""
-    file = f"{group.slug}-{column.replace('_', '-')}.svg"
-    said = " ".join(f"{name}{less}. {span} {caption}".split())
-    return histories.saved(histories.history_figure(panels, column), directory, file, said)
+    calm = _calm(shown, columns, without)
+    panels = [_panel(case, columns, window, without) for case in shown]
+    said = []
+    if len(shown) < len(group.cases):
+        said.append(f"{len(shown)} of {len(group.cases)} cases.")
+    if calm < window:
+        window = calm
+        said.append(f"The first {plain(window, 2)} s; all have settled then.")
+    elif max(_ends(shown), default=0.0) > window * 1.001:
+        said.append(f"The first {plain(window, 3)} s, the time that all cases run.")
+    said += [sentence for sentence in (_on_one(panels, columns), *_reading(panels, columns, apart)) if sentence]
+    file = f"{group.slug}-history.svg"
+    return histories.saved(motion.history_figure(panels, *columns, apart=apart), directory, file, " ".join(said))
 
 
 def _ends(cases: Sequence[Case]) -> list[float]:
@@ -194,21 +204,49 @@ def _ends(cases: Sequence[Case]) -> list[float]:
     return ends
 
 
-def _history_caption(panels: Sequence[Panel]) -> str:
-    said = ["The hairline is the static value."] if any(p.static is not None for p in panels) else []
-    references = list(dict.fromkeys(p.reference for p in panels if p.reference and len(p.histories) > 1))
-    if references:
-        said.append(f"Below: difference Δ from {' or '.join(references)}, the largest in each fortieth of the time.")
-    return " ".join(said)
+def _calm(cases: Sequence[Case], columns: Sequence[str], without: Sequence[str]) -> float:
+    """Return a time [s] by which every drawn line has long settled, and which is worth to end at; else infinity."""
+    latest = 0.0
+    for case in cases:
+        for solver in set(case.histories) - set(without):
+            for column in columns:
+                step = case.number(solver, f"{_PREFIX.get(column, column)}.settling_step")
+                latest = max(latest, math.inf if step is None else step * case.scene.time.step)
+    return CALM * latest
 
 
-def _panel(case: Case, column: str, window: float) -> Panel:
-    shown = {s: h.until(window) for s, h in case.histories.items() if column in h.columns}
+def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> str:
+    """Name the lines that lie on one another, and how far off they are at most."""
+    said = []
+    for name, others in motion.twins(panels, columns).items():
+        said += [f"{other} lies on {name} (within {bounded(off, power(off))})" for other, off in others.items()]
+    return f"{', '.join(said)}." if said else ""
+
+
+def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> list[str]:
+    """Say how the figure is read, as far as it is not written on it."""
+    said = []
+    if span := motion.start_of(panels, columns[0]):
+        said.append(f"More swings than can be drawn are the band that they fill; below, the first {plain(span, 2)} s.")
+    if any(panel.static for panel in panels):
+        said.append("Hairline: static value.")
+    references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
+    if references and apart:
+        said.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")
+    return said
+
+
+def _panel(case: Case, columns: Sequence[str], window: float, without: Sequence[str]) -> Panel:
+    some = {s: h for s, h in case.histories.items() if s not in without and set(columns) & set(h.columns)}
+    shown = {s: h.until(window) for s, h in some.items()}
     reference = case.reference if case.reference in shown else None
-    metric = f"{_PREFIX.get(column, column)}.static"
-    known = [case.number(solver, metric) for solver in (reference or "", "dda", *shown)]
-    title = "" if case.label == AS_STATED else case.label
-    return Panel(title, shown, next((v for v in known if v is not None), None), reference)
+    static = {}
+    for column in columns:
+        metric = f"{_PREFIX.get(column, column)}.static"
+        known = [case.number(solver, metric) for solver in (reference or "", "dda", *shown)]
+        if (value := next((v for v in known if v is not None), None)) is not None:
+            static[column] = value
+    return Panel("" if case.label == AS_STATED else case.label, shown, static, reference)
 
 
 def drift_values(group: Group) -> list[tuple[int, float]]:
@@ -240,66 +278,3 @@ def _drift_blocks(group: Group, drift: Sequence[tuple[int, float]], directory: P
             "warn",
         ),
     ]
-
-
-# ---- tables -------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A column of the damping table: titles, metric, factor and decimals (four digits where None)."""
-
-    title: str
-    over: str
-    metric: str
-    factor: float = 1.0
-    decimals: int | None = None
-
-
-_MEASURES = (
-    Measure("model", "ω₁ [rad/s]", "mode1.frequency"),
-    Measure("operator", "ω₁ [rad/s]", "mode1.numerical_frequency"),
-    Measure("history", "ω₁ [rad/s]", "mode1.measured_frequency"),
-    Measure("operator", "ξ₁ [%]", "mode1.damping", 100.0, 3),
-    Measure("history", "ξ₁ [%]", "mode1.measured_damping", 100.0, 3),
-    Measure("", "|λ₁|", "mode1.spectral_radius", 1.0, 4),
-    Measure("displ.", "Settling step", "displacement.settling_step", 1.0, 0),
-    Measure("press.", "Settling step", "pressure.settling_step", 1.0, 0),
-    Measure("mm", "First peak", "displacement.peak", 1e3),
-    Measure("MPa", "First peak", "pressure.peak", 1e-6),
-    Measure("MPa", "Least press.", "pressure.minimum", 1e-6),
-)
-
-
-LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
-
-
-def damping_table(group: Group) -> Table:
-    """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver."""
-    long = any(len(case.label) > LONG_LABEL for case in group.cases)
-    rows: list[tuple[str, ...]] = []
-    for case in group.cases:
-        rows += [(case.label,)] if long else []
-        for i, solver in enumerate(_finished(case)):
-            values = (_measured(m, case.rows[solver].metrics.get(m.metric), case.scene) for m in _MEASURES)
-            rows.append((*(() if long else (case.label if i == 0 else "",)), solver, *values))
-    titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
-    measured: list[Value] = []
-    for case in group.cases:
-        for row in case.rows.values():
-            measured += [row.metrics.get(m.metric) for m in _MEASURES]
-    shown = titles if long else (Column("Case"), *titles)
-    return Table(shown, tuple(rows), notes=word_notes(measured), ruled=not long)
-
-
-def _finished(case: Case) -> list[str]:
-    return [solver for solver, row in case.rows.items() if row.metrics]
-
-
-def _measured(measure: Measure, value: Value, scene: Scene) -> str:
-    if not isinstance(value, int | float):
-        return cell(value)
-    if measure.decimals is None:
-        noise = NOISE * load_size(scene) if measure.metric == "pressure.minimum" else 0.0
-        return cell(value if abs(value) > noise else 0.0, measure.factor)
-    return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")

@@ -1,4 +1,4 @@
-"""The chapter of sub-blocks: error against run time, locking, glue and rocking before the pages of the scenes."""
+"""The chapter of sub-blocks: error against run time, locking, glue and rocking."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Column, Heading, PageBreak, Paragraph, Table, columns
+from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import scene_chapter
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
 from validation.report.figures.histories import Line
@@ -38,16 +37,16 @@ TURNING = (
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
-    """Return the chapter: conclusions over all scenes, then the pages of the scenes."""
+    """Return the chapter: conclusions over all scenes."""
     found = {group.name: group for group in groups(results, manifest)}
-    pages = scene_chapter(results, manifest, directory)
-    first = next((i for i, block in enumerate(pages) if isinstance(block, Heading) and block.level == 2), len(pages))
-    blocks: list[Block] = [Paragraph(PRACTICE, "lead"), Heading("Error against run time", 2)]
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
+    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    blocks += [Paragraph(PRACTICE, "lead"), Heading("Error against run time", 2)]
     blocks += _time_figures(found, directory)
     blocks += [Paragraph(LOCKED), *_tables(found, _patterns, ("subblocks-axial", "subblocks-rocking"))]
     blocks += [*_growth(found), Heading("Glue", 2), Paragraph(GLUED), *_tables(found, _glue, ("subblocks-best-glue",))]
     blocks += [Heading("Rocking", 2), Paragraph(TURNING), *_tables(found, _rocking, ("rocking",))]
-    return [*pages[:first], *blocks, PageBreak(), *pages[first:]]
+    return blocks
 
 
 def _tables(found: dict[str, Group], make: Any, names: tuple[str, ...]) -> list[Block]:

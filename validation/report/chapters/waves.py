@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, PageBreak, Paragraph, Table, columns
+from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
 from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import DASH, percent, plain, short
@@ -181,7 +181,6 @@ def _site(found: Mapping[str, Group], directory: Path) -> list[Block]:
     rows = [("Surface displacement", "m", traces[DISPLACEMENT]), ("Shear stress on the base", "Pa", traces[PRESSURE])]
     caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
     return [
-        PageBreak(),
         Heading("A site under a record", 2),
         Paragraph(_said(groups_of_site)),
         histories.saved(site_figure(rows), directory, "waves-site.svg", caption),

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
-from validation.report.chapters.gates import band
 from validation.report.chapters.scene import gate_count
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
@@ -25,25 +24,24 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     blocks: list[Block] = [Heading(manifest["title"]), Paragraph(manifest["purpose"])]
     for prefix, title in SCHEMES.items():
         blocks += scheme_blocks(points(results, manifest, prefix), prefix, title, directory)
-    return [*blocks, Heading("Orders of convergence", 2), *order_blocks(verdicts)]
+    blocks += [Heading("Orders of convergence", 2), Paragraph(f"{gate_count(verdicts).capitalize()}.")]
+    return [*blocks, order_table(verdicts)]
 
 
 def scheme_blocks(found: Sequence[Point], prefix: str, title: str, directory: Path) -> list[Block]:
-    """Return the figure, the sentences and the table of one scheme."""
+    """Return the figure and the sentences of one scheme."""
     if not found:
         return [Heading(title, 2), Paragraph("No run completed.")]
     caption = (
         "Error against cost, step and mesh refined together. Left of each pair against the bar under the same scheme, "
-        "right against the continuum; displacement and pressure relative in L2, the frequency relative, the damping "
-        "ratio absolute. Grey: what no run beats in both; dotted: the model form of DDA; hollow: below the reference's "
-        "own uncertainty."
+        "right against the continuum; relative L2. Grey: what no run beats in both; dotted: the model form of DDA; "
+        "hollow: below the reference's own uncertainty."
     )
     return [
         Heading(title, 2),
         Paragraph(cheapest_sentence(found), "lead"),
         Paragraph(floor_sentence(found)),
         histories.saved(work_figure(found), directory, f"{prefix}.svg", caption),
-        run_table(found),
     ]
 
 
@@ -81,45 +79,17 @@ def floor_sentence(found: Sequence[Point]) -> str:
     )
 
 
-def run_table(found: Sequence[Point]) -> Table:
-    """Return errors, work and seconds of every run."""
-    titles = (
-        Column("Method"),
-        *columns("decimal", "dt [ms]", "n"),
-        *columns("decimal", "v", "pressure", group="Error against the bar"),
-        *columns("decimal", "v", "pressure", group="Error against the continuum"),
-        *columns("decimal", "Unknowns", "Solves", "Set-up [ms]", "Steps [ms]"),
-    )
-    return Table(titles, tuple(_row(p) for p in found), ruled=False)
-
-
-def _row(p: Point) -> tuple[str, ...]:
-    errors = []
-    for reference in ("bar", "continuum"):
-        for quantity in ("displacement", "contact pressure"):
-            error = p.errors.get((quantity, reference))
-            errors.append(DASH if error is None else plain(error, 2))
-    mesh = str(p.scene.fem.per_side) if p.method.startswith("fem") else DASH
-    spent = [plain(1e3 * p.row.seconds.get(part, 0.0), 2) for part in ("setup", "stepping")]
-    work = [str(p.row.work.get(name, DASH)) for name in ("unknowns", "solves")]
-    return (p.method, short(1e3 * p.scene.time.step, 3), mesh, *errors, *work, *spent)
-
-
-def order_blocks(verdicts: Sequence[VerdictRecord]) -> list[Block]:
-    """Return the table of fitted orders and of the comparison with the record."""
-    rows = []
+def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
+    """Return the orders that were fitted: what was refined, and the order of each quantity."""
+    found: dict[str, dict[str, str]] = {}
     for v in verdicts:
-        value = plain(float(v["value"]), 4) if isinstance(v["value"], int | float) else DASH
-        rows.append((v["scene"], v["metric"], value, band(v), v["verdict"]))
-    titles = (
-        Column("Refined", "code"),
-        Column("Metric", "code"),
-        Column("Value", "decimal"),
-        Column("Band"),
-        Column("Verdict", "verdict"),
-    )
+        kind, _, quantity = v["metric"].partition(".")
+        if kind == "order" and isinstance(v["value"], int | float):
+            found.setdefault(v["scene"], {})[quantity] = plain(float(v["value"]), 4)
+    rows = [(name, own.get("displacement", DASH), own.get("pressure", DASH)) for name, own in found.items()]
+    titles = (Column("Refined", "code"), *columns("decimal", "displacement", "pressure", group="Order"))
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
         "grid-convergence index as its uncertainty."
     )
-    return [Paragraph(gate_count(verdicts)), Table(titles, tuple(rows), notes=(note,), ruled=False)]
+    return Table(titles, tuple(rows), notes=(note,))

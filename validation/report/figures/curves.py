@@ -127,7 +127,7 @@ class Panel:
 
     title: str
     histories: Mapping[str, History]
-    static: float | None  # static value of the drawn column, in its unit
+    static: Mapping[str, float]  # static values by column, in its unit
     reference: str | None  # the solver that differences are taken from
 
 
@@ -135,22 +135,22 @@ def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     found = [np.zeros(1)]
     for panel in panels:
-        found += [history.columns[column] for history in panel.histories.values()]
+        found += [history.columns[column] for history in panel.histories.values() if column in history.columns]
     values = np.concatenate(found if len(found) > 1 else [np.zeros(1), np.ones(1)])
     values = values[np.isfinite(values)]
-    limit = 6 * max((abs(p.static) for p in panels if p.static), default=math.inf)
+    limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 
 
 def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
     """Return the envelope of each solver's scaled difference from the reference."""
-    if panel.reference is None or panel.reference not in panel.histories:
+    base = panel.histories.get(panel.reference or "")
+    if base is None or column not in base.columns:
         return {}
-    base = panel.histories[panel.reference]
-    scale = abs(panel.static or 0.0) or float(np.abs(base.columns[column]).max()) or 1.0
+    scale = abs(panel.static.get(column, 0.0)) or float(np.abs(base.columns[column]).max()) or 1.0
     found = {}
     for solver, history in panel.histories.items():
-        if solver != panel.reference and history.time.size == base.time.size:
+        if solver != panel.reference and history.time.size == base.time.size and column in history.columns:
             with np.errstate(all="ignore"):  # a run that blew up differs by infinity
                 scaled = (history.columns[column] - base.columns[column]) / scale
             found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))

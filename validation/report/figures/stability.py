@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from validation.report.figures.curves import style_of
 from validation.report.figures.histories import WIDTH, Margins, house_style, label_ends, one_axes
 from validation.runs.history import Array
 
+COLORS = ("#0072b2", "#d55e00", "#56b4e9", "#8c6d1f")  # of quantities and schemes, which are no solvers
 CELL, LEFT, TOP, BOTTOM, GAP = 4.6, 16.0, 6.0, 9.0, 6.0  # mm
 
 
@@ -72,14 +73,14 @@ def settling_figure(lines: Sequence[Settling], longest: float) -> Figure:
         figure, axes = one_axes(
             48.0, Margins(16.0, 54.0, 4.0, 10.0), ("p / E", "Steps to settle within $10^{-4}$"), True
         )
+        colors = {line.name: color for line, color in zip(lines, itertools.cycle(COLORS), strict=False)}
         for line in lines:
-            style = style_of(line.name)
-            shown = np.where(np.isfinite(line.steps), line.steps, longest)
-            axes.plot(line.ratios, shown, color=style.color, lw=style.width, ls=(0, style.dash) if style.dash else "-")
+            color, shown = colors[line.name], np.where(np.isfinite(line.steps), line.steps, longest)
+            axes.plot(line.ratios, shown, color=color, lw=1.2)
             never = ~np.isfinite(line.steps)
-            axes.plot(line.ratios[~never], shown[~never], "o", ms=3, color=style.color)
-            axes.plot(line.ratios[never], shown[never], "o", ms=4, mfc="white", mec=style.color)
+            axes.plot(line.ratios[~never], shown[~never], "o", ms=3, color=color)
+            axes.plot(line.ratios[never], shown[never], "o", ms=4, mfc="white", mec=color)
         axes.set_ylim(10, 1.6 * longest)
         ends = {line.name: float(line.steps[-1]) if np.isfinite(line.steps[-1]) else longest for line in lines}
-        label_ends(axes, ends)
+        label_ends(axes, ends, colors=colors)
     return figure

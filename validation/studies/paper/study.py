@@ -15,13 +15,14 @@ from validation.gates.gate import Gate
 from validation.studies.bands import about
 from validation.studies.declaration import Study
 from validation.studies.paper.claims import REGISTER
+from validation.studies.paper.friction import ON_SLOPES
 from validation.studies.paper.open_close import OPEN_CLOSE
 from validation.studies.paper.register import CLAIMS as STATEMENTS
 from validation.studies.paper.slips import SLIPS
 from validation.studies.paper.viscous import VISCOUS
 
 KEPT = ("id", "place", "says", "why", "condition")  # of a claim, for its chapter
-CLAIMS = (*STATEMENTS, *OPEN_CLOSE, *VISCOUS, *SLIPS)
+CLAIMS = (*STATEMENTS, *OPEN_CLOSE, *VISCOUS, *ON_SLOPES, *SLIPS)
 FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
     "average acceleration (1/4, 1/2)": (0.25, 0.5),
@@ -98,7 +99,16 @@ PAPER = Study(
     name="paper",
     title="The paper, figure by figure and statement by statement",
     purpose="Every figure of the paper redrawn with the elastic block beside it, and every statement put to the test.",
-    scenes=(*FIGURES, "damping-map", "discount-map", "poisson-statics", "open-close", "viscous"),
+    scenes=(
+        *FIGURES,
+        "damping-map",
+        "discount-map",
+        "poisson-statics",
+        "open-close",
+        "viscous",
+        "creep-claim",
+        "slope-sliding",
+    ),
     gates=gates,
     derived=derived,
     data=data,

@@ -20,19 +20,23 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import about, cases
+from validation.solvers.rigid.sliding import rigid_slide
+from validation.studies.bands import APART, about, cases
 from validation.studies.declaration import Study
 
-SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL = (
+SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN = (
     "slope-sliding",
     "slope-average",
     "slope-drag",
     "slope-threshold",
     "slope-manual",
+    "slope-base",
 )
 IDENTITY = "sliding identity"
 ROUNDED = 1e-10  # of the run-out: two formulations over 500 steps
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
+RIGID = "sliding block"
+CYCLES, RATE = 4, 2.0  # of the shaking, and its frequency [Hz]
 NEAR = 1e-4  # deg: the sliding acceleration is a straight line over 0.02 deg to (0.01 deg)^2 / 2
 
 
@@ -41,6 +45,10 @@ def derived() -> tuple[Derived, ...]:
     rows = [
         Derived(case.name, IDENTITY, ((case.name, "dda"),), functools.partial(_identity, case))
         for case in cases(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL)
+    ]
+    rows += [
+        Derived(case.name, RIGID, ((case.name, "dda"),), functools.partial(_against_rigid, case))
+        for case in cases(SHAKEN)
     ]
     pair = tuple(cases(THRESHOLD))
     needs = tuple((case.name, "dda") for case in pair)
@@ -77,6 +85,16 @@ def _identity(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     return {"largest difference": float(off), "offset": float(offset)}
 
 
+def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
+    history = finished.history(scene.name, "dda")
+    if history is None:
+        return {}
+    slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
+    rigid = rigid_slide(scene).slide
+    return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
+
+
 def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
     found = []
@@ -91,7 +109,15 @@ def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Valu
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*identity_gates(), *offset_gates(), *drag_gates(), *threshold_gates(), *energy_gates(), *element_gates())
+    return (
+        *identity_gates(),
+        *offset_gates(),
+        *drag_gates(),
+        *threshold_gates(),
+        *energy_gates(),
+        *element_gates(),
+        *shaken_gates(),
+    )
 
 
 def identity_gates() -> Iterator[Gate]:
@@ -144,8 +170,9 @@ def energy_gates() -> Iterator[Gate]:
             yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
     for case in cases(SLIDING):
         pressed = friction.mass(case) * friction.across(case)
-        lost = friction.coefficient(case) * pressed * friction.run_out(case, case.time.duration)
-        why = "tan(phi) m g cos b times the way; band: the swinging of the normal force at first, 1e-3"
+        held = friction.coefficient(case) * pressed + friction.mass(case) * friction.adhesion(case)
+        lost = held * friction.run_out(case, case.time.duration)
+        why = "tan(phi) m g cos b + c a times the way; band: the swinging of the normal force at first, 1e-3"
         yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
 
 
@@ -159,12 +186,28 @@ def element_gates() -> Iterator[Gate]:
         yield Gate(case.name, ("dda", "fem"), "horizontal.final", -late, late, why)
 
 
+def shaken_gates() -> Iterator[Gate]:
+    """Yield the gates on a base that shakes, against Newmark's sliding block."""
+    for case in cases(SHAKEN):
+        resisted = friction.coefficient(case) * friction.across(case)
+        stretch = friction.mass(case) * resisted / (2 * case.contact.shear)
+        late = resisted * case.time.step / (2 * RATE)  # a phase that begins a step late, until the next one
+        why = (
+            "a rigid mass on the same record; band: shear springs that stretch and return twice a cycle, and one step "
+            "in the instant at which half a cycle begins to slide"
+        )
+        allowed = 2 * CYCLES * stretch + late
+        rigid = float(rigid_slide(case).slide[-1])
+        yield Gate(case.name, (RIGID,), "slide", *about(rigid, allowed), why)
+        yield Gate(case.name, (RIGID,), "largest difference", APART, allowed, why)
+
+
 STUDY = Study(
     name="slopes",
     title="Blocks that slide down inclines",
     purpose="A block on an incline slides by g (sin b - tan(phi) cos b), whatever its springs and steps, and stands up "
     "to the angle of friction. How far does each code, and each discount, let it run?",
-    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL),
+    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN),
     gates=gates,
     derived=derived,
     pairs=(("dda", "fem"),),

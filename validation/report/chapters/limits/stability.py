@@ -24,8 +24,8 @@ from validation.runs.run import Outcome
 QUANTITIES = {"displacement": "Displacement", "pressure": "Contact pressure"}
 MEASURE = {"bar": "scaled"}  # the bar's wave may not have arrived; all others over their own maximum
 SOLVERS = ("dda", "dda-textbook", "fem", "bar")
-STARTS = {"zero": "from A(0) = 0", "consistent": "from the consistent start"}
 MATRIX, FACTOR = "extremes-", "extreme-"
+MOST_ROWS = 16  # of the one-factor extremes
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,6 @@ class Cell:
     solver: str
     ratio: float  # p/E
     step: float  # s
-    start: str
     row: Row
     errors: Mapping[str, Value]
 
@@ -53,8 +52,7 @@ def cells(results: Results, manifest: Manifest) -> list[Cell]:
         metrics = compared.get((name, solver), {})
         errors = {q: metrics.get(f"{q}.{MEASURE.get(solver, 'max')}") for q in QUANTITIES}
         ratio = data["contact"]["stiffness"] / data["block"]["young"]
-        start = data["time"].get("start", "zero")
-        found.append(Cell(name, solver, ratio, data["time"]["step"], start, rows[entry["key"]], errors))
+        found.append(Cell(name, solver, ratio, data["time"]["step"], rows[entry["key"]], errors))
     return found
 
 
@@ -68,10 +66,8 @@ def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> 
         outcome_table(found),
     ]
     matrix = [cell for cell in found if cell.scene.startswith(MATRIX)]
-    for start, said in STARTS.items():
-        for solver in SOLVERS:
-            own = [cell for cell in matrix if (cell.solver, cell.start) == (solver, start)]
-            blocks += _maps(manifest["study"], own, said, directory)
+    for solver in SOLVERS:
+        blocks += _maps(manifest["study"], [cell for cell in matrix if cell.solver == solver], directory)
     return [*blocks, *factor_tables([c for c in found if c.scene.startswith(FACTOR)])]
 
 
@@ -118,19 +114,17 @@ def outcome_table(found: Sequence[Cell]) -> Table:
     return Table(titles, tuple(rows), caption, notes)
 
 
-def _maps(study: str, own: Sequence[Cell], said: str, directory: Path) -> list[Block]:
-    """Return the two maps of one solver and start, worst over schemes and discounts."""
+def _maps(study: str, own: Sequence[Cell], directory: Path) -> list[Block]:
+    """Return the two maps of one solver, worst over schemes, starts and discounts."""
     if not any(_numbers(own, quantity) for quantity in QUANTITIES):
         return []
     ratios, steps = sorted({c.ratio for c in own}), sorted({c.step for c in own})
     maps = [DigitMap(title, _worst(own, q, ratios, steps)) for q, title in QUANTITIES.items()]
     drawn = digit_maps(maps, [*map(_decade, ratios)], [*map(_decade, steps)], "Time step dt [s]", "p / E")
-    solver, start = own[0].solver, own[0].start
+    solver = own[0].solver
     over = "over the static value where nothing has arrived, " if solver == "bar" else ""
-    caption = (
-        f"{solver} {said}: correct digits, {over}the worst of all bounded schemes and discounts; blank: no bounded run."
-    )
-    return [histories.saved(drawn, directory, f"{study}-digits-{solver}-{start}.svg", caption)]
+    caption = f"{solver}: correct digits, {over}the worst of all bounded schemes; blank: no bounded run."
+    return [histories.saved(drawn, directory, f"{study}-digits-{solver}.svg", caption)]
 
 
 def _worst(own: Sequence[Cell], quantity: str, ratios: Sequence[float], steps: Sequence[float]) -> Array:
@@ -154,12 +148,17 @@ def factor_tables(found: Sequence[Cell]) -> list[Block]:
     rows = [_factor_row(scene, by_key) for scene in scenes]
     if not rows:
         return []
+    if len(rows) > MOST_ROWS:
+        fewest = sorted(rows, key=lambda row: _fewest(by_key.get((row[0], "dda"))))[:MOST_ROWS]
+        rows = [row for row in rows if row in fewest]
     titles = (
         Column("Scene", "id"),
         *columns("decimal", "|λ|", "condition", "residual", group="dda"),
         *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
     )
-    return [Heading("One datum at its extremes", 3), Table(titles, tuple(rows), ruled=False)]
+    left = len(rows) < len(scenes)
+    caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits." if left else ""
+    return [Heading("One datum at its extremes", 3), Table(titles, tuple(rows), caption, ruled=False)]
 
 
 def _factor_row(scene: str, found: Mapping[tuple[str, str], Cell]) -> tuple[str, ...]:
@@ -167,6 +166,12 @@ def _factor_row(scene: str, found: Mapping[tuple[str, str], Cell]) -> tuple[str,
     metrics = own.row.metrics if own else {}
     shown = [_shown(metrics.get(f"stability.{name}")) for name in ("radius", "condition", "residual")]
     return (scene, *shown, *(_both(found.get((scene, solver))) for solver in ("dda", "dda-textbook", "fem")))
+
+
+def _fewest(cell: Cell | None) -> float:
+    """Return the fewest digits that a run keeps in either quantity; without end where it has no errors."""
+    values = [] if cell is None else [*_numbers([cell], "displacement"), *_numbers([cell], "pressure")]
+    return digits(max(values)) if values else math.inf
 
 
 def _shown(value: Value) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, varied_fields
+from validation.report.chapters.data import Case, Group, groups
 from validation.report.chapters.scene import gate_count
-from validation.report.chapters.text import DASH, parameters, plain
+from validation.report.chapters.text import DASH, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.solvers.contract import Role
@@ -35,12 +35,8 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
     blocks: list[Block] = [Heading(title), Paragraph(f"{purpose} {NOTE}{count}")]
     for group in found:
-        data = Paragraph(parameters(group.cases[0].scene, varied_fields(group) | UNSAID), "small")
-        blocks += [Heading(group.title, 3), data, table(group)]
+        blocks += [Heading(group.title, 3), table(group)]
     return blocks
-
-
-UNSAID = {"fem.degree", "fem.elements", "fem.foundation", "block.poisson", "block.hypothesis", "time.gg"}
 
 
 def table(group: Group) -> Table:

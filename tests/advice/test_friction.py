@@ -1,0 +1,86 @@
+"""Advice and alarms of blocks with friction: true of runs, raised where they should be, silent where not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import typed
+
+from validation import load_scene, solve
+from validation.advice import friction as advice
+from validation.advice.alarms import alarms
+from validation.engine.run import finish
+from validation.engine.study import Study
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+
+SLIDES = load_scene("slope-drag").expand()[0]
+STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
+
+
+def raised(scene: Scene, directory: Path) -> set[str]:
+    study = Study("test", "", "", [scene], ("dda",))
+    found = alarms([scene], finish(study.cases(), study, Results(directory)))
+    return {alarm.kind for alarm in found if alarm.kind in advice.KINDS}
+
+
+@pytest.mark.parametrize(
+    ("scene", "values", "expected"),
+    [
+        (STANDS, {"time.steps": 100}, {advice.HIDES}),
+        (STANDS, {"time.step": 2e-4, "time.steps": 1000}, {advice.CREEPS}),  # still slipping after 0.1 s
+        (STANDS, {"time.step": 2e-4, "time.steps": 5000}, set()),  # followed, and it has stopped
+        (STANDS, {"time.step": 2e-4, "time.steps": 1500, "time.alpha": 0.25, "time.delta": 0.5}, {advice.CREEPS}),
+        (STANDS, {"contact.rules": "lagged", "contact.friction": 22.0}, {advice.CREEPS, advice.HIDES, advice.LAGS}),
+        (STANDS, {"load.slope": 0.0, "time.steps": 50}, set()),
+        (SLIDES, {}, {advice.BRAKES}),
+        (SLIDES, {"time.gg": 1.0}, set()),
+        (SLIDES, {"contact.law": "unilateral", "load.pressure": 1e6, "time.steps": 20}, set()),  # no formula
+    ],
+)
+def test_each_alarm_is_raised_where_it_should_be(
+    scene: Scene, values: dict[str, Any], expected: set[str], tmp_path: Path
+) -> None:
+    assert raised(scene.with_values(values), tmp_path) == expected
+
+
+def test_a_run_without_states_is_told_what_to_do() -> None:
+    row = Row("", "", STANDS.name, "dda", Outcome.NO_CONTACT_STATE, {})
+    (alarm, *_) = advice.friction_alarms(STANDS, {"dda": row})
+    assert alarm.kind == advice.STATELESS
+    assert "smaller time.step" in alarm.sentence
+
+
+@pytest.mark.parametrize(("gg", "step", "cut"), [(0.98, 1e-3, 0.1148), (0.99, 1e-2, 0.8963), (0.98, 1e-2, 0.6892)])
+def test_what_a_discount_leaves_of_a_way_is_what_dda_slides(gg: float, step: float, cut: float) -> None:
+    case = SLIDES.with_values({"time.gg": gg, "time.step": step, "time.steps": round(1 / step)})
+    found = advice.sliding(case)
+    assert found is not None and not found.stands
+    assert found.braked == pytest.approx(cut, abs=6e-5)
+    run = solve(case, "dda").history.columns["horizontal_displacement"][-1]
+    assert run == pytest.approx(found.braked + found.offset, rel=1e-6)
+    assert advice.kept_way(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
+    assert advice.kept_way(1.0, step, 1.0) == 1
+
+
+def test_the_command_contact_says_it(tmp_path: Path) -> None:
+    words = ["contact", "slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.001", "--set", "time.steps=30"]
+    found = json.loads(typed(*words, "--json").stdout)
+    assert found["sliding"]["rate"] == pytest.approx(20.2, abs=0.01)
+    assert 0 < found["runs"]["dda"]["contact.slip"] < found["sliding"]["run_out"]
+    assert {alarm["kind"] for alarm in found["alarms"]} >= {advice.BRAKES}
+
+
+def test_the_page_says_what_a_stable_block_does() -> None:
+    found = advice.sliding(STANDS)
+    assert found is not None and found.stands
+    said = "\n".join(advice.lines(STANDS, found))
+    assert "below the threshold of 30 deg" in said
+    assert "22.8 mm/s" in said
+    drag = "\n".join(advice.lines(SLIDES, advice.sliding(SLIDES)))  # type: ignore[arg-type]
+    assert "it cuts 1.22 m to 0.689 m" in drag

@@ -1,0 +1,259 @@
+"""The pages that are read first: every number in sentence, table and chart, from closed forms or from made rows."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from oracles.made_cases import between, lines_of, made_case, made_group, names_at, rules_of
+
+from dda.scheme import spectral
+from validation.report.blocks import Callout
+from validation.report.figures.curves import style_of
+from validation.report.figures.front import charts
+from validation.report.figures.front.model import model_figure
+from validation.report.front import closed, decisions, first
+from validation.report.front.found import paper_scene
+from validation.scenes.scene import Scene, load_scene
+
+PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
+OTHER = PAPER.with_values(
+    {"block.side": 3.0, "block.density": 2500.0, "block.young": 4e9, "contact.stiffness": 1.2e10, "load.pressure": 2e6}
+)
+FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the paper's block
+
+
+# ---- closed forms -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("values", [
+    {"time.step": 1e-3}, {"time.step": 2e-3, "time.gg": 0.95}, {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
+    {"time.step": 1e-5, "time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
+])  # fmt: skip
+@pytest.mark.parametrize("scene", [PAPER, OTHER])
+def test_a_damping_ratio_is_that_of_the_schemes_own_formulas(scene: Scene, values: dict[str, float]) -> None:
+    changed = scene.with_values(values)
+    frequency, t = closed.closed_forms.dda_frequency(changed), changed.time
+    wanted = float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
+    assert closed.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
+    assert math.isnan(closed.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
+
+
+def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
+    for ratio, frequency in FREQUENCIES.items():
+        scene = closed.stiffer(PAPER, ratio)
+        step = closed.step_for(scene, 0.05)
+        assert step is not None and closed.first_damping(closed.timed(scene, step=step)) == pytest.approx(
+            0.05, rel=1e-9
+        )
+        assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
+    assert closed.step_for(PAPER, 0.5) is None  # 0.373 is the greatest
+    assert closed.step_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), 0.05) is None
+
+
+def test_what_a_discount_does_is_what_the_scheme_does() -> None:
+    light = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98})
+    below = closed.overdamped_below(light)
+    assert below == pytest.approx(2.93e-5, rel=2e-3)
+    for factor, over in ((0.99, True), (1.01, False)):
+        omega = FREQUENCIES[1.0] * below * factor
+        assert (float(spectral.damping_ratio(omega, 0.25, 0.5, 0.98)) >= 1) is over
+    assert closed.overdamped_below(PAPER) is None
+    rate = closed.rate_for(PAPER, 0.05)
+    held = light.with_values({"time.gg": 1.0}).with_values({"time.gg_rate": rate, "time.step": 1e-5})
+    assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
+    assert closed.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
+    assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
+
+
+# ---- five sentences -----------------------------------------------------------------------------------------------
+
+
+def case(step: float = 2e-3, ratio: float = 1.0, **metrics: Any) -> Any:
+    scene = closed.stiffer(PAPER, ratio).with_values({"time.step": step, "contact.stiffness": ratio * 1e9}, label=True)
+    return made_case(scene, {"dda": {name.replace("__", "."): value for name, value in metrics.items()}})
+
+
+def model_form() -> Any:
+    cases = [case(step, pressure__static=5e6, pressure__minimum=least, mode1__damping=xi)
+             for step, least, xi in ((2e-3, 1e5, 0.16), (1e-2, 1e6, 0.372), (1e-4, -1.4e6, 0.009))]  # fmt: skip
+    numbers = {2e-3: (0.036, 0.04), 1e-2: (0.008, 0.007), 1e-4: (0.64, 0.74)}
+    pairs = [between(c.name, "dda", "bar", displacement_l2=numbers[c.scene.time.step][0],
+                     pressure_l2=numbers[c.scene.time.step][1]) for c in cases]  # fmt: skip
+    pairs += [
+        between(c.name, "bar", "continuum", displacement_l2=0.5 + i / 10, pressure_l2=0.7) for i, c in enumerate(cases)
+    ]
+    return made_group(*cases, comparisons=tuple(pairs))
+
+
+FOUND = {
+    "model-form": model_form(),
+    "figures-3-4": made_group(case(1e-3, mode1__damping=0.0845), case(1e-2, mode1__damping=0.372)),
+    "figures-5-6": made_group(
+        case(ratio=10.0, displacement__settling_step=22.0, pressure__settling_step=25.0),
+        case(ratio=100.0, displacement__settling_step=21.0, pressure__settling_step=24.0,
+             displacement__fine_settling_step=41.0, pressure__fine_settling_step=157.0),
+    ),
+}  # fmt: skip
+
+
+def test_the_force_is_judged_at_rest_and_on_the_way() -> None:
+    head, said = first.force(FOUND)  # type: ignore[misc]
+    assert head == "Is DDA's force right?"
+    assert said == (
+        "At rest yes: every run comes to rest at 5 MPa; on the way not: against the bar the contact pressure is off by "
+        "0.7\u00a0% at 10\u00a0ms, 4\u00a0% at 2\u00a0ms, 74\u00a0% at 0.1\u00a0ms (relative L2 over 1.0 s, p = 1E)."
+    )
+    wrong = made_group(case(pressure__static=4.9e6), comparisons=FOUND["model-form"].comparisons)
+    assert "At rest no: not every run rests at the load" in first.force({"model-form": wrong})[1]  # type: ignore[index]
+    assert first.force({}) is None and first.beware({}) is None and first.springs({}) is None
+
+
+def test_the_step_is_told_with_the_damping_as_run_and_the_step_for_five_per_cent() -> None:
+    _, said = first.steps(FOUND, PAPER)
+    assert "37.2\u00a0% at 10\u00a0ms, 8.45\u00a0% at 1\u00a0ms of critical at p = 1E" in said
+    assert "for 5\u00a0% take dt = 0.584\u00a0ms (page 2)" in said
+
+
+def test_stiff_springs_are_told_with_their_steps_and_their_ring() -> None:
+    _, said = first.springs(FOUND)  # type: ignore[misc]
+    assert "within 1\u00a0% after 21 steps instead of 22" in said
+    assert "keeps 97.3\u00a0% of its swing" in said  # |lambda| of the contact mode at w dt = 17.3
+    assert "157 steps to come within 0.01\u00a0% of rest and the displacement 41, at dt = 2\u00a0ms" in said
+
+
+def test_a_discount_is_told_at_three_steps() -> None:
+    head, said = first.discount(PAPER)
+    assert head == "What does gg = 0.98 do?" and "takes 2\u00a0% of the velocity each step" in said
+    assert "1.52\u00a0% at 2\u00a0ms, 2.96\u00a0% at 1\u00a0ms, 29.3\u00a0% at 0.1\u00a0ms of critical" in said
+
+
+def test_what_not_to_believe_has_its_numbers() -> None:
+    _, said = first.beware(FOUND)  # type: ignore[misc]
+    assert "0.8\u00a0% at 10\u00a0ms, because both are damped out, while both are 60\u00a0% off the continuum" in said
+    assert "it pulls with 1.40 MPa in DDA" in said
+    assert "5.15\u00a0% to 10.2\u00a0% too high at every time step" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said", "tone"),
+    [
+        (["PASS", "PASS"], "2 gates: 2 passed, 0 failed, 0 not run.", "pass"),
+        (["PASS", "NOT RUN"], "2 gates: 1 passed, 0 failed, 1 not run.", "warn"),
+        (["FAIL", "NOT RUN", "PASS"], "3 gates: 1 passed, 1 failed, 1 not run.", "fail"),
+        ([], "No gate was judged.", "warn"),
+    ],
+)
+def test_one_line_of_verdicts(words: list[str], said: str, tone: str) -> None:
+    assert first.verdict_line([{"verdict": word} for word in words]) == Callout(said, tone)  # type: ignore[misc, arg-type]
+
+
+def test_the_figure_of_the_first_page_holds_closed_form_and_runs() -> None:
+    damping, error = first.carrying(FOUND, PAPER)
+    line, dots = damping.strokes
+    assert np.interp(2.0, line.x, line.y) == pytest.approx(16.02, abs=0.02)
+    assert sorted(zip(dots.x, dots.y, strict=True)) == [(1.0, pytest.approx(8.45)), (10.0, pytest.approx(37.2))]
+    assert damping.marks == {"1": 1.0, "10": 10.0}
+    model, time = error.strokes
+    assert (list(model.x), list(model.y)) == (pytest.approx([0.1, 2, 10]), pytest.approx([64, 3.6, 0.8]))
+    assert list(time.y) == pytest.approx([70, 50, 60])
+    assert "64\u00a0% at 0.1\u00a0ms, 0.8\u00a0% at 10\u00a0ms" in first.carrying_caption(FOUND, PAPER)
+
+
+def test_results_without_a_finished_paper_scene_have_no_such_page() -> None:
+    assert paper_scene({"figures-3-4": made_group(made_case(PAPER, {"dda": {}}))}) is None
+    lateral = made_case(PAPER.with_values({"block.poisson": 0.3}), {"dda": {"mode1.damping": 0.1}})
+    assert paper_scene({"figures-3-4": made_group(lateral)}) is None  # the closed forms are for mu = 0
+    assert paper_scene(FOUND) is FOUND["figures-3-4"].cases[0].scene
+
+
+# ---- three decisions ----------------------------------------------------------------------------------------------
+
+
+def test_the_steps_of_the_table_are_those_of_their_stiffness() -> None:
+    scenes = [closed.stiffer(PAPER, ratio) for ratio in FREQUENCIES]
+    table = decisions.step_table(scenes)
+    assert [c.title for c in table.columns] == ["Wanted ξ", "p = 1E", "p = 10E", "p = 100E"]
+    rows = {row[0]: row[1:] for row in table.rows}
+    for xi, word in ((0.01, "1 %"), (0.05, "5 %"), (0.2, "20 %")):
+        for shown, w in zip(rows[word], FREQUENCIES.values(), strict=True):
+            assert float(spectral.damping_ratio(w * float(shown) / 1e3, 0.5, 1.0)) == pytest.approx(xi, rel=6e-3)
+    assert rows["ω₁ [rad/s]"] == ("344.6", "498.8", "524.1")
+
+
+def test_what_steps_cost_reads_across_as_its_heads_say() -> None:
+    table, _ = decisions._as_run(FOUND)
+    heads = [(c.group, c.title) for c in table.columns]  # type: ignore[union-attr]
+    assert [group for group, _ in heads] == ["", "", *["DDA − bar: model"] * 2, *["bar − continuum: time"] * 2, ""]
+    rows = table.rows  # type: ignore[union-attr]
+    assert rows[0] == ("10", "37.2\u00a0%", "0.8\u00a0%", "0.7\u00a0%", "60\u00a0%", "70\u00a0%", "none")
+    assert rows[2] == ("0.1", "0.9\u00a0%", "64\u00a0%", "74\u00a0%", "70\u00a0%", "70\u00a0%", "−1.40")
+
+
+def test_the_table_of_springs_joins_closed_forms_and_steps_as_run() -> None:
+    base = closed.timed(PAPER, step=2e-3)
+    rows = {row[0]: row[1:] for row in decisions.spring_table(FOUND, base).rows}
+    assert rows["1E"][:3] == ("−10.000", "5", "16\u00a0%") and rows["1E"][5:] == ("–",) * 4
+    assert rows["10E"][5:] == ("22", "25", "–", "–")
+    assert rows["100E"] == ("−5.050", "0.05", "22.5\u00a0%", "0.9733", "0.462", "21", "24", "41", "157")
+    said = decisions.spring_rule(FOUND, base)
+    assert "Take p = 10E: the springs then give way by 0.5\u00a0mm" in said and "At p = 100E" in said
+    assert "keeps 97.3\u00a0%" in said and "157 steps until the pressure is within 0.01\u00a0%, 41 for" in said
+
+
+def test_the_table_of_discounts_is_that_of_the_scheme() -> None:
+    base = closed.timed(PAPER, alpha=0.25, delta=0.5, gg=1.0)
+    rows = {row[0]: row[1:] for row in decisions.discount_table(base).rows}
+    assert rows["1.00"] == ("0\u00a0%", "0\u00a0%", "0\u00a0%", "–", "0")
+    assert rows["0.98"] == ("1.52\u00a0%", "2.96\u00a0%", "29.3\u00a0%", "0.0293", "20.2")
+    assert rows["0.90"][2] == "153\u00a0%" and rows["0.90"][-1] == "105"
+
+
+def test_the_rule_on_springs_names_a_step_below_which_the_contact_does_not_flip() -> None:
+    """4 / w of the contact mode, w = 8658 rad/s at p = 100E: 0.462 ms, as the table says."""
+    stiff = closed.stiffer(PAPER, 100.0)
+    w = closed.closed_forms.contact_frequency(stiff)
+    below, above = (spectral.eigenvalues(w * step, 0.5, 1.0, 1.0) for step in (0.46e-3, 0.4625e-3))
+    assert np.abs(np.imag(below)).max() > 0 and np.abs(np.imag(above)).max() == 0
+
+
+# ---- what is drawn ------------------------------------------------------------------------------------------------
+
+
+def test_a_chart_names_curves_at_their_ends_and_marks_limits() -> None:
+    x = np.array([1.0, 10.0, 100.0])
+    chart = charts.Chart(
+        "A title [%]", ("dt [ms]", ""),
+        (charts.Stroke("up", x, x, "#0072b2"), charts.Stroke("gone", x, np.array([2.0, 1.0, np.nan]), "#009e73"),
+         charts.Stroke("as run", x, 2 * x, "#cc79a7", dots=True, line=False, named=False)),
+        (1.0, 100.0), (0.5, 200.0), {"limit": 20.0}, {"5 %": 5.0},
+    )  # fmt: skip
+    (axes,) = charts.charts_figure([chart]).axes
+    assert names_at(axes) == {"up": (pytest.approx(100), "#0072b2"), "gone": (pytest.approx(1.0), "#009e73")}
+    assert [list(y) for own, _, y in lines_of(axes) if own == "#cc79a7"] == [[2, 20, 200]]  # dots, no line
+    assert rules_of(axes, to_hex("#6b6b6b")) == ([5.0], [20.0])
+    words = {text.get_text(): text.get_position() for text in axes.texts}
+    assert words["limit"][0] == 20.0 and words["5 %"][1] == 5.0
+    assert (axes.get_title(loc="left"), axes.get_xlabel()) == ("A title [%]", "dt [ms]")
+
+
+def test_ticks_are_numbers_or_powers_of_ten() -> None:
+    assert [charts._power(value) for value in (0.1, 1.0, 1000.0, 1e5, 1e-4)] == [
+        "0.1",
+        "1",
+        "1000",
+        "$10^{5}$",
+        "$10^{-4}$",
+    ]
+
+
+def test_the_model_is_drawn_with_its_words() -> None:
+    (axes,) = model_figure("a = 2 m", "q = 5 MPa").axes
+    words = [text.get_text() for text in axes.texts]
+    assert {"A", "B, fixed", "M", "N", "u", "v", "r", "a = 2 m", "q = 5 MPa, from t = 0 on"} <= set(words)
+    assert words.count("p") == 4  # two springs a corner
+    springs = [line for line in axes.lines if line.get_color() == style_of("dda").color and len(line.get_xdata()) > 5]
+    assert len(springs) == 4

@@ -1,0 +1,173 @@
+"""The appendix, and the chapters whose tables are made from rows alone: each number in its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.made_cases import between, made_case, made_group, made_history
+
+from validation.report.appendix.gates import MOST_LINES, gate_pages
+from validation.report.appendix.glossary import WORDS
+from validation.report.appendix.provenance import parameter_table
+from validation.report.blocks import Lines
+from validation.report.chapters.block import core, two_codes
+from validation.report.chapters.limits import locking
+from validation.report.chapters.scene import history_block
+from validation.report.figures import motion
+from validation.report.figures.curves import Panel
+from validation.scenes.scene import load_scene
+
+PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
+
+
+def verdict(scene: str, value: float, band: tuple[float, float] = (0.0, 1.0), **more: Any) -> Any:
+    rest = {"study": "core", "pair": ["dda", "bar"], "metric": "m", "verdict": "PASS", "reason": "so", "why": ""}
+    rest |= {"reference_kind": "exact", "reference_uncertainty": 0.0, "alarms": [], "id": f"{scene}:dda-bar:m"}
+    return rest | {"scene": scene, "value": value, "band": list(band)} | more
+
+
+def lines_of(verdicts: list[Any], found: Any = None) -> Any:
+    (block,) = [part for part in gate_pages(verdicts, found or {}) if isinstance(part, Lines)]
+    return block.sections
+
+
+def test_every_gate_has_a_line_with_place_pair_value_and_band() -> None:
+    group = made_group(made_case(PAPER.with_values({"time.step": 0.01}, label=True), {}, label="dt = 0.01 s"))
+    name = group.cases[0].name
+    own = [
+        verdict(name, 0.5, id=f"{name}:dda-bar:m@0.2s"),
+        verdict("b", 0.25, (0.2, 0.3), reason="else", study="limits"),
+    ]
+    assert lines_of([*own, verdict("c", 9.0, verdict="FAIL")], {"scene": group}) == (
+        ("core: 1 passed", "so [exact]", (("figures-3-4 dt=0.01 s", "dda–bar m@0.2s", "0.5", "0 … 1"),)),
+        ("limits: 1 passed", "else [exact]", (("b", "dda–bar m", "0.25", "0.2 … 0.3"),)),
+    )
+    assert gate_pages([verdict("c", 9.0, verdict="FAIL")], {}) == []
+
+
+def test_of_very_many_gates_those_of_one_kind_share_a_line() -> None:
+    many = [verdict(f"a[x={i}]", 0.1 + i / 10_000) for i in range(MOST_LINES)]
+    assert len(lines_of(many)[0][2]) == MOST_LINES
+    others = [verdict("b[x=1]", 0.1, (0.0, 0.2)), verdict("b[x=2]", 0.1), verdict("c", 0.3)]
+    ((_, _, lines),) = lines_of([*many, *others])
+    assert lines == (
+        (f"a, {MOST_LINES} cases", "dda–bar m", "0.1 … 0.1699", "0 … 1"),
+        ("b, 2 cases", "dda–bar m", "0.1", "a band of its own each"),
+        ("c", "dda–bar m", "0.3", "0 … 1"),
+    )
+
+
+def test_parameters_are_told_in_full_once_and_then_by_what_differs() -> None:
+    stiff = PAPER.with_values({"contact.stiffness": 1e11})
+    cases = [made_case(PAPER.with_values({"time.step": step}, label=True), {}) for step in (0.002, 0.001)]
+    found = {"a": replace(made_group(*cases), name="a"), "b": replace(made_group(made_case(stiff, {})), name="b")}
+    _, table = parameter_table(found)
+    (_, first), other = table.rows  # type: ignore[union-attr]
+    assert first.startswith("a = 2 m, ρ = 2700 kg/m³") and first.endswith("2 cases") and "dt =" not in first
+    assert other == ("b", "p = 1×10¹¹ N/m, dt = 0.002 s, one case")
+
+
+def test_the_glossary_has_twelve_words() -> None:
+    assert len(WORDS) == 12 and len(dict(WORDS)) == 12
+    assert np.exp(-2 * np.pi * 0.05 / np.sqrt(1 - 0.05**2)) == pytest.approx(0.73, abs=5e-3)  # what it says of 5 %
+
+
+# ---- histories ----------------------------------------------------------------------------------------------------
+
+
+def panel(**values: Any) -> Panel:
+    return Panel("", {name: made_history(0.1, np.array(v)) for name, v in values.items()}, {"displacement": 1.0}, "bar")
+
+
+def test_lines_on_one_another_are_one_line_with_all_names() -> None:
+    base = np.linspace(0, 1, 50)
+    some = panel(dda=base + 0.1, textbook=base + 0.1 + 1e-6, bar=base, fem=base + 1e-3, far=base + 3e-3)
+    assert motion.twins([some], ["displacement"]) == {
+        "dda": {"textbook": pytest.approx(1e-6 / 1.1)}, "bar": {"fem": pytest.approx(1e-3)}, "far": {},
+    }  # fmt: skip
+    alone = panel(dda=base, bar=base + 1)
+    assert "textbook" in motion.twins([some, alone], ["displacement"])["dda"]
+    other = panel(dda=base, textbook=base + 1)
+    assert motion.twins([some, other], ["displacement"])["dda"] == {}  # on one another in one case only
+    figure = motion.history_figure([some], "displacement")
+    assert {text.get_text() for text in figure.axes[0].texts} == {"dda, textbook", "bar, fem", "far"}
+
+
+def test_more_swings_than_can_be_drawn_are_a_band_with_their_start_below() -> None:
+    time = np.arange(1, 20_001)
+    fast = panel(dda=1 - np.cos(0.5 * time))  # 1592 periods
+    slow = panel(dda=1 - np.cos(0.005 * time) + 0.01 * np.cos(time))  # 16, and noise on them
+    assert motion.start_of([slow], "displacement") is None
+    span = motion.start_of([fast], "displacement")
+    assert span == pytest.approx(12 * 2 * np.pi / 0.5 * 0.1, rel=0.01)  # 24 crossings, 12 periods
+    top, start = motion.history_figure([fast], "displacement").axes
+    assert top.collections and not start.collections  # a filled band, and lines
+    assert start.get_xlim()[1] == pytest.approx(span, rel=0.01) and start.get_ylabel() == "its start"
+    middles, low, high = motion.band(np.arange(600.0), np.tile([3.0, -1.0], 300))
+    assert middles.size == motion.BINS and set(low) == {-1.0} and set(high) == {3.0}
+
+
+def test_a_figure_ends_when_all_lines_have_long_settled(tmp_path: Any) -> None:
+    history = made_history(0.002, np.linspace(-0.02, -0.01, 100))
+    rows = {"dda": {"displacement.settling_step": 20.0}, "bar": {"displacement.settling_step": 10.0}}
+    group = made_group(made_case(PAPER, rows, {"dda": history, "bar": history}))
+    assert "The first 0.060 s; all have settled then." in history_block(group, ["displacement"], tmp_path).caption
+    rows["bar"] = {"displacement.settling_step": "undefined"}
+    group = made_group(made_case(PAPER, rows, {"dda": history, "bar": history}))
+    caption = history_block(group, ["displacement"], tmp_path).caption
+    assert "settled" not in caption and "bar lies on dda (within <10⁻¹²)." in caption
+    assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
+
+
+# ---- chapters -----------------------------------------------------------------------------------------------------
+
+
+def test_mesh_point_springs_and_lateral_strain_have_their_numbers() -> None:
+    meshes = [PAPER.with_values({"fem.elements": n}, label=True) for n in (16, 4, 8)]
+    pairs = tuple(between(m.name, "fem", "bar", displacement_l2=16.0 * m.fem.per_side**-4.0) for m in meshes)
+    group = made_group(*(made_case(m, {}) for m in meshes), comparisons=pairs)
+    n, error = core.mesh_errors({"mesh-convergence": group})  # type: ignore[misc]
+    assert list(n) == [4, 8, 16] and error == pytest.approx([16 / 4**4, 16 / 8**4, 16 / 16**4])
+    assert core.mesh_errors({}) is None
+    chart, said = core.drift_chart(made_group(made_case(PAPER, {"dda": {"displacement.static": -0.01}})),
+                                   [(4, -0.02), (8, -0.025), (16, -0.03)])  # fmt: skip
+    fem, dda = chart.strokes
+    assert list(fem.y) == pytest.approx([-20, -25, -30]) and set(dda.y) == {-10.0}
+    assert "changes by −5.00 mm with every halving" in said
+    lateral = PAPER.with_values({"block.poisson": 0.3})
+    moved = {"dda": {"displacement.static": -9.85e-3}, "fem": {"displacement.static": -10e-3}}
+    table = core.lateral_table({"poisson-statics": made_group(made_case(lateral, moved, label="p = 1E"))})
+    assert table.rows == (("p = 1E", "0.3", "−9.850", "−10.000", "1.5\u00a0%"),)
+
+
+def test_locking_is_told_by_the_share_that_linear_elements_keep() -> None:
+    cases = []
+    for poisson, linear, quadratic in ((0.3, -4.2e-3, -4.25e-3), (0.499, -0.5e-3, -4e-3)):
+        for degree, value in ((1, linear), (2, quadratic)):
+            scene = PAPER.with_values(
+                {"block.poisson": poisson, "block.hypothesis": "plane strain", "fem.degree": degree}, label=True
+            )
+            cases.append(made_case(scene, {"fem": {"displacement.static": value}}))
+    group = made_group(*cases)
+    assert locking.locking_table(group).rows == (
+        ("0.3", "−4.2000", "−4.2500", "98.8\u00a0%"), ("0.499", "−0.5000", "−4.0000", "12.5\u00a0%"),
+    )  # fmt: skip
+    assert "at μ = 0.499 they keep 12.5\u00a0% of the displacement" in locking.locked_sentence(group)
+    drift = made_group(
+        made_case(PAPER, {"dda": {"energy.drift": 3e-11}}), made_case(PAPER, {"dda": {"energy.drift": 1e-13}})
+    )
+    assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 100 steps."
+
+
+def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
+    scenes = [PAPER.with_values({"time.step": step}, label=True) for step in (0.002, 0.001)]
+    pairs = tuple(
+        between(scene.name, "fem:full", "fenicsx", displacement_l2=1e-9 * (i + 1), pressure_l2=1e-15)
+        for i, scene in enumerate(scenes)
+    )
+    group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
+    assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
+    assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()

@@ -1,0 +1,91 @@
+"""Read as a reader does: five questions are answered on the first four pages, and the report has as many as it may."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from conftest import beside
+from pypdf import PdfReader
+
+from validation.engine.run import run_study
+from validation.engine.study import Study
+from validation.report.book import build, ordered_studies
+from validation.report.front.found import found_scenes
+from validation.report.front.pages import front_pages
+from validation.report.typesetting import write_document
+from validation.runs.results import Results
+from validation.studies.catalogue import get_study, judged_studies
+
+ROOT = Path(__file__).parents[2]
+SHORT, WHOLE = 20, 42  # pages; the long study `stability`, which is not run here, takes three more
+SCENES = ("figures-3-4", "figures-5-6", "model-form")
+ANSWERS = {  # question -> what is read on which page
+    "which dt for 5 % damping": {1: "for 5 % take dt = 0.584 ms", 2: "for 5 % at p = 1E, dt = 0.584 ms"},
+    "what happens at p = 100E": {
+        1: "the contact rings: it flips sign each step",
+        3: "At p = 100E they give way by 0.05 mm",
+    },
+    "is DDA's force right": {1: "At rest yes: every run comes to rest at 5 MPa; on the way not"},
+    "what does gg = 0.98 do": {1: "It takes 2 % of the velocity each step", 4: "gg = 0.98 per step is 1.52 % at 2 ms"},
+    "what must I not believe": {1: "What must I not believe? The agreement at a long step: 0.813 % at 10 ms"},
+}
+
+
+def words(text: str) -> str:
+    """Return a text with single spaces, words that were broken at a line's end whole."""
+    return re.sub(r"\s+", " ", re.sub(r"-\n", "", text))
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The first pages of a report on the scenes that they speak of, without the slow solvers."""
+    directory = tmp_path_factory.mktemp("read")
+    results = Results(directory / "results")
+    run_study(Study("core", "The paper", "Why.", SCENES, ("dda", "bar", "continuum")), results)
+    found, studies = found_scenes(results, ["core"]), ["core"]
+    out = write_document(directory / "r.pdf", lambda root: front_pages(found, results.verdicts(), studies, root))
+    return [words(page.extract_text()) for page in PdfReader(out).pages]
+
+
+@pytest.mark.parametrize("question", ANSWERS)
+def test_a_question_is_answered_on_the_first_four_pages(question: str, pages: list[str]) -> None:
+    assert len(pages) == 4
+    for number, answer in ANSWERS[question].items():
+        assert answer in pages[number - 1]
+
+
+def test_the_first_page_has_the_model_five_sentences_and_one_line_of_verdicts(pages: list[str]) -> None:
+    first = pages[0]
+    assert "What was tested" in first and "No gate was judged." in first
+    assert all(f"{number}. " in first for number in range(1, 6)) and "6. " not in first
+    assert [re.search(r"Decision (\d)", page)[1] for page in pages[1:]] == ["1", "2", "3"]  # type: ignore[index]
+
+
+def made(studies: list[str], finished_cases: Path, directory: Path) -> PdfReader:
+    results = beside(finished_cases, directory / "results")
+    for name in studies:
+        run_study(get_study(name), results)
+    assert sorted(ordered_studies(results)) == sorted(studies)
+    return PdfReader(build(results, directory / "report.pdf"))
+
+
+def reported() -> list[str]:
+    """Return the studies that `make report` runs."""
+    line = re.search(r"run (core [\w -]+);", (ROOT / "Makefile").read_text(encoding="utf-8"))
+    assert line is not None
+    return line[1].split()
+
+
+@pytest.mark.long
+def test_make_report_has_at_most_twenty_pages(tmp_path: Path, finished_cases: Path) -> None:
+    read = made(reported(), finished_cases, tmp_path)
+    assert len(read.pages) <= SHORT
+    outline = words(" ".join(page.extract_text() for page in read.pages))
+    assert "gates: " in outline and "Twelve words" in outline and "Provenance" in outline
+
+
+@pytest.mark.long
+def test_everything_has_at_most_forty_five_pages(tmp_path: Path, finished_cases: Path) -> None:
+    assert len(made(judged_studies(), finished_cases, tmp_path).pages) <= WHOLE

@@ -1,0 +1,151 @@
+"""The studies `slopes` and `creep`: their gates hold, each is bitten by a fault, and every fault is seen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from faults import seams
+from faults.fault import Fault
+from faults.kill_matrix import check_kill_matrix
+from oracles.sliding_dda import Slider, run
+
+from validation import solve
+from validation.engine.finished import Finished
+from validation.engine.judge import evaluate
+from validation.engine.run import finish
+from validation.gates import friction
+from validation.gates.gate import Gate, Status
+from validation.runs.results import Results
+from validation.scenes.scene import Scene
+from validation.studies.bands import cases
+from validation.studies.slopes import creep, sliding
+
+Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def of_model(change: Callable[[Any], dict[str, Any]]) -> Wrap:
+    """Change what the block of DDA stands on."""
+    return lambda sound: lambda model, *a, **k: sound(replace(model, **change(model)), *a, **k)
+
+
+def of_law(**changes: Callable[[Any], Any]) -> Wrap:
+    """Change fields of the contact law, each a function of the law."""
+    return of_model(
+        lambda model: {"contact": replace(model.contact, **{k: f(model.contact) for k, f in changes.items()})}
+    )
+
+
+def of_scheme(change: Callable[[Any], dict[str, Any]]) -> Wrap:
+    """Change the scheme."""
+    return lambda sound: lambda model, scheme, *a, **k: sound(model, replace(scheme, **change(scheme)), *a, **k)
+
+
+def told(change: Callable[[Any], dict[str, Any]]) -> Wrap:
+    """Change what is found."""
+    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
+
+
+def energies(name: str, factor: float) -> Wrap:
+    def change(found: Any) -> dict[str, Any]:
+        kept = found.energies
+        return {"energies": kept and kept | {name: factor * kept[name]}}
+
+    return told(change)
+
+
+DDA = ("dda",)
+FAULTS = [
+    Fault("the angle of friction for its tangent", DDA, seams.DDA_OPENED,
+          of_law(friction=lambda law: law.friction and math.atan(law.friction))),
+    Fault("friction a millionth high", DDA, seams.DDA_OPENED,
+          of_law(friction=lambda law: law.friction and (1 + 1e-6) * law.friction)),
+    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0, cohesion=lambda law: 0.0)),
+    Fault("no cohesion", DDA, seams.DDA_OPENED, of_law(cohesion=lambda law: 0.0)),
+    Fault("friction lagged", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "lagged")),
+    Fault("the slope turned", DDA, seams.DDA_OPENED, of_model(lambda model: {"slope": -model.slope})),
+    Fault("the slope in the weight only", DDA, seams.DDA_OPENED, of_model(lambda model: {"slope": 0.0})),
+    Fault("gravity a millionth high", DDA, seams.DDA_OPENED,
+          of_model(lambda model: {"gravity": (1 + 1e-6) * model.gravity})),
+    Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
+    Fault("gg twice", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": scheme.gg**2})),
+    Fault("gg left out", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": 1.0})),
+    Fault("work of friction a hundredth high", DDA, seams.DDA_OPENED, energies("friction", 1.01)),
+    Fault("kinetic energy doubled", DDA, seams.DDA_OPENED, energies("kinetic", 2.0)),
+    Fault("slip counted on", DDA, seams.DDA_OPENED, told(lambda found: {"slip": found.slip + found.time * 1e-6})),
+]  # fmt: skip
+
+
+@pytest.mark.long
+def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.gates(), FAULTS, tmp_path, finished_cases)
+
+
+def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:
+    """Run the cases of some scenes of the study of creep and judge gates on them."""
+    study = creep.STUDY
+    needed = {need for gate in gates for need in study.needs(gate)}
+    own = [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+    assert {case.scene.name.partition("[")[0] for case in own} <= names
+    results = Results(directory)
+    finished = finish(own, study, results)
+    derived = Finished(finished.rows, results, study.recipes())
+    return {gate.id: evaluate(gate, derived).status for gate in gates}
+
+
+COARSE = ("creep-steps[time.step=0.01", "creep-steps[time.step=0.002")
+CREEP = [
+    Fault("friction consistent", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "consistent")),
+    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
+]
+
+
+def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gates = [g for g in creep.step_gates() if g.scene.startswith(COARSE)]
+    gates += [g for g in creep.lagged_gates() if g.pair[0] in ("at 10 ms", "at 2 ms")]
+    names = {creep.STEPS, creep.LAGGED}
+    sound = judged(gates, names, tmp_path / "sound")
+    assert set(sound.values()) == {Status.PASS}
+    bitten: set[str] = set()
+    for number, fault in enumerate(CREEP):
+        with monkeypatch.context() as patch:
+            fault.seam.wrap(patch, fault.replacement)
+            failed = {k for k, v in judged(gates, names, tmp_path / str(number)).items() if v is not Status.PASS}
+        assert failed, fault.name
+        bitten |= failed
+    assert bitten == set(sound)
+
+
+@pytest.mark.long
+def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda problem, *a, **k: sound(replace(problem, gravity=1.2 * problem.gravity), *a, **k)
+
+    exact = [gate for gate in creep.exact_gates() if "friction=30" in gate.scene]
+    faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, heavy)]
+    own = [case for case in creep.STUDY.cases() if case.scene.name == exact[0].scene]
+    check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
+
+
+def test_dda_is_the_plain_program_step_by_step() -> None:
+    """The oracle shares no line with it; consistent and lagged, sticking, slipping and open."""
+    for rules in ("consistent", "lagged"):
+        case = next(iter(cases(creep.LAGGED))).with_values(
+            {"contact.rules": rules, "contact.band": [0.0, 0.0], "time.step": 1e-3, "time.steps": 150}
+        )
+        data = oracle(case, rules == "lagged")
+        found, plain = solve(case, "dda").history.columns, run(data)
+        for name, other in (("horizontal_displacement", plain.u), ("displacement", plain.v)):
+            assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
+
+
+def oracle(case: Scene, lagged: bool) -> Slider:
+    c, t = case.contact, case.time
+    pull = friction.mass(case) * friction.along(case), -friction.mass(case) * friction.across(case)
+    return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)

@@ -1,0 +1,182 @@
+"""What friction, slope and a discount make of a block's way, and the alarms of blocks that slip.
+
+creep of a stable block
+    A block below its threshold slips on, long after it should stand.
+lagged friction
+    The friction of a slipping corner is that of the pass before: a stable block creeps, the faster the finer the step.
+slip hidden by the step
+    The step is too long for the ringing that moves the exact block: it stands because it is damped.
+no contact state
+    No states of stick and slip agree with the motion, or several do.
+drag on a sliding block
+    gg < 1 brakes a block that slides as it brakes one in the air.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from validation.advice.alarm import Alarm
+from validation.gates import friction
+from validation.runs.row import Row
+from validation.runs.run import Outcome
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
+
+CREEPS, LAGS, HIDES, STATELESS, BRAKES = (
+    "creep of a stable block",
+    "lagged friction",
+    "slip hidden by the step",
+    "no contact state",
+    "drag on a sliding block",
+)
+KINDS = (CREEPS, LAGS, HIDES, STATELESS, BRAKES)
+SLOW = 0.01  # of g / w_n: a slower creep is not worth an alarm
+STOPPING = 4.0  # times the time in which friction takes the speed g / w_n
+COARSE = 0.3  # w_n dt from which on the ringing is not followed
+NOTABLE = 0.01  # of the way, that a discount takes
+STATES = (Outcome.NO_CONTACT_STATE, Outcome.SEVERAL_CONTACT_STATES)
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """What follows of a scene with friction before anything is run."""
+
+    threshold: float  # slope at which it begins to slide [deg]
+    acceleration: float  # g (sin b - tan(phi) cos b) - c a / m [m/s2]; negative where it stands
+    run_out: float  # way of a sliding block over the scene's time [m]; zero where it stands
+    braked: float  # the same with the scene's scheme and discount [m]
+    offset: float  # by which springs that give put it ahead [m]
+    creep: float  # g / w_n, by which a stable block creeps on springs that ring [m/s]
+    rate: float  # -ln(gg) / dt [1/s]
+    constant: float  # dt / (1 - gg), in which a discount stops a body [s]
+
+    @property
+    def stands(self) -> bool:
+        """Whether the block is stable."""
+        return self.acceleration <= 0
+
+
+def sliding(scene: Scene) -> Sliding | None:
+    """Return what follows for a block with friction under its own weight, None for another one."""
+    alone = scene.load.pressure == scene.load.traction == 0 and scene.load.base_motion is None
+    if features.FRICTION not in features.of(scene) or scene.load.gravity <= 0 or not alone:
+        return None
+    rate = friction.sliding_acceleration(scene)
+    braked, _ = friction.free_motion(scene, max(rate, 0.0))
+    return Sliding(
+        friction.threshold_angle(scene),
+        rate,
+        friction.run_out(scene, scene.time.duration),
+        float(braked[-1]),
+        friction.penalty_offset(scene),
+        friction.creep_scale(scene) if math.isfinite(scene.contact.stiffness) else 0.0,
+        friction.drag_rate(scene),
+        friction.time_constant(scene),
+    )
+
+
+def kept_way(gg: float, step: float, time: float) -> float:
+    """Return the share of its way that a falling or sliding body goes from rest in a time with a discount [-].
+
+    The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
+    """
+    n = max(round(time / step), 1)
+    if gg >= 1:
+        return 1.0
+    gained = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
+    return float((n / 2 + gg * (n - gained) / (1 - gg)) / (n * n / 2))
+
+
+def as_dict(found: Sliding | None) -> dict[str, Any] | None:
+    """Return plain data for JSON."""
+    return None if found is None else asdict(found)
+
+
+def lines(scene: Scene, found: Sliding) -> Iterator[str]:
+    """Yield what is said of a block with friction."""
+    t = scene.time
+    slope = abs(scene.load.slope)
+    side = "below" if found.stands else "above"
+    yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg:"
+    if found.stands:
+        yield (
+            f"  stable      springs that ring undamped let it creep by the order of g / w_n = {1e3 * found.creep:.3g} "
+            f"mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
+        )
+    else:
+        yield (
+            f"  slides      by {found.run_out:.5g} m in {t.duration:.4g} s at {found.acceleration:.4g} m/s2, and "
+            f"tan(phi) x settlement = {found.offset:.3g} m ahead of that"
+        )
+        if t.discount < 1:
+            yield (
+                f"  gg          {t.discount:g} a step of {t.step:g} s is a drag of {found.rate:.4g} 1/s: it cuts "
+                f"{found.run_out:.3g} m to {found.braked:.3g} m, in flight as well; no speed beyond "
+                f"{found.acceleration * found.constant:.3g} m/s"
+            )
+
+
+def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+    """Yield the alarms of the judged method's run of a scene with friction, by its finished rows."""
+    name = next((name for name in by_role(Role.JUDGED) if name in rows), None)
+    if name is None or features.FRICTION not in features.of(scene):
+        return
+    yield from _stateless(scene, rows[name])
+    found = sliding(scene)
+    if scene.contact.rules == "lagged":
+        said = (
+            "a slipping corner has the friction of the pass before: a stable block creeps, the faster the finer the "
+            'step; contact.rules = "consistent" does not'
+        )
+        yield Alarm(LAGS, scene.name, said)
+    if found is not None and found.stands:
+        yield from _creeps(scene, rows[name], found)
+        yield from _hides(scene, found)
+    elif found is not None and found.braked < (1 - NOTABLE) * found.run_out and scene.time.discount < 1:
+        said = (
+            f"gg = {scene.time.discount:g} a step is a drag of {found.rate:.3g} 1/s: it cuts the run-out from "
+            f"{found.run_out:.3g} m to {found.braked:.3g} m"
+        )
+        yield Alarm(BRAKES, scene.name, said, {"rate": found.rate, "run_out": found.run_out, "braked": found.braked})
+
+
+def _stateless(scene: Scene, row: Row) -> Iterator[Alarm]:
+    if row.outcome in STATES:
+        said = (
+            f"{row.outcome.value} even after the step was cut: a smaller time.step, or a smaller contact.friction or "
+            "shear_stiffness, has one"
+        )
+        yield Alarm(STATELESS, scene.name, said)
+
+
+def _creeps(scene: Scene, row: Row, found: Sliding) -> Iterator[Alarm]:
+    """Alarm where slip goes on after friction has had the time to stop a speed of g / w_n."""
+    rate = row.metrics.get("contact.slip_rate")
+    stopped = STOPPING * found.creep / -found.acceleration if found.acceleration < 0 else math.inf
+    if isinstance(rate, float) and rate > SLOW * found.creep > 0 and scene.time.duration / 2 > stopped:
+        share = rate / found.creep
+        said = (
+            f"the block is stable, {abs(scene.load.slope):g} deg below {found.threshold:.4g} deg, and slips on by "
+            f"{1e3 * rate:.3g} mm/s, {share:.2g} times g / w_n"
+        )
+        yield Alarm(CREEPS, scene.name, said, {"rate": rate, "scale": found.creep})
+
+
+def _hides(scene: Scene, found: Sliding) -> Iterator[Alarm]:
+    """Alarm where a slope stands because its ringing is not followed."""
+    t, phase = scene.time, friction.normal_frequency(scene) * scene.time.step
+    damps = t.delta > 0.5 or t.discount < 1
+    if scene.load.slope and damps and phase > COARSE and found.creep > 0:
+        said = (
+            f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "
+            f"s, is damped before it is seen; the exact block creeps by the order of {1e3 * found.creep:.3g} mm/s"
+        )
+        yield Alarm(HIDES, scene.name, said, {"phase": phase, "scale": found.creep})

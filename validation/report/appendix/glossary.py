@@ -1,0 +1,27 @@
+"""Twelve words that a newcomer lacks."""
+
+from __future__ import annotations
+
+from validation.report.blocks import Block, Column, Heading, Table
+
+WORDS = (
+    ("block", "A polygon that DDA moves as a whole: u, v, r of its centroid and one strain εx, εy, γxy all over it."),
+    ("contact spring p", "The spring [N/m] that holds a corner, normal and in shear; p = 10E: p [N/m] = 10 E [Pa]."),
+    ("locked, unilateral", "A locked contact also pulls; a unilateral one opens instead of pulling."),
+    ("open-close iteration", "The search, within one step, for which springs act: solve, look at the gaps, repeat."),
+    ("α, δ", "Weights of the new acceleration in the displacement and in the velocity of a step (Newmark's β and γ): "
+     "(1/2, 1) is constant, (1/4, 1/2) average acceleration."),
+    ("discount gg", "The factor on the velocity at the start of each step; 1 takes nothing, 0 forgets all motion."),
+    ("damping ratio ξ", "Damping over critical damping: at 5 % a swing keeps 73 % of itself, at 100 % nothing swings."),
+    ("|λ|, spectral radius", "What a mode keeps of itself over one step; at 1 it is not damped, above 1 it grows."),
+    ("bar, continuum", "The same block resolved to the end: exact in space, same steps; exact in time as well."),
+    ("model form", "What stays wrong however fine step and mesh are: one strain in the place of a wave."),
+    ("relative L2", "Root of the mean square of a difference over that of the reference, over the whole history."),
+    ("gate, alarm", "A gate passes a number between two edges that have a reason; an alarm marks a result that looks "
+     "better than it is."),
+)  # fmt: skip
+
+
+def glossary() -> list[Block]:
+    """Return the glossary."""
+    return [Heading("Twelve words", 2), Table((Column("Word"), Column("Meaning", "fill")), WORDS)]

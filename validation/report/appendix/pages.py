@@ -1,0 +1,28 @@
+"""The appendix as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from validation.report.appendix.alarms import alarm_table
+from validation.report.appendix.gates import gate_pages
+from validation.report.appendix.glossary import glossary
+from validation.report.appendix.provenance import parameter_table, provenance
+from validation.report.blocks import Heading, Part
+from validation.report.chapters.data import Group
+from validation.runs.records import VerdictRecord
+from validation.runs.results import Results
+
+
+def appendix(
+    results: Results, found: Mapping[str, Group], verdicts: Sequence[VerdictRecord], studies: Sequence[str]
+) -> list[Part]:
+    """Return words, alarms, parameters, provenance and gates."""
+    return [
+        Heading("Appendix"),
+        *glossary(),
+        *alarm_table(found),
+        *parameter_table(found),
+        *provenance(results, studies),
+        *gate_pages(verdicts, found),
+    ]

@@ -1,0 +1,126 @@
+"""The chapter of the study `core`: the paper's scenes, then what mesh, lateral strain and point springs do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.chapters.data import Group, groups
+from validation.report.chapters.ledger import ledger_blocks
+from validation.report.chapters.scene import drift_values, scene_section
+from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.figures import histories
+from validation.report.figures.curves import style_of
+from validation.report.figures.front.charts import Chart, Stroke, charts_figure
+from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
+
+SHOWN = {  # scene -> columns that its figure holds
+    "figures-3-4": (DISPLACEMENT, PRESSURE),
+    "figures-5-6": (DISPLACEMENT, PRESSURE),
+    "figure-7": (DISPLACEMENT,),
+    "figure-8": (DISPLACEMENT,),
+    "figure-9": (DISPLACEMENT,),
+    "model-form": (DISPLACEMENT, PRESSURE),
+}
+UNDER_THE_STEP = ("figures-3-4", "figures-5-6", "model-form")  # where the undamped continuum would hide the rest
+TOLD = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: a section for each figure of the paper, then mesh and springs, then the ledger."""
+    found = {group.name: group for group in groups(results, manifest)}
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
+    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    for name, group in found.items():
+        if name not in TOLD:
+            left = tuple(by_role(Role.TRUTH)) if name in UNDER_THE_STEP else ()
+            blocks += scene_section(group, directory, SHOWN.get(name), without=left)
+    return [*blocks, *mesh_blocks(found, directory), *ledger_blocks(list(found.values()), "core", directory)]
+
+
+def mesh_blocks(found: Mapping[str, Group], directory: Path) -> list[Block]:
+    """Return what mesh, point springs and lateral strain do to the finite elements beside DDA."""
+    color = style_of("fem").color
+    charts, said = [], list[str]()
+    if (points := mesh_errors(found)) is not None:
+        n, error = points
+        slope = float(np.polyfit(np.log(n), np.log(error), 1)[0])
+        charts.append(
+            Chart(
+                "Error of fem against the bar [-]",
+                ("elements a side n", ""),
+                (Stroke("fem", n, error, color, dots=True),),
+                (n[0] / 1.3, n[-1] * 1.3),
+                (error.min() / 3, 3 * error.max()),
+            )
+        )
+        said.append(
+            f"Under average acceleration the error of quadratic elements falls as n to the power {plain(slope, 3)} "
+            f"where the front is sharpest, from {percent(error[0])} to {percent(error[-1])}."
+        )
+    drift = drift_values(found["corner-springs"]) if "corner-springs" in found else []
+    if len(drift) > 1:
+        chart, sentence = drift_chart(found["corner-springs"], drift)
+        charts.append(chart)
+        said.append(sentence)
+    if not charts:
+        return []
+    figure = histories.saved(charts_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(said))
+    table = lateral_table(found)
+    return [Heading("Mesh, point springs and lateral strain", 2), figure, *([table] if table.rows else [])]
+
+
+def mesh_errors(found: Mapping[str, Group]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return elements a side and relative L2 error of fem against the bar; None for fewer than two meshes."""
+    group, points = found.get("mesh-convergence"), []
+    for case in group.cases if group else ():
+        error = group.number_of_pair(case, "fem", "bar", "displacement.l2") if group else None
+        points += [] if error is None else [(float(case.scene.fem.per_side), error)]
+    if len(points) < 2:
+        return None
+    n, errors = np.array(sorted(points)).T
+    return n, errors
+
+
+def drift_chart(group: Group, drift: list[tuple[int, float]]) -> tuple[Chart, str]:
+    """Return the drift of fem on corner point springs as a chart, and the sentence that it carries."""
+    n, v = np.array([float(n) for n, _ in drift]), 1e3 * np.array([v for _, v in drift])
+    slope = float(np.polyfit(np.log2(n), v, 1)[0])
+    strokes = [Stroke("fem", n, v, style_of("fem").color, dots=True)]
+    dda = group.cases[0].number("dda", "displacement.static")
+    if dda is not None:
+        strokes.append(Stroke("dda", n, np.full(n.size, 1e3 * dda), style_of("dda").color))
+    low = 1.1 * min(float(v.min()), 1e3 * (dda or 0.0))
+    chart = Chart(
+        "v at rest on corner point springs [mm]",
+        ("elements a side n", ""),
+        strokes,
+        (n[0] / 1.3, n[-1] * 1.3),
+        (low, 0.0),
+        logarithmic=(True, False),
+    )
+    return chart, (
+        f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
+        "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
+    )
+
+
+def lateral_table(found: Mapping[str, Group]) -> Table:
+    """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
+    rows = []
+    group = found.get("poisson-statics")
+    for case in group.cases if group else ():
+        own, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
+        shown = [DASH if value is None else f"{1e3 * value:.3f}".replace("-", "−") for value in (own, fem)]
+        ratio = DASH if not own or not fem else percent(abs(own / fem - 1))
+        rows.append((case.label, short(case.scene.block.poisson), *shown, ratio))
+    titles = (*columns("text", "Case"), *columns("decimal", "μ", "dda", "fem"), *columns("text", "apart"))
+    caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
+    return Table(titles, tuple(rows), caption)

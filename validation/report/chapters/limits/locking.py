@@ -1,0 +1,84 @@
+"""The chapter of the study `limits`: locking of nearly incompressible elements, and the energy of a million steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.scene import history_block
+from validation.report.chapters.text import DASH, bounded, percent, power
+from validation.runs.history import DISPLACEMENT
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+
+LOCKING, LONG = "locking", "long-run"
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: the table of locking, the long run with its energy."""
+    found = {group.name: group for group in groups(results, manifest)}
+    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
+    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    if LOCKING in found:
+        blocks += [
+            Heading(found[LOCKING].title, 2),
+            Paragraph(locked_sentence(found[LOCKING])),
+            locking_table(found[LOCKING]),
+        ]
+    if LONG in found:
+        long = found[LONG]
+        blocks += [
+            Heading(long.title, 2),
+            Paragraph(drift_sentence(long)),
+            history_block(long, (DISPLACEMENT,), directory),
+        ]
+    return blocks
+
+
+def by_poisson(group: Group) -> Mapping[float, dict[int, Case]]:
+    """Return the cases by Poisson ratio and degree."""
+    found: dict[float, dict[int, Case]] = {}
+    for case in group.cases:
+        found.setdefault(case.scene.block.poisson, {})[case.scene.fem.degree] = case
+    return found
+
+
+def _moved(cases: Mapping[int, Case]) -> list[float | None]:
+    return [cases[degree].number("fem", "displacement.static") if degree in cases else None for degree in (1, 2)]
+
+
+def locking_table(group: Group) -> Table:
+    """Return the displacement at rest of linear and quadratic elements by Poisson ratio."""
+    rows = []
+    for poisson, cases in by_poisson(group).items():
+        linear, quadratic = _moved(cases)
+        shown = [DASH if v is None else f"{1e3 * v:.4f}".replace("-", "−") for v in (linear, quadratic)]
+        share = DASH if not linear or not quadratic else percent(linear / quadratic)
+        rows.append((f"{poisson:g}", *shown, share))
+    titles = (*columns("decimal", "μ", "linear", "quadratic"), *columns("text", "linear over quadratic"))
+    return Table(titles, tuple(rows), "v at rest [mm], plane strain, eight elements a side.")
+
+
+def locked_sentence(group: Group) -> str:
+    """Say how much of the motion linear elements keep where the material hardly changes its volume."""
+    poisson, cases = max(by_poisson(group).items())
+    linear, quadratic = _moved(cases)
+    if not linear or not quadratic:
+        return "Both degrees are needed to see locking."
+    return (
+        f"Linear elements lock: at μ = {poisson:g} they keep {percent(linear / quadratic)} of the displacement, and "
+        "quadratic ones are the cure."
+    )
+
+
+def drift_sentence(group: Group) -> str:
+    """Say how far the energy drifts over the long run."""
+    drifts = [value for case in group.cases if (value := case.number("dda", "energy.drift")) is not None]
+    steps = max(case.scene.time.steps for case in group.cases)
+    if not drifts:
+        return f"{steps} steps; the energy was not measured."
+    largest = max(drifts)
+    said = f"{steps:,}".replace(",", "\u202f")
+    return f"The energy drifts by {bounded(largest, power(largest))} at most over {said} steps."

@@ -1,0 +1,147 @@
+"""The chapter of the study `creep`: a stable block over time and over the step, by rule and scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from validation.gates import friction
+from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.scene import gate_count
+from validation.report.chapters.text import DASH, plain
+from validation.report.figures.friction import Panel, Trace, panels_figure
+from validation.report.figures.histories import saved
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.studies.slopes import creep as study
+
+CONSTANT, AVERAGE = "constant acceleration", "average acceleration"
+ORANGE, BLUE, GREEN, BLACK = "#d55e00", "#0072b2", "#009e73", "black"
+CAPTION = (
+    "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip in a second "
+    "over the step; the exact block's is drawn across. Lagged friction with dead bands is that of another load, nine "
+    "times the weight, and is laid beside a program of the trade (circles)."
+)
+SAID = (
+    "The normal springs ring when the weight comes on. Each swing takes normal force off the base, friction lets go, "
+    "and the block moves by some g/ω_n²: undamped it creeps for ever, by the order of g/ω_n = g √(m/2p) a second. "
+    "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
+    "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the pass "
+    "before and stick and slip are not looked at, the block goes on: with an open "
+    "contact that closes only beyond a dead band, ever faster as the step is refined."
+)
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: the figure and the table by steps."""
+    found = {group.name: group for group in groups(results, manifest)}
+    verdicts = [verdict for group in found.values() for verdict in group.verdicts]
+    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
+    blocks: list[Block] = [
+        Heading(manifest.get("title") or manifest["study"]),
+        Paragraph(f"{manifest.get('purpose') or ''}{count}"),
+        Paragraph(SAID),
+    ]
+    if found.get(study.STEPS):
+        blocks += [over_time_and_step(found, directory), by_step(found)]
+    return blocks
+
+
+def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlock:
+    """Return the figure of slides over time and of slip over the step."""
+    exact = [case for case in cases(found, study.EXACT) if case.scene.contact.friction == 30]
+    lines = [trace("exact", case, "block-events", BLACK) for case in exact]
+    steps = cases(found, study.STEPS)
+    for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, GREEN)):
+        lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
+    lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
+    kinds = ((CONSTANT, "(1/2, 1), consistent", ORANGE), (AVERAGE, "(1/4, 1/2), consistent", BLUE))
+    slips = [over_step(words, [c for c in steps if of(c, kind)], color) for kind, words, color in kinds]
+    slips.append(over_step("lagged, dead bands", lagged(found), GREEN))
+    program = np.array(sorted(study.PROGRAM.items()))
+    slips.append(Trace("a program of the trade", 1e3 * program[:, 0], 1e3 * program[:, 1], BLACK, dotted=True))
+    slips += [across(case) for case in exact[:1]]
+    panels = (
+        Panel("Slide", "t [s]", "slide [mm]", tuple(line for line in lines if len(line.x)), legend="upper left"),
+        Panel("Slip in a second", "dt [ms]", "slip [mm]", tuple(s for s in slips if len(s.x)), True, "upper center"),
+    )
+    return saved(panels_figure(panels), directory, "creep.svg", CAPTION)
+
+
+def cases(found: Mapping[str, Group], name: str) -> list[Case]:
+    """Return the cases of a scene."""
+    return list(found[name].cases) if name in found else []
+
+
+def of(case: Case, kind: str) -> bool:
+    """Whether a case is of a scheme from the usual start, without a discount."""
+    t = case.scene.time
+    if t.discount < 1 or (kind == AVERAGE) != (t.delta == 0.5):
+        return False
+    return t.start == ("consistent" if kind == AVERAGE else "zero")
+
+
+def at(case: Case, step: float) -> bool:
+    """Whether a case is of a time step."""
+    return abs(case.scene.time.step / step - 1) < 1e-9
+
+
+def lagged(found: Mapping[str, Group]) -> list[Case]:
+    """Return the cases of lagged friction on the scene's own springs."""
+    return [case for case in cases(found, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
+
+
+def trace(words: str, case: Case, solver: str, color: str) -> Trace:
+    """Return the slide of a case over time."""
+    history = case.histories.get(solver)
+    if history is None:
+        return Trace(words, np.zeros(0), np.zeros(0), color)
+    return Trace(words, history.time, 1e3 * study.slid(history.columns), color)
+
+
+def slip(case: Case) -> float | None:
+    """Return the way of the corners in a second, of a block that slides far that of the centroid [m]."""
+    if case.scene.contact.rules == "lagged":
+        return case.number("dda", "horizontal.final")
+    history = case.histories.get("dda")
+    return None if history is None else float(study.slid(history.columns)[-1])
+
+
+def over_step(words: str, own: list[Case], color: str) -> Trace:
+    """Return the slip of some cases over their steps."""
+    known = sorted((case.scene.time.step, value) for case in own if (value := slip(case)))
+    return Trace(words, 1e3 * np.array([x for x, _ in known]), 1e3 * np.array([y for _, y in known]), color)
+
+
+def across(case: Case) -> Trace:
+    """Return the exact block's slip in a second, at any step."""
+    history = case.histories.get("block-events")
+    if history is None:
+        return Trace("exact", np.zeros(0), np.zeros(0), BLACK)
+    speed = float(study.slid(history.columns)[-1] / history.time[-1])
+    return Trace("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
+
+
+def by_step(found: Mapping[str, Group]) -> Table:
+    """Return the slip in a second by step and rule."""
+    steps = cases(found, study.STEPS)
+    rows = []
+    for step, way in study.PROGRAM.items():
+        kinds = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
+        late = next((slip(c) for c in lagged(found) if at(c, step)), None)
+        rows.append(
+            (
+                plain(1e3 * step, 3),
+                *(DASH if value is None else plain(1e3 * value, 3) for value in (*kinds, late)),
+                plain(1e3 * way, 3),
+            )
+        )
+    scale = friction.creep_scale(steps[0].scene)
+    titles = columns(
+        "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "a program of the trade [mm]"
+    )
+    caption = f"Slip in a second. g/ω_n = {1e3 * scale:.3g} mm/s for the block under its own weight."
+    return Table(titles, tuple(rows), caption)

@@ -1,0 +1,259 @@
+"""Histories as small multiples: a panel a case, a row a column, and below them how far the lines are apart.
+
+Lines that lie on one another are drawn once and named together; a history of more swings than can be seen is drawn as
+the band that it fills, with its start below.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+from validation.report.figures.curves import (
+    COLUMNS,
+    HAIR,
+    Panel,
+    common_range,
+    differences,
+    engineering,
+    style_of,
+    thin,
+)
+from validation.report.figures.histories import (
+    LETTER,
+    Margins,
+    draw_line,
+    house_style,
+    label_ends,
+    outer_ticks,
+    share_left,
+    size_of,
+    small_multiples,
+)
+from validation.runs.history import Array, History
+
+TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
+SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
+START = 24  # swings that the start shows
+BINS = 300  # of a band
+HALF = 0.05  # of the range: smaller swings are noise on larger ones
+FLOOR = 1e-9  # of the static value; smaller differences are not drawn
+Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
+
+
+def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) -> Figure:
+    """Draw columns of all solvers, one panel a case; if `apart`, the first one's differences from the reference below.
+
+    Differences are divided by the static value (by the reference's largest value where there is none) and shown
+    as the largest magnitude in each fortieth of the time, on a logarithmic axis; those of lines that lie on one another
+    are left out.
+    """
+    on_one = twins(panels, columns)
+    drawn = [replace(panel, histories=_kept(panel, on_one)) for panel in panels]
+    span = start_of(drawn, columns[0])
+    apart = apart and any(differences(panel, columns[0]) for panel in drawn)
+    names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
+    room = max(14.0, 5.0 + LETTER * max(map(len, names.values()), default=0))
+    rows = [(20.0, 3.0)] * len(columns) + [(14.0, 3.0)] * apart
+    if span is not None:  # whose own times stand below the rows above
+        rows[len(columns) - 1 : len(columns)] = [(20.0, 7.0), (16.0, 7.0 if apart else 3.0)]
+    rows[-1] = (rows[-1][0], 13.0)
+    with house_style():
+        figure, bands = small_multiples(drawn, _columns(len(panels)), Margins(left=15.0, right=room), rows)
+        for some, lines in bands:
+            for row, column in zip(lines, columns, strict=False):
+                _history_row(row, some, column, common_range(drawn, column))
+                _row_labels(row, len(some), _label(drawn, column), _ends(some, drawn, column), names)
+            for axes, panel in zip(lines[0], some, strict=False):
+                axes.set_title(panel.title)
+            if span is not None:
+                start = [_until(panel, span) for panel in some]
+                _history_row(lines[len(columns)], start, columns[0], common_range(drawn, columns[0]))
+                _row_labels(lines[len(columns)], len(some), "its start", {}, names)
+            if apart:
+                _difference_row(lines[-1], some, columns[0], names)
+            _name_time(lines[-1], len(some), lines)
+    return figure
+
+
+# ---- lines that lie on one another --------------------------------------------------------------------------------
+
+
+def twins(panels: Sequence[Panel], columns: Sequence[str]) -> Twins:
+    """Return the solvers that are drawn, and with each the later ones that lie on it in every panel."""
+    found: dict[str, dict[str, float]] = {}
+    for name in dict.fromkeys(name for panel in panels for name in panel.histories):
+        for kept, others in found.items():
+            off = _apart(panels, columns, kept, name)
+            if off is not None and off <= TWIN:
+                others[name] = off
+                break
+        else:
+            found[name] = {}
+    return found
+
+
+def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str) -> float | None:
+    """Return how far a solver is off another at most, over the largest value; None where it is drawn without it."""
+    worst = 0.0
+    for panel in panels:
+        a, b = panel.histories.get(one), panel.histories.get(other)
+        if b is None:
+            continue
+        if a is None or a.time.size != b.time.size:
+            return None
+        for column in columns:
+            if (column in a.columns) != (column in b.columns):
+                return None
+            if column not in a.columns:
+                continue
+            values = a.columns[column], b.columns[column]
+            size = max(float(np.abs(values[0]).max()), abs(panel.static.get(column, 0.0))) or 1.0
+            with np.errstate(all="ignore"):  # a run that blew up is far from everything
+                off = float(np.abs(values[0] - values[1]).max() / size)
+            worst = max(worst, off if math.isfinite(off) else math.inf)
+    return worst
+
+
+def _kept(panel: Panel, on_one: Twins) -> dict[str, History]:
+    return {name: history for name, history in panel.histories.items() if name in on_one}
+
+
+# ---- long histories -----------------------------------------------------------------------------------------------
+
+
+def swings(history: History, column: str) -> int:
+    """Return how often a history swings through its mean, by more than a twentieth of its range to either side."""
+    values = history.columns[column] - history.columns[column].mean()
+    far = values[np.abs(values) > HALF * np.ptp(values)]
+    return int(np.count_nonzero(np.diff(np.signbit(far))))
+
+
+def start_of(panels: Sequence[Panel], column: str) -> float | None:
+    """Return the time [s] of the start that is drawn by itself, or None where all swings can be seen."""
+    spans = []
+    for panel in panels:
+        for history in panel.histories.values():
+            if column in history.columns and (count := swings(history, column)) > SWINGS:
+                spans.append(float(history.time[-1]) * START / count)
+    return max(spans, default=None)
+
+
+def _until(panel: Panel, span: float) -> Panel:
+    return replace(panel, histories={name: history.until(span) for name, history in panel.histories.items()})
+
+
+def band(x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Return the middles of equal parts of the samples, and the least and the greatest value in each."""
+    edges = np.unique(np.linspace(0, x.size, BINS + 1).astype(int))
+    low, high = (function.reduceat(y, edges[:-1]) for function in (np.minimum, np.maximum))
+    return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, low, high
+
+
+# ---- rows ---------------------------------------------------------------------------------------------------------
+
+
+def _columns(count: int) -> int:
+    """Return the number of columns that fills the rows evenly, at most five."""
+    rows = -(-count // 5)
+    return -(-count // rows)
+
+
+def _scale(panels: Sequence[Panel], column: str) -> tuple[float, str]:
+    """Return the factor and the unit that a column is drawn in."""
+    low, high = common_range(panels, column)
+    return engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
+
+
+def _label(panels: Sequence[Panel], column: str) -> str:
+    name, unit = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))[0], _scale(panels, column)[1]
+    return f"{name}\n[{unit}]" if unit else name
+
+
+def _ends(some: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[str, float]:
+    """Return where each line ends, in the last panel that has it."""
+    factor, ends = _scale(panels, column)[0], {}
+    for panel in some:
+        for solver, history in _with(panel, column).items():
+            ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
+    return ends
+
+
+def _with(panel: Panel, column: str) -> dict[str, History]:
+    return {name: history for name, history in panel.histories.items() if column in history.columns}
+
+
+def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: tuple[float, float]) -> None:
+    low, high = limits
+    factor, _ = engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
+    pad = 0.05 * (high - low) or 1.0
+    for axes, panel in zip(row, panels, strict=False):
+        axes.set_ylim(factor * (low - pad), factor * (high + pad))
+        for solver, history in _with(panel, column).items():
+            values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
+            _draw(axes, solver, history.time, values, swings(history, column) > SWINGS)
+        _time_axis(axes, panel)
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+        if column in panel.static:
+            axes.axhline(factor * panel.static[column], color="#bbbbbb", lw=HAIR, zorder=1)
+
+
+def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
+    if not dense:
+        draw_line(axes, solver, *thin(x, y))
+        return
+    style = style_of(solver)
+    middles, low, high = band(x, y)
+    axes.fill_between(middles, low, high, color=style.color, alpha=0.3, lw=0, zorder=1 + style.layer)
+    for edge in (low, high):
+        axes.plot(middles, edge, color=style.color, lw=0.6, zorder=2 + style.layer)
+
+
+def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names: Mapping[str, str]) -> None:
+    curves = [differences(panel, column) for panel in panels]
+    values = np.zeros(0)
+    for lines in curves:
+        values = np.concatenate([values, *(y for _, y in lines.values())])
+    values = values[(values > FLOOR) & np.isfinite(values)]
+    low, high = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
+    low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** min(2, math.ceil(math.log10(high) + 0.05))
+    for axes, panel, lines in zip(row, panels, curves, strict=False):
+        axes.set_yscale("log")
+        axes.set_ylim(min(low, high / 10), high)
+        axes.yaxis.set_major_locator(LogLocator(numticks=5))
+        axes.yaxis.set_minor_locator(NullLocator())
+        for solver, (x, y) in lines.items():
+            draw_line(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
+        _time_axis(axes, panel)
+    ends: dict[str, float] = {}
+    for lines in curves:
+        ends |= {solver: float(np.clip(y[-1], low, high)) for solver, (_, y) in lines.items()}
+    _row_labels(row, len(panels), "|Δ| / static", ends, names)
+
+
+def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:
+    share_left(row, count, label)
+    row[0].yaxis.set_label_coords(-9.0 / size_of(row[0])[0], 0.5)
+    label_ends(row[count - 1], ends, names)
+
+
+def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]]) -> None:
+    """Name the time under the last row; other rows keep their numbers only where their time is another."""
+    for axes in last[:count]:
+        axes.set_xlabel("Time [s]", labelpad=1.5)
+    for row in rows[:-1]:
+        for axes, below in zip(row[:count], last, strict=False):
+            axes.tick_params(labelbottom=axes.get_xlim() != below.get_xlim())
+
+
+def _time_axis(axes: Axes, panel: Panel) -> None:
+    longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
+    axes.set_xlim(0, longest)
+    ticks = MaxNLocator(3 if size_of(axes)[0] < 40 else 5, steps=[1, 2, 5, 10]).tick_values(0, longest)
+    outer_ticks(axes, longest, {float(tick): f"{tick:g}" for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)})

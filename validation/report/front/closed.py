@@ -1,0 +1,106 @@
+"""What a step damps, in closed form: of a scene, over its time step, and the step that a ratio asks for."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from validation.gates import closed_forms
+from validation.runs.history import Array
+from validation.scenes.scene import Scene
+
+LOWEST, HIGHEST, POINTS = 1e-3, 8.0, 400  # w dt between which a ratio is looked for
+NOISE = 1e-9  # of the load; a smaller pull is rounding
+
+
+def timed(scene: Scene, **values: Any) -> Scene:
+    """Return a scene with other values in its table of time, which are known to be allowed."""
+    return scene.model_copy(update={"time": scene.time.model_copy(update=values)})
+
+
+def stiffer(scene: Scene, ratio: float) -> Scene:
+    """Return the scene with springs of p = ratio E."""
+    contact = scene.contact.model_copy(update={"stiffness": ratio * scene.block.young})
+    return scene.model_copy(update={"stated_contact": contact})
+
+
+def ratio_of(scene: Scene) -> float:
+    """Return p/E of a scene [-]."""
+    return scene.contact.stiffness / scene.block.young
+
+
+def damping(scene: Scene, frequency: float) -> float:
+    """Return the damping ratio xi of a mode [-], at least 1 where it does not swing; NaN where a root is not positive.
+
+    A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
+    """
+    first, second = closed_forms.roots(scene, frequency)
+    if first.imag:
+        return closed_forms.damping_ratio(scene, frequency)
+    if min(first.real, second.real) <= 0:
+        return math.nan
+    logs = math.log(first.real), math.log(second.real)
+    return -sum(logs) / (2 * math.sqrt(logs[0] * logs[1])) if logs[0] * logs[1] > 0 else math.nan
+
+
+def first_damping(scene: Scene) -> float:
+    """Return xi of the DDA block's first axial mode."""
+    return damping(scene, closed_forms.dda_frequency(scene))
+
+
+def over_steps(scene: Scene, steps: Array) -> Array:
+    """Return xi of the first axial mode over time steps [s]; a discount stated as a rate stays one."""
+    return np.array([first_damping(timed(scene, step=float(step))) for step in steps])
+
+
+def step_for(scene: Scene, ratio: float) -> float | None:
+    """Return the least time step [s] that damps the first axial mode by a ratio, or None where none does."""
+    from scipy.optimize import brentq
+
+    steps = np.geomspace(LOWEST, HIGHEST, POINTS) / closed_forms.dda_frequency(scene)
+    above = over_steps(scene, steps) - ratio
+    with np.errstate(invalid="ignore"):
+        crossed = np.flatnonzero((above[:-1] < 0) & (above[1:] >= 0))
+    if not crossed.size:
+        return None
+    i = int(crossed[0])
+    return float(brentq(lambda step: over_steps(scene, np.array([step]))[0] - ratio, steps[i], steps[i + 1]))
+
+
+def rate_for(scene: Scene, ratio: float) -> float:
+    """Return the rate c [1/s] of gg = exp(-c dt) that damps the first axial mode by a ratio as dt tends to 0."""
+    return 2 * closed_forms.dda_frequency(scene) * ratio
+
+
+def overdamped_below(scene: Scene) -> float | None:
+    """Return the step [s] below which the discount per step overdamps the first axial mode; None without one."""
+    from scipy.optimize import brentq
+
+    if scene.time.discount >= 1 or scene.time.gg_rate is not None:
+        return None
+    # w dt of two equal roots lies near (1 - gg) / 2
+    middle = (1 - scene.time.discount) / 2 / closed_forms.dda_frequency(scene)
+
+    def swings(step: float) -> float:
+        first, second = closed_forms.roots(timed(scene, step=step), closed_forms.dda_frequency(scene))
+        return abs((first - second).imag) - abs((first - second).real)
+
+    return float(brentq(swings, middle / 4, 4 * middle))
+
+
+def transit(scene: Scene) -> float:
+    """Return the time [s] that a wave takes from the top to the base."""
+    E, _ = closed_forms.moduli(scene)
+    return closed_forms.size(scene)[1] / math.sqrt(E / scene.block.density)
+
+
+def contact_radius(scene: Scene) -> float:
+    """Return |lambda| of the contact mode over one step."""
+    return closed_forms.spectral_radius(scene, closed_forms.contact_frequency(scene))
+
+
+def penetration(scene: Scene) -> float:
+    """Return how far the springs give way at rest [m]: a q / (2 p)."""
+    return closed_forms.size(scene)[0] * scene.load.pressure / (2 * scene.contact.stiffness)

@@ -1,0 +1,308 @@
+"""Three pages for three decisions of a practitioner: which time step, which springs, which discount."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from validation.gates import closed_forms
+from validation.report.blocks import Block, Callout, Column, Heading, PageBreak, Paragraph, Table, columns
+from validation.report.chapters.data import Case
+from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.figures import histories
+from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
+from validation.report.front import closed
+from validation.report.front.found import Found, at_ratio, by_step, case_where, milliseconds
+from validation.scenes.scene import Scene
+
+RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
+WANTED = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
+DISCOUNTS = (1.0, 0.98, 0.95, 0.9)  # of the paper's Figure 9
+STEPS = (1e-2, 2e-3, 1e-3, 1e-4)  # s
+STEP = 2e-3  # s, of the page on springs
+SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
+RANGE = (0.01, 20.0)  # ms
+
+
+def decisions(found: Found, paper: Scene, directory: Path) -> list[Block]:
+    """Return the three pages."""
+    blocks: list[Block] = []
+    for page in (step_page, spring_page, discount_page):
+        blocks += [PageBreak(), *page(found, paper, directory)]
+    return blocks
+
+
+def _rule(text: str) -> Callout:
+    return Callout(f"Rule. {text}", "rule")
+
+
+# ---- which time step ----------------------------------------------------------------------------------------------
+
+
+def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+    """Return the page on the time step."""
+    scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
+    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
+    lines = [
+        Stroke(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
+        for r, scene, color in zip(RATIOS, scenes, CHOICES, strict=False)
+    ]
+    greatest = max(float(np.nanmax(line.y)) for line in lines)
+    way = closed.transit(paper)
+    chart = Chart(
+        "Damping ratio of the first axial mode [%], constant acceleration",
+        ("time step dt [ms]", ""),
+        lines,
+        RANGE,
+        (0.05, 60.0),
+        {f"a/c = {1e3 * way:.3g} ms": 1e3 * way},
+        {f"{100 * xi:g} %": 100 * xi for xi in WANTED},
+    )
+    caption = (
+        f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} %; where a line ends nothing "
+        "swings. Dashed upright: the time a wave takes from the top to the base; no longer step can see it."
+    )
+    five = closed.step_for(scenes[0], 0.05)
+    return [
+        Heading("Decision 1: which time step?", 2),
+        _rule(
+            "Choose the damping ratio ξ, then dt = 4 ξ / ω₁"
+            + (f": for 5\u00a0% at p = 1E, dt = {1e3 * five:.3g}\u00a0ms" if five else "")
+            + ". Small damping and the wave both need a short step, and no step repairs the model: what is left "
+            "when the damping is gone is one strain in the place of a wave."
+        ),
+        histories.saved(charts_figure([chart], 62.0), directory, "decision-step.svg", caption),
+        step_table(scenes),
+        *_as_run(found),
+    ]
+
+
+def step_table(scenes: Sequence[Scene]) -> Table:
+    """Return the time step for a damping ratio, a column for each stiffness."""
+    rows = []
+    for xi in WANTED:
+        found = [closed.step_for(scene, xi) for scene in scenes]
+        rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in found)))
+    frequencies = [closed_forms.dda_frequency(scene) for scene in scenes]
+    rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
+    titles = (
+        Column("Wanted ξ"),
+        *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
+    )
+    return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
+
+
+def _as_run(found: Found) -> list[Block]:
+    """Return what the runs over one fixed time had: damping, errors, hidden tension."""
+    group, rows = found.get("model-form"), []
+    for case in by_step(group):
+        if group is None:
+            continue
+        pairs = (("dda", "bar"), ("bar", "continuum"))
+        errors = [
+            group.number_of_pair(case, *pair, f"{name}.l2") for pair in pairs for name in ("displacement", "pressure")
+        ]
+        xi, pulled = case.number("dda", "mode1.damping"), case.number("dda", "pressure.minimum")
+        small = -closed.NOISE * case.scene.load.pressure
+        pull = DASH if pulled is None else plain(pulled / 1e6, 3) if pulled < small else "none"
+        shown = [DASH if value is None else percent(value) for value in (xi, *errors)]
+        rows.append((f"{1e3 * case.scene.time.step:g}", *shown, pull))
+    if not rows:
+        return []
+    titles = (
+        *columns("decimal", "dt [ms]"), *columns("text", "ξ₁"),
+        *columns("text", "displ.", "pressure", group="DDA − bar: model"),
+        *columns("text", "displ.", "pressure", group="bar − continuum: time"),
+        *columns("decimal", "Pull of the contact [MPa]"),
+    )  # fmt: skip
+    return [
+        Table(titles, tuple(rows), "What each step cost over 0.2 s at p = 1E (relative L2), as run."),
+        Paragraph(
+            "Read both halves together: the left falls as the step grows because both motions are damped out, and only "
+            "the right tells what the step has taken."
+        ),
+    ]
+
+
+# ---- which springs ------------------------------------------------------------------------------------------------
+
+
+def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+    """Return the page on the stiffness of the springs."""
+    base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
+    grid = np.geomspace(0.1, 1e5, 240)
+    scenes = [closed.stiffer(base, float(r)) for r in grid]
+    share = np.array([100 * closed.penetration(s) / abs(closed_forms.static_displacement(s)) for s in scenes])
+    high = np.array([100 * (closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1) for s in scenes])
+    marks = {f"{r:g}E": r for r in RATIOS}
+    give = Chart(
+        "What the springs add [%]",
+        ("p / E", ""),
+        (
+            Stroke("share of v at rest", grid, share, CHOICES[0]),
+            Stroke("ω₁ above the bar's", grid, high, CHOICES[3]),
+        ),
+        (0.1, 1e5), (0.0, 100.0), marks, logarithmic=(True, False),
+    )  # fmt: skip
+    rings = []
+    for (name, (alpha, delta)), color in zip(SCHEMES.items(), CHOICES[1:], strict=False):
+        changed = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
+        rings.append(Stroke(name, grid, np.array([closed.contact_radius(s) for s in changed]), color))
+    ring = Chart(
+        f"|λ| of the contact at dt = {milliseconds(STEP)}",
+        ("p / E", ""), rings, (0.1, 1e5), (0.0, 1.05), marks, logarithmic=(True, False),
+    )  # fmt: skip
+    caption = (
+        "Left: beyond p = 10E the springs give way by little, and none brings the first frequency to the bar's. "
+        "Right: what the contact keeps of its swing each step; at 1 it rings for ever, and only (9/16, 1) avoids it."
+    )
+    return [
+        Heading("Decision 2: which spring stiffness?", 2),
+        _rule(spring_rule(found, base)),
+        histories.saved(charts_figure([give, ring], 52.0), directory, "decision-springs.svg", caption),
+        spring_table(found, base),
+        Paragraph(
+            "The ring is next to invisible in the displacement and stands in full in the contact force: whoever reads "
+            "forces, or lets the contact open by them, sees the scheme and not the block."
+        ),
+    ]
+
+
+def spring_rule(found: Found, base: Scene) -> str:
+    """Return the rule on springs, with what happens at p = 100E."""
+    ten, hundred = (closed.penetration(closed.stiffer(base, r)) for r in RATIOS[1:])
+    radius = closed.contact_radius(closed.stiffer(base, 100.0))
+    case = case_where(found.get("figures-5-6"), at_ratio(100.0))
+    waits = [
+        case.number("dda", f"{name}.fine_settling_step") if case else None for name in ("pressure", "displacement")
+    ]
+    run = ""
+    if None not in waits:
+        pressure, displacement = (f"{float(wait or 0):.0f}" for wait in waits)
+        run = (
+            f" (as run: {pressure} steps until the pressure is within 0.01\u00a0%, {displacement} for the displacement)"
+        )
+    return (
+        f"Take p = 10E: the springs then give way by {1e3 * ten:.3g}\u00a0mm at rest. At p = 100E they give way by "
+        f"{1e3 * hundred:.3g}\u00a0mm, but at dt = {milliseconds(STEP)} the contact force flips sign each step and "
+        f"keeps {percent(radius)} of its swing{run}. If stiff springs are a must, take α = 9/16, δ = 1, or a step "
+        "below 4/ω of the contact."
+    )
+
+
+def spring_table(found: Found, base: Scene) -> Table:
+    """Return what a stiffness makes of the answer: closed forms, and steps to settle as run."""
+    rows = []
+    for ratio in RATIOS:
+        scene = closed.stiffer(base, ratio)
+        case, fine = (case_where(found.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
+        closed_parts = (
+            f"{1e3 * closed_forms.static_displacement(scene):.3f}".replace("-", "−"),
+            f"{1e3 * closed.penetration(scene):.3g}",
+            percent(closed.first_damping(scene)),
+            f"{closed.contact_radius(scene):.4f}",
+            f"{1e3 * 4 / closed_forms.contact_frequency(scene):.3g}",
+        )
+        settled = (_steps(case, "displacement.settling_step"), _steps(case, "pressure.settling_step"))
+        waits = (
+            _steps(fine or case, "displacement.fine_settling_step"),
+            _steps(fine or case, "pressure.fine_settling_step"),
+        )
+        rows.append((f"{ratio:g}E", *closed_parts, *settled, *waits))
+    titles = (
+        Column("p"),
+        *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
+        *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
+        *columns("decimal", "displ.", "press.", group="steps to 1 %"),
+        *columns("decimal", "displ.", "press.", group="steps to 0.01 %"),
+    )  # fmt: skip
+    return Table(
+        titles, tuple(rows), f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run."
+    )
+
+
+def _steps(case: Case | None, metric: str) -> str:
+    value = None if case is None else case.number("dda", metric)
+    return DASH if value is None else f"{value:.0f}"
+
+
+# ---- which discount -----------------------------------------------------------------------------------------------
+
+
+def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+    """Return the page on the discount."""
+    base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
+    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
+    lines = []
+    for gg, color in zip(DISCOUNTS[1:], CHOICES, strict=False):
+        scene = closed.timed(base, gg=gg)
+        lines.append(Stroke(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
+    rate = closed.rate_for(base, 0.05)
+    held = closed.timed(base, gg_rate=rate, gg=1.0)
+    lines.append(
+        Stroke(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(held, grid), CHOICES[3], DASHED)
+    )
+    chart = Chart(
+        "Damping ratio of the first axial mode [%], average acceleration",
+        ("time step dt [ms]", ""), lines, RANGE, (0.1, 1000.0), {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
+        {"critical": 100.0},
+    )  # fmt: skip
+    caption = (
+        "A discount per step damps the more the shorter the step is, without bound; the same discount held as a "
+        "rate (dashed) is a damping of the block and stays where it is."
+    )
+    light = closed.timed(base, gg=0.98)
+    below = closed.overdamped_below(light)
+    at = [closed.first_damping(closed.timed(light, step=step)) for step in (2e-3, 1e-3, 1e-4)]
+    spoken = ", ".join(
+        f"{percent(xi)} at {milliseconds(step)}" for xi, step in zip(at, (2e-3, 1e-3, 1e-4), strict=True)
+    )
+    return [
+        Heading("Decision 3: which discount?", 2),
+        _rule(
+            f"Leave gg at 1, or hold it as a rate: gg = exp(−c dt) with c = 2 ω₁ ξ, for 5\u00a0% c = {rate:.3g} 1/s. "
+            f"gg = 0.98 per step is {spoken} of critical"
+            + (f", and below dt = {1e3 * below:.3g}\u00a0ms the block creeps instead of swinging" if below else "")
+            + "; a refined step never converges."
+        ),
+        histories.saved(charts_figure([chart], 60.0), directory, "decision-discount.svg", caption),
+        discount_table(base),
+        Paragraph(
+            "The discount does not damp a stiff contact: with average acceleration its roots tend to −1 and −gg. It "
+            "acts on the velocity at the start of a step, so that the first step from rest does not feel it; with "
+            "constant acceleration it comes on top of what the step damps."
+        ),
+        *_measured(found),
+    ]
+
+
+def discount_table(base: Scene) -> Table:
+    """Return the damping of each discount at each step, where it overdamps, and the rate it amounts to."""
+    rows = []
+    for gg in DISCOUNTS:
+        scene = closed.timed(base, gg=gg)
+        ratios = [closed.first_damping(closed.timed(scene, step=step)) for step in STEPS[1:]]
+        rate, below = -np.log(gg) / 1e-3 + 0.0, closed.overdamped_below(scene)
+        shown = [percent(max(0.0, xi)) if xi > 1e-12 else "0\u00a0%" for xi in ratios]
+        rows.append((f"{gg:.2f}", *shown, DASH if below is None else f"{1e3 * below:.3g}", f"{rate:.3g}"))
+    titles = (
+        *columns("decimal", "gg"),
+        *columns("text", *(f"dt = {milliseconds(step)}" for step in STEPS[1:]), group="ξ₁, average acceleration"),
+        *columns("decimal", "overdamped below dt [ms]", "c at dt = 1 ms [1/s]"),
+    )
+    return Table(titles, tuple(rows), "What a discount per step damps at p = 1E, in closed form.")
+
+
+def _measured(found: Found) -> list[Block]:
+    """Return how the runs of Figure 9 were damped, as measured on their histories."""
+    group, said = found.get("figure-9"), []
+    for case in group.cases if group else ():
+        xi = case.number("dda", "mode1.measured_damping")
+        if xi is not None:
+            said.append(f"{percent(xi) if xi > 1e-9 else '0 %'} for gg = {case.scene.time.discount:g}")
+    if group is None or not said:
+        return []
+    step = milliseconds(group.cases[0].scene.time.step)
+    return [Paragraph(f"Measured on the histories of the paper's Figure 9, at dt = {step}: {', '.join(said)}.")]
