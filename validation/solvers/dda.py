@@ -214,6 +214,8 @@ class DDA(Solver):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
             return "a corner that pulls within its band rubs under lagged rules only"
+        if {features.CONSERVING, features.BASE_MOTION} <= own:
+            return f"it does not handle {features.BASE_MOTION} together with {features.CONSERVING}"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
