@@ -13,7 +13,7 @@ from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table
 from validation.report.blocks import Lines
-from validation.report.chapters import core, two_codes
+from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
 from validation.report.chapters.scene import history_block
 from validation.report.figures import motion
