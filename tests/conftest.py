@@ -55,6 +55,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_rotation_solver",
     "test_site",
     "test_site_program",
+    "test_slipping_pack",
     "test_subblocks_chapter",
     "test_turning_chapter",
     "test_walls",

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dda.contact.iteration import Iteration
 from dda.contact.springs import base_directions
-from dda.contact.unilateral import Unilateral
+from dda.contact.unilateral import LAGGED, SLIP, Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load, pressed_part
 from dda.one_block.solution import check_request, step_times
@@ -234,6 +234,8 @@ class Stepping:
 
     def _ahead(self, state: State, steps: int) -> tuple[State, int]:
         """Return the state after some steps that are made at once, and how many to make singly then."""
+        if any(abs(now) == SLIP for now in state.corners.state):
+            return state, 1
         history, v, closed = self.history, np.array(vector(state)), state.corners.closed
         began = history.steps
         while history.steps < steps and not isinstance(phase := self.phase_of(closed, steps), str):
@@ -267,8 +269,8 @@ class Stepping:
                 return f"the rule {self.options.rule}"
             if self.model.motion is not None:
                 return "the base moves"
-            if self.law.friction is not None:
-                return "friction"
+            if self.law.rules == LAGGED:
+                return f"{LAGGED} friction"
             self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
         return self.phases[closed]
 

@@ -35,7 +35,7 @@ def losses(result):
     return sum(e[name] for name in STORED) / size, np.diff([e[name] for name in LOST]) / size
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 103))])
+@pytest.mark.parametrize("seed", [1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, *range(3, 103)))])
 def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed):
     model, dt = random_rolling(seed)
     scheme = Scheme(*CONSTANT, 0.98 if seed % 5 == 0 else 1.0, dt, "consistent" if seed % 2 else "zero")
@@ -248,3 +248,40 @@ def test_bad_options_are_refused_by_name(given, words):
 def test_rigid_stops_and_explicit_schemes_exclude_each_other():
     with pytest.raises(ValueError, match="stiffness: must be finite in an explicit scheme"):
         solve_rolling(RollingModel(QUADRILATERAL, Unilateral(math.inf)), Scheme(0.0, 0.5, 1.0, 1e-3), 1)
+
+
+@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.5, 1.0, 1.0), (0.25, 0.5, 0.99), (0.3025, 0.6, 0.97)])
+def test_while_all_corners_slip_the_centroid_moves_freely_along_the_slope(alpha, delta, gg):
+    """Its u + tan(phi) v is the same recursion without contact, under g (sin b - tan(phi) cos b)."""
+    b, friction = 35.0, 0.3
+    block = Block.rectangle(2.0, 1.0, MATERIAL)
+    sliding = RollingModel(block, Unilateral(1e9, 1e9, friction=friction), Load(gravity=9.81, slope=b))
+    scheme = Scheme(alpha, delta, gg, 1e-3, "consistent")
+    found = solve_rolling(sliding, scheme, 60, COLUMNS)
+    assert set(np.unique(found.of_points("state")[found.base])) <= {0, 2} and np.max(found.normal) > 0
+    across = 9.81 * (math.sin(math.radians(b)) - friction * math.cos(math.radians(b)))
+    free = solve_rolling(RollingModel(block, FAR, Load(gravity=-across)), scheme, 60, COLUMNS)
+    moved = found.columns["horizontal_displacement"] + friction * found.columns["displacement"]
+    assert np.max(np.abs(moved - free.columns["displacement"])) < 1e-12  # m, of 100 m
+    assert found.slip[-1] == pytest.approx(np.max(found.slide[found.base]), rel=0.05)
+    lost = np.diff(found.energies["friction"])
+    assert np.min(lost) >= 0 and np.max(lost) > 0
+
+
+def test_friction_of_small_motion_is_the_limit_of_small_turns():
+    law, scheme = Unilateral(1e9, 4e8, friction=0.3), Scheme(*CONSTANT, 1.0, 1e-3)
+    block = Block.rectangle(2.0, 2.0, MATERIAL)
+    small = solve_small(UnilateralModel(block, law, gravity=9.81, slope=15.0), scheme, 80, COLUMNS)
+    turned = solve_rolling(RollingModel(block, law, Load(gravity=9.81, slope=15.0)), scheme, 80, COLUMNS)
+    for name in COLUMNS:
+        assert np.max(np.abs(turned.columns[name] - small.columns[name])) < 2e-3 * np.ptp(small.columns[name]), name
+    assert np.max(np.abs(small.columns["rotation"])) < 1e-3
+    assert np.max(np.abs(turned.normal[0] - small.normal_force_m)) < 2e-3 * np.max(turned.normal)
+
+
+def test_a_rigid_stop_takes_a_block_that_turns():
+    model = replace(HEAVY, contact=Unilateral(math.inf, 4e9, friction=1.0))
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 5e-3), 160)
+    total, lost = losses(result)
+    assert result.outcome == "completed" and np.max(np.diff(total)) < 1e-13 and np.min(lost) > -1e-13
+    assert np.all(result.gap[result.of_points("state").astype(bool)] == 0) and np.min(result.gap) >= 0

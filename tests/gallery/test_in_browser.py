@@ -28,7 +28,7 @@ from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.rigid import impact_statistics
+from validation.solvers.rigid.impacts import impact_statistics
 from validation.studies.catalogue import scene_study
 
 pytestmark = [
@@ -159,7 +159,8 @@ def test_formulas_of_the_block(opened: Callable[..., Any]) -> None:
 @pytest.mark.parametrize("solve_for", ["dt", "gg", "scheme"])
 def test_formulas_of_the_adviser(opened: Callable[..., Any], solve_for: str) -> None:
     page = opened("adviser.html")
-    for s in random_settings():
+    limited = [s | {"alpha": 0.2, "delta": 0.6} for s in random_settings()]  # beyond a step the highest mode grows
+    for s in (*random_settings(), *limited):
         scene = scene_of(s)
         first, other = closed_forms.dda_frequency(scene), closed_forms.contact_frequency(scene)
         search = SEARCHES[solve_for](scene, first, max(first, other))
