@@ -47,6 +47,7 @@ class Slider:
     lagged: bool = False
     band: tuple[float, float] = (0.0, 0.0)  # closes below -band[0], opens above band[1]
     passes: int = 6
+    base: tuple[float, float] | None = None  # a base that moves: its mass over the block's, its springs over 2 p
 
 
 @dataclass
@@ -79,9 +80,23 @@ class _Stepper:
         b = math.radians(s.slope)
         self.F = np.zeros(6)
         self.F[:2] = np.array(s.force) + self.mass * s.gravity * np.array([math.sin(b), -math.cos(b)])
+        if s.base is not None:
+            self._move_base(*s.base)
         self.tan = math.tan(math.radians(s.phi))
         self.e = s.alpha * s.dt**2
         self.S0 = self.M + self.e * self.K
+
+    def _move_base(self, mass, springs):
+        """Two unknowns more: the base's displacements, which gaps and slides count from."""
+        wide = [np.zeros((8, 8)), np.zeros((8, 8))]
+        for matrix, own in zip(wide, (self.M, self.K), strict=True):
+            matrix[:6, :6] = own
+        self.M, self.K = wide
+        self.M[6, 6] = self.M[7, 7] = mass * self.mass
+        self.K[6, 6] = self.K[7, 7] = 2 * springs * self.s.p
+        self.F = np.concatenate([self.F, [0.0, 0.0]])
+        self.t = [np.concatenate([row, [-1.0, 0.0]]) for row in self.t]
+        self.n = [np.concatenate([row, [0.0, -1.0]]) for row in self.n]
 
     def solve(self, ahead, states, r, known=None):
         """Displacements at the end of the step for given states; `known` are normal forces that friction is from."""
@@ -108,8 +123,8 @@ class _Stepper:
 
 def run(s: Slider) -> Motion:
     k = _Stepper(s)
-    D, V, r, states = np.zeros(6), np.zeros(6), np.zeros(2), (STICK, STICK)
-    A = np.linalg.solve(k.M, k.F) if s.consistent_start else np.zeros(6)
+    D, V, r, states = np.zeros(len(k.F)), np.zeros(len(k.F)), np.zeros(2), (STICK, STICK)
+    A = np.linalg.solve(k.M, k.F) if s.consistent_start else np.zeros(len(k.F))
     rows, bad, total = [], 0, np.zeros(2)
     for _ in range(s.steps):
         ahead = D + s.gg * s.dt * V + s.dt**2 * (0.5 - s.alpha) * A

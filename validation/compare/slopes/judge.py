@@ -17,6 +17,7 @@ CLOSE = 0.01  # of the mean limit of friction, within which a law gives the forc
 NOISE = 6.0  # standard deviations, of two steps together, of what digits leave of a force
 BLURRED = 0.1  # of the limit: digits that leave more do not show which law it is
 MOST, MOST_SLIPS = 0.99, 0.9  # share of the steps, and of those with slip, that a law holds in
+MANY, MOST_OF_MANY = 50, 0.97  # steps that tell, from which on a few may be decided otherwise on a softer base
 FEWEST, FEW_RIGHT = 2, 0.3  # steps that tell two laws apart, and the share of them that the wrong one may hold in
 NORMAL = 0.002  # relative root mean square that the normal law may leave: moving geometry and a base
 WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or to none
@@ -72,7 +73,8 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     causes, values = _causes(scene, weight, softness, soft, best, band)
     shares = chosen.shares
     active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
-    held = shares[best] >= MOST and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
+    least = MOST if telling.sum() < MANY else MOST_OF_MANY
+    held = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
     sound = normal <= NORMAL and held and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
     left = np.flatnonzero(runs[own].settled & ~right[own])
     deep = np.flatnonzero(_deep(body, run).any(axis=1)) if "dead-band" in causes else np.zeros(0, int)
