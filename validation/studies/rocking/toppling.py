@@ -40,7 +40,7 @@ def beyond(scene: Scene) -> float:
 
 
 def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
-    """Return how far the block moves in the second half of its steps, over what it would slide [-].
+    """Return how far the block moves in the second half of its steps, over what it slides, or its width if it stands.
 
     A step without velocities moves a sliding block by dt^2 / 2 times its acceleration.
     """
@@ -49,7 +49,8 @@ def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
         return {}
     u, steps = history.columns["horizontal_displacement"], scene.time.steps
     moved = float(u[-1] - u[steps // 2 - 1])
-    return {"moved": moved / ((steps - steps // 2) * scene.time.step**2 / 2 * abs(down(scene)))}
+    way = (steps - steps // 2) * scene.time.step**2 / 2 * down(scene)
+    return {"moved": moved / (way if way > 0 else rectangle(scene).width)}
 
 
 def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:

@@ -34,7 +34,7 @@ FALLS = (
     "the area by 1 + r² in every step."
 )
 QUANTITIES = {  # metric -> words
-    "moved": "way in the second half, over a sliding block's",
+    "moved": "way in the second half, over a sliding block's or the width",
     "identity": "u + tan φ v less the free motion, over the way",
     "run-out": "run-out over a rigid block's",
     "time": "time over a rigid block's",
