@@ -202,7 +202,6 @@ class _Step:
         """Return the corners that may touch in the step, two at most."""
         ahead = self._placed(self._turn(self.free), self.free, self.setting.body.xi)
         lowest = np.minimum(self.before[:, 1], ahead[:, 1])
-        lowest[self.state.touch.closed] -= self.setting.body.size
         two = np.argsort(lowest)[:2]
         return sorted(two[lowest[two] < REACH * self.setting.body.size].tolist())
 

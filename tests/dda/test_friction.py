@@ -163,6 +163,18 @@ def test_energy_is_kept_on_a_base_that_shakes(seed):
     assert np.allclose(still.normal, fixed.normal, rtol=0, atol=1e-9 * np.max(fixed.normal))
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_energy_is_kept_by_implicit_contact_on_a_base_that_shakes(seed):
+    model = replace(rubbing_model(seed), motion=shaken(np.random.default_rng(seed)))
+    scheme = Scheme(0.25, 0.5, 1.0, DT, "consistent")
+    result = solve_unilateral(model, scheme, 100, options=UnilateralOptions("implicit", energies=True))
+    size = np.max(np.abs(list(result.energies.values())))
+    assert np.ptp(sum(sums(result))) < 1e-12 * size
+    bare = replace(model, contact=Unilateral(1e9))
+    with pytest.raises(ValueError, match=r"^rule: energy-conserving contact needs a base at rest"):
+        solve_unilateral(bare, scheme, 5, options=UnilateralOptions("energy-conserving"))
+
+
 def test_a_base_that_has_moved_before_the_start_is_refused():
     away = BaseMotion([0.0, 1.0], [[1e-3, 0.0], [0.0, 0.0]])
     with pytest.raises(ValueError, match=r"^motion: must be zero at t = 0 "):

@@ -94,9 +94,9 @@ def limit(problem: BlockProblem, normal: np.ndarray) -> np.ndarray:
     return math.tan(math.radians(problem.friction or 0)) * normal + problem.cohesion * problem.width / 2
 
 
-@pytest.mark.parametrize("seed", thinned(range(20, 32), 6))
-def test_energy_law_and_the_digits_of_random_motions(seed: int) -> None:
-    problem = slipping_problem(seed)
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(20, 32) for moved in (False, True)], 13))
+def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> None:
+    problem = slipping_problem(seed, moved)
     end = duration(problem, 4)
     motion, finer = solve(problem, end), solve(problem, end, digits=70)
     assert motion.switches == finer.switches

@@ -67,13 +67,8 @@ def slug(name: str) -> str:
     return re.sub(r"[^\w.-]+", "-", escaped(name)).strip("-.") or "scene"
 
 
-def of_history(file: str, scene: GalleryScene) -> bool:
-    """Whether a figure draws a scene's histories, which its page has as charts that can be zoomed."""
-    return file == f"{slug(scene.name)}-history.svg"
-
-
 def shown(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
-    """Return the blocks of a chapter for the template: figures of one scene are links to its page."""
+    """Return the blocks of a chapter for the template; figures of one scene lead to its page."""
     blocks = chapter.blocks[1:] if isinstance(chapter.blocks[0], Heading) else chapter.blocks
     found: list[dict[str, Any]] = []
     for block in blocks:
@@ -88,9 +83,13 @@ def shown(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> lis
 
 def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:
     scene = scene_of_figure(drawing.file, scenes)
-    if scene is not None:
-        return {"block": "Elsewhere", "page": scene.page, "name": scene.name, "caption": drawing.caption}
-    return {"block": "FigureBlock", "svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
+    return {
+        "block": "FigureBlock",
+        "svg": sheet.placed(drawing.svg, drawing.caption),
+        "caption": drawing.caption,
+        "page": None if scene is None else scene.page,
+        "name": None if scene is None else scene.name,
+    }
 
 
 def _of_verdicts(table: Table) -> bool:

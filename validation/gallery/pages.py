@@ -13,7 +13,7 @@ from validation.errors import InputError
 from validation.gallery import scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS, Calculator, Choice
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
-from validation.gallery.chapters import Chapter, of_history, scene_of_figure, shown
+from validation.gallery.chapters import Chapter, scene_of_figure, shown
 from validation.gallery.histories import LEAST, samples_for
 from validation.gallery.svg import Sheet
 from validation.gallery.work import work_plots
@@ -94,12 +94,12 @@ class Pages:
         self._samples = samples_for(scene_data.all_lines(self._scenes, self._most), room)
 
     def figures(self, scene: GalleryScene, chapters: Mapping[str, Chapter]) -> list[dict[str, str]]:
-        """Return the figures of a scene in the chapters of its studies, each once, without those of its histories."""
+        """Return the figures of a scene in the chapters of its studies, each once."""
         sheet, found = Sheet(), {}
         for study in (study for study in self._studies if study.name in scene.studies):
             for file, drawing in chapters[study.name].drawings.items():
                 own = scene_of_figure(file, study.scenes)
-                if own is scene and file not in found and not of_history(file, scene):
+                if own is scene and file not in found:
                     found[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
         return list(found.values())
 

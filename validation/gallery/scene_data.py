@@ -130,6 +130,7 @@ def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
 
 
 def _told(metric: str, value: Value) -> str:
-    """Return a value as a page writes it; a ratio at the level of rounding is told to be below."""
-    text = cell(value)
+    """Return a value as a page writes it: counts whole, a ratio at the level of rounding told to be below."""
+    counted = CATALOGUE[metric].unit == "step" or metric.endswith(".count")
+    text = str(int(value)) if counted and isinstance(value, float) and value.is_integer() else cell(value)
     return bounded(value, text) if isinstance(value, float) and value and CATALOGUE[metric].unit == "1" else text

@@ -239,9 +239,7 @@ class BlockMotion(Motion):
         )
 
     def _energies(self, found: block_events.BlockHistory) -> dict[str, Array]:
-        """Return the energies; none where the base moves, whose work is not among them."""
-        if self.scene.load.base_motion is not None:
-            return {}
+        """Return the energies; the work of the base is counted as that of the loads."""
         stored = {name: getattr(found, name) for name in STORED}
         none = dict.fromkeys(LOST[:2], np.zeros_like(found.time))
         return stored | none | {"switching": found.released, "friction": found.friction}

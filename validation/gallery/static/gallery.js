@@ -15,10 +15,13 @@
   const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const dark = matchMedia("(prefers-color-scheme: dark)");
 
-  // Black and dark grey lines are not seen on a dark ground
+  // A line that is not seen on a dark ground: black becomes the colour of the text, a dark colour is lightened
   function seen(line) {
-    const sum = [1, 3, 5].reduce((total, i) => total + parseInt(line.slice(i, i + 2), 16), 0);
-    return dark.matches && !printing && sum < 380 ? (sum < 60 ? color("--text") : `color-mix(in srgb, ${line} 60%, white)`) : line;
+    if (!dark.matches || printing) return line;
+    const [red, green, blue] = [1, 3, 5].map((i) => (parseInt(line.slice(i, i + 2), 16) / 255) ** 2.2);
+    const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    if (luminance < 0.01) return color("--text");
+    return luminance < 0.1 ? `color-mix(in srgb, ${line} 60%, white)` : line;
   }
 
   let printing = false;
