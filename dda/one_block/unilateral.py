@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dda.contact.iteration import Iteration
 from dda.contact.springs import base_directions
-from dda.contact.unilateral import Unilateral
+from dda.contact.unilateral import LAGGED, SLIP, Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load, pressed_part
 from dda.one_block.solution import check_request, step_times
@@ -175,6 +175,8 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
     law = model.contact
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
         raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
+    if options.rule == CONSERVING and model.motion is not None:
+        raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
     if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
         raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
     check_scheme(law, scheme)
@@ -234,6 +236,8 @@ class Stepping:
 
     def _ahead(self, state: State, steps: int) -> tuple[State, int]:
         """Return the state after some steps that are made at once, and how many to make singly then."""
+        if any(abs(now) == SLIP for now in state.corners.state):
+            return state, 1
         history, v, closed = self.history, np.array(vector(state)), state.corners.closed
         began = history.steps
         while history.steps < steps and not isinstance(phase := self.phase_of(closed, steps), str):
@@ -267,8 +271,8 @@ class Stepping:
                 return f"the rule {self.options.rule}"
             if self.model.motion is not None:
                 return "the base moves"
-            if self.law.friction is not None:
-                return "friction"
+            if self.law.rules == LAGGED:
+                return f"{LAGGED} friction"
             self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
         return self.phases[closed]
 

@@ -60,7 +60,7 @@ def glide(phase: Phase, v: Array, closed: tuple[bool, ...], first: int, left: in
     open-close iteration. NaN agrees with nothing.
     """
     z, constant = phase.start(v)
-    limits = [limit - constant.item(at) for at, limit in phase.watched]
+    limits = phase.limits(constant)
     kept, upto = _agreed([rows @ z for rows in phase.watch], limits, min(left, BLOCK))
     done, blocks, level = kept, z[None], BLOCK.bit_length() - 1
     while kept == upto and done < left:

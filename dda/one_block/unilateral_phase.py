@@ -48,12 +48,19 @@ class Phase:
         tuple[int, float]
     ]  # normal force of a closed contact, gap of an open one: place in v, least value
     kept: Array  # (size,) one, zero for P
+    held: Sequence[tuple[Array, float]] = ()  # with friction: row over v of what is left to the limit, least value
     tables: dict[bytes, list[Array | None]] = field(default_factory=dict)
 
     @cached_property
     def watch(self) -> list[Array]:
         """The watched rows after 1, 2, ... steps, (BLOCK, size of z) each."""
-        return [self._row(self.shown[at]) for at, _ in self.watched]
+        watched = [self.shown[at] for at, _ in self.watched] + [row @ self.shown for row, _ in self.held]
+        return [self._row(row) for row in watched]
+
+    def limits(self, constant: Array) -> list[float]:
+        """Return the least values of what the watched rows add to the constants of the phase."""
+        own = [limit - constant.item(at) for at, limit in self.watched]
+        return own + [limit - float(row @ constant) for row, limit in self.held]
 
     def table(self, rows: Array) -> list[Array | None]:
         """Return rows over v as rows over z after 1, 2, ..., BLOCK steps, (BLOCK, size of z) each; None for zeros."""
@@ -179,7 +186,20 @@ class _Coordinates:
         kept = np.ones(self.layout.size)
         kept[self.layout.P] = 0.0
         read, shown = self._read(frequencies, shapes, units, size), self._shown(shapes, units, size)
-        return Phase(read, tended, shown, maps, watched, kept)
+        return Phase(read, tended, shown, maps, watched, kept, self._held())
+
+    def _held(self) -> list[tuple[Array, float]]:
+        """Return tan(phi) N +- T of the closed contacts, and -c."""
+        N, T = self.layout.contact(0).start, self.layout.contact(1).start
+        found: list[tuple[Array, float]] = []
+        if self.law.friction is None or not len(self.slides):
+            return found
+        for i in np.flatnonzero(self.closed).tolist():
+            for side in (-1.0, 1.0):
+                row = np.zeros(self.layout.size)
+                row[N + i], row[T + i] = self.law.friction, side
+                found.append((row, -self.law.cohesion))
+        return found
 
     def _read(self, frequencies: Array, shapes: Array, units: Array, size: int) -> Array:
         """Return z by v."""

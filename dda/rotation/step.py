@@ -18,7 +18,7 @@ its chord is the derivative at both ends.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 Places = list[int]
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
+LENGTHS = 64  # step lengths whose matrices are kept
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 MEAN = np.array(
     [[0.5, 0.5], [-1.0, 1.0]]
@@ -103,6 +104,26 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
+class Matrices:
+    """What a step needs of an outline and of its own length."""
+
+    M: Array  # (6, 6) inertia
+    K: Array  # (3, 3) elastic stiffness
+    accelerating: Array  # M^-1
+    flexible: Array  # alpha h^2 S^-1
+    kept: Array  # S^-1 M
+
+    @classmethod
+    def of(cls, M: Array, K: Array, scheme: Scheme) -> Matrices:
+        """Factorise S = M + alpha h^2 K."""
+        weight = scheme.alpha * scheme.step * scheme.step
+        S = M.copy()
+        S[3:, 3:] += weight * K
+        own, both = np.asarray(np.linalg.inv(M), np.float64), np.asarray(np.linalg.inv(S), np.float64)
+        return cls(M, K, own, weight * both, both @ M)
+
+
+@dataclass(frozen=True, eq=False)
 class Setting:
     """What stays the same from step to step."""
 
@@ -113,6 +134,17 @@ class Setting:
     dead: Array  # (2, m) their forces [N]
     rotation: str
     limit: int  # solves of the open-close iteration before all states are tried
+    known: dict[Scheme, Matrices] = field(default_factory=dict)  # of an outline that does not grow, by step length
+
+    def matrices(self, scheme: Scheme, Q: Array) -> Matrices:
+        """Return the matrices of a step."""
+        if self.rotation != EXACT:
+            return Matrices.of(*self.body.grown(Q), scheme)
+        if scheme not in self.known:
+            if len(self.known) >= LENGTHS:
+                self.known.clear()
+            self.known[scheme] = Matrices.of(self.body.M, self.body.K, scheme)
+        return self.known[scheme]
 
 
 class Made(NamedTuple):
@@ -158,23 +190,18 @@ class _Step:
     def __init__(self, setting: Setting, scheme: Scheme, state: State, base: Array) -> None:
         self.setting, self.scheme, self.state, self.base = setting, scheme, state, base
         body, h = setting.body, scheme.step
-        self.M, self.K = body.grown(state.Q) if setting.rotation != EXACT else (body.M, body.K)
-        self.h2 = scheme.alpha * h * h
-        S = self.M.copy()
-        S[3:, 3:] += self.h2 * self.K
-        self.flexible = self.h2 * np.linalg.inv(S)
+        self.made = made = setting.matrices(scheme, state.Q)
         self.held = np.zeros(6)
-        self.held[:2], self.held[3:] = self.M[0, 0] * setting.weight, -(self.K @ state.e)
-        ahead = self.M @ (scheme.gg * h * state.V + h * h * (0.5 - scheme.alpha) * state.A)
-        self.free = self.flexible @ self.held + np.linalg.solve(S, ahead)
+        self.held[:2], self.held[3:] = made.M[0, 0] * setting.weight, -(made.K @ state.e)
+        ahead = scheme.gg * h * state.V + h * h * (0.5 - scheme.alpha) * state.A
+        self.free = made.flexible @ self.held + made.kept @ ahead
         self.guess = scheme.gg * h * state.V + h * h / 2 * state.A
         self.before = positions(state.c, state.Q, state.e, body.xi) - base[0]
 
     def near(self) -> Places:
         """Return the corners that may touch in the step, two at most."""
-        ahead = self._placed(self._turn(self.free), self.free)
+        ahead = self._placed(self._turn(self.free), self.free, self.setting.body.xi)
         lowest = np.minimum(self.before[:, 1], ahead[:, 1])
-        lowest[self.state.touch.closed] -= self.setting.body.size
         two = np.argsort(lowest)[:2]
         return sorted(two[lowest[two] < REACH * self.setting.body.size].tolist())
 
@@ -182,14 +209,16 @@ class _Step:
         """Make the step with these corners, and again with the turn that it found until nothing changes."""
         touch, size = self.state.touch, self.setting.body.size
         found = touch.corners(at, self.setting.law.friction is not None)
+        if not at and not len(self.setting.where):
+            return Made(self._accepted(self.free, at, found), 0)
         D, force, solves = self.guess, np.array([*found.normal, *found.shear]), 0
-        held = found
+        held, flexible = found, self.made.flexible
         for _ in range(ROUNDS):
             turning = self._turn(D)
-            new = self.free + self.flexible @ self._loads(turning, D)
+            new = self.free + flexible @ self._loads(turning, D)
             if at:
                 B = self._directions(turning, D, self.setting.body.xi[at])
-                P = self.flexible @ B.T
+                P = flexible @ B.T
                 iteration = self._contact(held, at, new + P @ force, B @ P, force)
                 solves += iteration.solves
                 if iteration.corners is None:
@@ -204,7 +233,8 @@ class _Step:
 
     def _contact(self, held: Corners, at: Places, D: Array, C: Array, force: Array) -> Iteration:
         """Return the contacts for the flexibility C about the place to which D brings them under `force`."""
-        n, law, placed = len(at), self.setting.law, self._placed(self._turn(D), D)[at]
+        n, law = len(at), self.setting.law
+        placed = self._placed(self._turn(D), D, self.setting.body.xi[at])
         back = C @ force
         gaps, slides = placed[:, 1] - back[:n], placed[:, 0] - self.before[at, 0] - back[n:]
         if not law.shear:
@@ -218,9 +248,9 @@ class _Step:
     def _turn(self, D: Array) -> Turn:
         return turn(self.state.Q, float(D[2]), self.setting.rotation)
 
-    def _placed(self, turning: Turn, D: Array) -> Array:
-        """Return the corners after the step, from the base [m]."""
-        after = positions(self.state.c + D[:2], turning.end, self.state.e + D[3:], self.setting.body.xi)
+    def _placed(self, turning: Turn, D: Array, xi: Array) -> Array:
+        """Return points after the step, from the base [m]."""
+        after = positions(self.state.c + D[:2], turning.end, self.state.e + D[3:], xi)
         return np.asarray(after - self.base[1])
 
     def _directions(self, turning: Turn, D: Array, xi: Array) -> Array:
@@ -241,9 +271,10 @@ class _Step:
     def _accepted(self, D: Array, at: Places, found: Corners) -> State:
         state, scheme, turning = self.state, self.scheme, self._turn(D)
         push = self.held + self._loads(turning, D)
-        push[3:] -= self.K @ D[3:]
-        push += np.array([*found.normal, *found.shear]) @ self._directions(turning, D, self.setting.body.xi[at])
-        A = np.asarray(np.linalg.solve(self.M, push), dtype=np.float64)
+        push[3:] -= self.made.K @ D[3:]
+        if at:
+            push += np.array([*found.normal, *found.shear]) @ self._directions(turning, D, self.setting.body.xi[at])
+        A = self.made.accelerating @ push
         V: Array = scheme.gg * state.V + scheme.step * ((1 - scheme.delta) * state.A + scheme.delta * A)
-        touch = Touch.apart(self._placed(turning, D)[:, 1]).with_found(at, found)
+        touch = Touch.apart(self._placed(turning, D, self.setting.body.xi)[:, 1]).with_found(at, found)
         return State(state.c + D[:2], turning.end, state.r + float(D[2]), state.e + D[3:], V, A, touch)

@@ -6,8 +6,7 @@ A shorter step begins from the state in which the failed one began, and every in
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 FLOOR = 0.01  # shortest step that a cut may leave, over the scheme's step
 
@@ -27,8 +26,7 @@ class Solved(Protocol):
         """Why there is no answer."""
 
 
-@dataclass(frozen=True)
-class Interval(Generic[S]):
+class Interval(NamedTuple, Generic[S]):
     """One step of the scheme, whole or in parts."""
 
     parts: list[tuple[float, S, S]]  # length over the scheme's step, state before and after

@@ -13,16 +13,18 @@ so that one factorisation, and as many solves with it as there are forces, serve
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.points import Found, FreePoints, Points
 from dda.contact.rubbing_points import find_points
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
+from dda.model.load import BaseMotion
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
@@ -43,6 +45,14 @@ class OpeningSystem:
     normals: Array  # (points, unknowns) gap by D
     tangents: Array  # (points, unknowns) displacement along the base by D
     velocity: float  # at t = 0, upwards positive [m/s]
+    axes: Array  # (2, 2) unit normal of the base, into the blocks, and its tangent from M to N
+    motion: BaseMotion | None  # of the base
+
+    def base(self, instants: ArrayLike) -> Array:
+        """Return the displacement of the base along its normal and its tangent, (len(instants), 2) [m]."""
+        moved = np.zeros((len(np.asarray(instants)), 2)) if self.motion is None else self.motion.at(instants)
+        along: Array = moved @ self.axes.T
+        return along
 
     @property
     def equations(self) -> Equations:
@@ -58,10 +68,8 @@ def opening_subdivided(
     Raises
     ------
     ValueError
-        If the block is not a convex quadrilateral, a number is out of range, or the base moves.
+        If the block is not a convex quadrilateral, or a number is out of range.
     """
-    if model.motion is not None:
-        raise ValueError("motion: sub-blocks over contact that opens stand on a base at rest, got one that moves")
     loads = model.pressure, model.base, model.top, model.eccentricity, model.traction, model.gravity, None, model.slope
     locked = subdivided(TwoBlockModel(model.block, Contact(1.0), *loads), columns, rows, glue, pattern)
     tangent, normal, _ = base_directions(model.block, model.base)
@@ -81,6 +89,8 @@ def opening_subdivided(
         normals=normals.reshape(len(ends), -1),
         tangents=tangents.reshape(len(ends), -1),
         velocity=model.velocity,
+        axes=np.array([normal, tangent]),
+        motion=model.motion,
     )
 
 
@@ -111,15 +121,22 @@ class Length:
         C = self.rows @ self.moved
         self.C = (C + C.T) / 2
 
-    def advance(self, state: SystemState, limit: int) -> tuple[SystemState | None, Found]:
-        """Return the state one step later, or None where the points have no single state; `state` stays as it is."""
+    def advance(
+        self, state: SystemState, limit: int, carried: Sequence[float] = (0.0, 0.0)
+    ) -> tuple[SystemState | None, Found]:
+        """Return the state one step later, or None where the points have no single state; `state` stays as it is.
+
+        The base moves by `carried` in the step, along its normal and its tangent [m].
+        """
         s, stepper, r = self.scheme, self.stepper, self.ratio
         D, P, f, mu, before = state.D, r * state.P, r * r * state.f, r * r * state.mu, state.points
         held = stepper.k @ D + stepper.Bt @ mu
         dD, dmu = stepper.increments(predictor(s, P, f) + s.alpha * (self.F - held), self.still)
         way = self.rows @ dD
         n = len(before.gap)
-        found = find_points(self.law, before, FreePoints(before.gap + way[:n], way[n:], self.C), limit)
+        found = find_points(
+            self.law, before, FreePoints(before.gap + way[:n] - carried[0], way[n:] - carried[1], self.C), limit
+        )
         if found.points is None:
             return None, found
         forces = np.concatenate([found.points.normal, found.points.shear])[: len(way)]

@@ -6,6 +6,8 @@ both, D' Ke D + lambda' kappa^-1 lambda.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,7 @@ class SystemLedger:
 
     def __init__(self, opening: OpeningSystem, dt: float) -> None:
         self.opening, self.dt, self.losses = opening, dt, np.zeros(4)
+        self.given = 0.0  # by the base that moves, counted with the loads
         e = opening.equations
         self.inverse, self.elastic = e.blockwise(inverses(e.mass)), e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
@@ -29,15 +32,22 @@ class SystemLedger:
         """Return the entries of `ENERGIES` for the present state."""
         strain = self._stiff(state.D, state.mu / self.dt**2) / 2
         springs = float(np.sum(self._springs(state.points)))
-        return (self._kinetic(state.P / self.dt), strain, springs, -float(self.F @ state.D), *self.losses.tolist())
+        return (
+            self._kinetic(state.P / self.dt),
+            strain,
+            springs,
+            -float(self.F @ state.D) - self.given,
+            *self.losses.tolist(),
+        )
 
-    def add(self, length: Length, before: SystemState, after: SystemState) -> None:
-        """Add the losses of an accepted step."""
+    def add(self, length: Length, before: SystemState, after: SystemState, carried: Sequence[float]) -> None:
+        """Add the losses of an accepted step in which the base moved by `carried`, along its normal and tangent."""
         scheme = length.scheme
         old, new = before.points, after.points
         N = (1 - scheme.delta) * old.normal + scheme.delta * new.normal
         T = (1 - scheme.delta) * old.shear + scheme.delta * new.shear
-        slid = self.opening.tangents @ (after.D - before.D)
+        slid = self.opening.tangents @ (after.D - before.D) - carried[1]
+        self.given += float(np.sum(N)) * carried[0] + float(np.sum(T)) * carried[1]
         rubbed = np.zeros_like(slid) if new.slipped is None else -new.shear * new.slipped
         lost = self._springs(old) - self._springs(new) - N * (new.gap - old.gap) - T * slid - rubbed
         same = old.closed == new.closed

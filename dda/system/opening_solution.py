@@ -132,8 +132,8 @@ class SystemStepping:
     def run(self, steps: int) -> Iterator[Row]:
         """Yield the steps that are reached; `outcome` says how it ended."""
         state = start_state(self.opening, self.scheme)
-        for _ in range(steps):
-            made = self._interval(state)
+        for number in range(steps):
+            made = self._interval(state, number)
             if made.failure is not None:
                 self.outcome = made.failure
                 return
@@ -142,26 +142,40 @@ class SystemStepping:
                 self.outcome = OVERFLOW
                 return
             slipped = sum((after.points.slipped for _, _, after in made.parts if after.points.slipped is not None), 0.0)
-            yield self._row(state, slipped + np.zeros(len(self.opening.normals)), made.solves, made.cuts)
+            slide = self.opening.tangents @ state.D - self._base(number + 1)[1]
+            yield self._row(state, slide, slipped + np.zeros(len(slide)), made.solves, made.cuts)
 
-    def _row(self, state: SystemState, slipped: Array, solves: int, cuts: int) -> Row:
+    def _base(self, steps: float) -> Array:
+        """Return the displacement of the base after so many steps, along its normal and its tangent [m]."""
+        moved: Array = self.opening.base([steps * self.scheme.step])[0]
+        return moved
+
+    def _row(self, state: SystemState, slide: Array, slipped: Array, solves: int, cuts: int) -> Row:
         p = state.points
         seen = self.observers @ state.D + self.pressed @ np.array([np.sum(p.normal)])
         momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
         kept = self.ledger.row(state) if self.ledger else ()
-        contact = (p.normal, p.shear, p.gap, p.closed, states(p), self.opening.tangents @ state.D, slipped)
+        contact = (p.normal, p.shear, p.gap, p.closed, states(p), slide, slipped)
         return Row(seen, *contact, momentum, solves, cuts, kept)
 
-    def _interval(self, state: SystemState) -> Interval[SystemState]:
-        """Return one step of the scheme, whole or in parts."""
+    def _interval(self, state: SystemState, number: int) -> Interval[SystemState]:
+        """Return one step of the scheme, whole or in parts, after `number` others."""
+
+        def carried(begun: float, ratio: float) -> list[float]:
+            if self.opening.motion is None:
+                return [0.0, 0.0]
+            way: list[float] = (self._base(number + begun + ratio) - self._base(number + begun)).tolist()
+            return way
 
         def attempt(state: SystemState, begun: float, ratio: float) -> tuple[SystemState | None, Found]:
-            return self.length(ratio).advance(state, self.options.solve_limit)
+            return self.length(ratio).advance(state, self.options.solve_limit, carried(begun, ratio))
 
-        made = in_parts(attempt, state, self.options.cut)
-        if self.ledger:
-            for ratio, before, after in made.parts:
-                self.ledger.add(self.length(ratio), before, after)
+        made, begun = in_parts(attempt, state, self.options.cut), 0.0
+        if self.ledger is None:
+            return made
+        for ratio, before, after in made.parts:
+            self.ledger.add(self.length(ratio), before, after, carried(begun, ratio))
+            begun += ratio
         return made
 
 

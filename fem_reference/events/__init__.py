@@ -1,4 +1,4 @@
-"""Exact motions with contact that opens and closes, from switch to switch.
+"""Exact motions with contact that opens, closes, sticks and slips, from switch to switch.
 
-The block of one strain and the bar on springs that carry no tension; no mesh and no time step come in.
+The block of one strain with friction and the bar on springs that carry no tension; no mesh and no time step come in.
 """

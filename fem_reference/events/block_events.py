@@ -54,13 +54,13 @@ class BlockHistory:
     kinetic: Array  # kinetic energy [J], shape (times,)
     strain: Array  # strain energy [J], shape (times,)
     springs: Array  # energy of the normal and shear springs [J], shape (times,)
-    load: Array  # potential energy of pressure, traction and weight, -F x [J], shape (times,)
+    load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J], shape (times,)
     released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
     friction: Array  # energy lost by friction until then [J], shape (times,)
 
     @property
     def energy(self) -> Array:
-        """Sum of all energies, which the motion conserves if the base is at rest [J]."""
+        """Sum of all energies, which the motion conserves [J]."""
         return self.kinetic + self.strain + self.springs + self.load + self.released + self.friction
 
 
@@ -94,7 +94,7 @@ class BlockMotion:
             raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
         starts = np.array([piece.start[0] for piece in self.pieces])
         index = np.searchsorted(starts, t, side="right") - 1
-        x, rate, rest = np.empty((12, len(t))), np.empty((12, len(t))), np.empty((6, len(t)))
+        x, rate, rest = np.empty((12, len(t))), np.empty((12, len(t))), np.empty((7, len(t)))
         for i in np.unique(index):
             here, piece = index == i, self.pieces[i]
             x[:, here], rate[:, here] = piece.values(t[here])
@@ -123,7 +123,7 @@ class BlockMotion:
             kinetic=mass @ rate[:6] ** 2 / 2,
             strain=np.einsum("it,ij,jt->t", x[:6], elastic, x[:6]) / 2,
             springs=(N**2 / p - T * x[8:10]).sum(axis=0) / 2,
-            load=-load @ x[:6],
+            load=-load @ x[:6] - rest[6],
             released=rest[4],
             friction=rest[5],
         )

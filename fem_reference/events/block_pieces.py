@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.events.block_model import LEFT, RIGHT, BlockModel, States
+from fem_reference.events.block_model import LEFT, OPEN, RIGHT, BlockModel, States
 from fem_reference.events.block_rows import Corner, Row, State
 from fem_reference.events.decimals import ZERO, Matrix, Vector, dot, eigen, small, split
 from fem_reference.events.oscillation import Oscillation, Smooth
@@ -217,8 +217,10 @@ class FloatPiece:
         rows += [corner.slide for corner in corners]
         self.scale, self.frequencies, self.coefficients = piece.table(rows)
         self.loss = self._loss(float(piece.model.ps))
+        self.power, self.given = self._power(piece), 0.0
         if before is not None:
-            self.loss[0] = before.dissipated(np.array([self.start[0]]))[0]
+            here = np.array([self.start[0]])
+            self.loss[0], self.given = before.dissipated(here)[0], before.worked(here)[0]
 
     def values(self, times: Array) -> tuple[Array, Array]:
         """Unknowns, gaps, stretches s - r and slides, each of shape (12, times), and their rates."""
@@ -233,12 +235,26 @@ class FloatPiece:
         return self.coefficients @ basis, self.coefficients @ rates
 
     def contacts(self, times: Array, values: Array) -> Array:
-        """States, movements of the references, and energies lost by opening and by friction, shape (6, times)."""
+        """States, movements of the references, energies lost by opening and by friction, base's work, (7, times)."""
         slipping = np.abs(self.states) == RIGHT
         moved = slipping[:, None] * (values[10:12] - values[8:10] - self.references[:, None])
         ones = np.ones_like(times)
         states, slipped = np.outer(self.states, ones), self.slipped[:, None] + moved
-        return np.vstack([states, slipped, self.released * ones, self.dissipated(times)])
+        return np.vstack([states, slipped, self.released * ones, self.dissipated(times), self.worked(times)])
+
+    def worked(self, times: Array) -> Array:
+        """Work of the base until some instants of the piece [J]."""
+        s, w = (times - self.start[0]) - self.start[1], self.frequencies[:, None]
+        count = len(self.power) - 2 * len(w)
+        powers = np.vander(s / self.scale, count + 1, increasing=True).T[1:] / np.arange(1, count + 1)[:, None]
+        swings = [np.sin(w * s) / w, 2 * np.sin(w * s / 2) ** 2 / w]
+        return self.given + self.power @ np.vstack([self.scale * powers, *swings])
+
+    def _power(self, piece: Piece) -> Array:
+        """Coefficients of N y' + T x', the power of the base, like those of the rows."""
+        base, closed = piece.state.base, self.states != OPEN
+        N, T = -float(piece.model.p) * self.coefficients[6:8], -float(piece.model.ps) * self.coefficients[8:10]
+        return np.asarray(closed @ (float(base.vy) * N + float(base.vx) * T))
 
     def dissipated(self, times: Array) -> Array:
         """Energy lost by friction until some instants of the piece [J]."""

@@ -116,7 +116,3 @@ class Corner:
         if self.is_in == STICKS:
             return [pressed, self.reserve(1), self.reserve(-1)]
         return [pressed, self.dissipation]
-
-    def may_rest(self, row: Row) -> bool:
-        """Whether a watched function may be zero for ever: that of a pressed corner, or of one that sticks."""
-        return self.is_in != OPEN and not row.of_rates

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from decimal import Decimal, getcontext
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -16,7 +17,8 @@ import numpy as np
 from fem_reference.events.block_model import CORNERS, LEFT, OPEN, RIGHT, STICKS, BlockModel, States, sigma
 from fem_reference.events.block_pieces import Pieces
 from fem_reference.events.block_rows import Corner, Row, State
-from fem_reference.events.decimals import ZERO, dot
+from fem_reference.events.decimals import ZERO, Matrix, Vector, dot
+from fem_reference.events.series import Stepper
 from fem_reference.events.switches import NoContactStateError, Switch
 from fem_reference.problem.problem import Array
 
@@ -43,15 +45,13 @@ def settled(pieces: Pieces, state: State) -> State:
 
 
 def agrees(pieces: Pieces, state: State) -> bool:
-    """Whether every watched function of both corners is positive from now on, or rests at zero where it may."""
+    """Whether every watched function of both corners is positive from now on, or rests at zero.
+
+    Closed corners that stick are tried first: what rests does so in this state.
+    """
     start = Beginning(pieces, state)
-    for c in (0, 1):
-        corner = Corner(pieces.model, state, c)
-        for row in corner.watched():
-            sign = start.lead(row).sign
-            if sign < 0 or (sign == 0 and not corner.may_rest(row)):
-                return False
-    return True
+    corners = [Corner(pieces.model, state, c) for c in (0, 1)]
+    return all(start.lead(row).sign >= 0 for corner in corners for row in corner.watched())
 
 
 def changes(before: State, after: State) -> list[Switch]:
@@ -86,7 +86,7 @@ def _choices(corner: Corner) -> list[int]:
     closed = [STICKS]
     if corner.model.tan is not None:
         stuck = corner.as_if(STICKS)
-        closed += [way for way in (RIGHT, LEFT) if corner.is_in == way or _vanishes(stuck, stuck.reserve(sigma(way)))]
+        closed += [way for way in (RIGHT, LEFT) if _vanishes(stuck, stuck.reserve(sigma(way)))]
     return [*closed, OPEN] if touching else closed
 
 
@@ -115,39 +115,61 @@ class Lead:
     """How a function begins."""
 
     sign: int  # of its first derivative that is not zero, the function itself included; 0 if there is none
-    clear: Decimal  # time until which it keeps this sign [s]; zero without one
+    clear: Decimal = ZERO  # time until which it keeps this sign, where value and rate begin at zero [s]
 
 
 class Beginning:
     """The first terms of the motion's power series after a state, with what bounds the others."""
 
     def __init__(self, pieces: Pieces, state: State) -> None:
-        stepper = pieces.stepper(state.states)
-        self.scale = 1 / Decimal(stepper.rate)
-        start = state.displacement, state.velocity
-        forces = pieces.model.forces(state.states, state.references, state.base)
-        self.terms = stepper.coefficients(start, forces, self.scale, DERIVATIVES + 2)
-        self.bounds = stepper.bounds(start, forces, self.scale, BOUNDED + 2)
+        self.pieces, self.state = pieces, state
 
     def lead(self, row: Row) -> Lead:
         """How a watched function begins."""
+        absolute = [abs(w) for w in row.weights]
+        for x, constant in self._known(row):
+            value = dot(row.weights, x) + constant
+            if abs(value) > _tolerance() * (dot(absolute, map(abs, x)) + abs(constant)):
+                return Lead(1 if value > 0 else -1)
         terms, bounds = self._of(row)
         own = enumerate(zip(terms, bounds[: len(terms)], strict=True))
         first = next((k for k, (x, bound) in own if abs(x) > _tolerance() * Decimal(bound)), None)
         if first is None:
-            return Lead(0, ZERO)
+            return Lead(0)
         rest = np.array([abs(float(x)) for x in terms[first + 1 :]] + [2 * sum(bounds[len(terms) :])])
         share = min(1.0, abs(float(terms[first])) / 2 / max(rest.sum(), 1e-300))
-        return Lead(1 if terms[first] > 0 else -1, self.scale * Decimal(share))
+        return Lead(1 if terms[first] > 0 else -1, self._scale * Decimal(share))
+
+    def _known(self, row: Row) -> list[tuple[Vector, Decimal]]:
+        """What a function is of, with its constant; and the same of its rate, unless that takes accelerations."""
+        x, rate = self.state.displacement, self.state.velocity
+        return [(rate, row.constant)] if row.of_rates else [(x, row.constant), (rate, row.drift)]
+
+    @cached_property
+    def _stepper(self) -> Stepper:
+        return self.pieces.stepper(self.state.states)
+
+    @cached_property
+    def _scale(self) -> Decimal:
+        return 1 / Decimal(self._stepper.rate)
+
+    @cached_property
+    def _terms(self) -> tuple[Matrix, Array]:
+        """Coefficients of the unknowns, and bounds of these and of more."""
+        state = self.state
+        start = state.displacement, state.velocity
+        forces = self.pieces.model.forces(state.states, state.references, state.base)
+        terms = self._stepper.coefficients(start, forces, self._scale, DERIVATIVES + 2)
+        return terms, self._stepper.bounds(start, forces, self._scale, BOUNDED + 2)
 
     def _of(self, row: Row) -> tuple[list[Decimal], Array]:
         """Terms of a function, and bounds of their size."""
-        weights = np.abs([float(w) for w in row.weights])
-        terms, bounds = [dot(row.weights, x) for x in self.terms], self.bounds @ weights
+        own, sizes = self._terms
+        terms, bounds = [dot(row.weights, x) for x in own], sizes @ np.abs([float(w) for w in row.weights])
         if row.of_rates:
-            terms = [k * x / self.scale for k, x in enumerate(terms)][1:]
-            bounds = (np.arange(len(bounds)) * bounds / float(self.scale))[1:]
-        for k, x in enumerate((row.constant, row.drift * self.scale)):
+            terms = [k * x / self._scale for k, x in enumerate(terms)][1:]
+            bounds = (np.arange(len(bounds)) * bounds / float(self._scale))[1:]
+        for k, x in enumerate((row.constant, row.drift * self._scale)):
             terms[k] += x
             bounds[k] += abs(float(x))
         return terms, bounds

@@ -56,6 +56,14 @@ def test_a_run_without_states_is_told_what_to_do() -> None:
     assert "smaller time.step" in alarm.sentence
 
 
+def test_a_discount_of_nothing_has_no_rate(tmp_path: Path) -> None:
+    case = SLIDES.with_values({"time.gg": 0.0, "time.steps": 20})
+    found = advice.sliding(case)
+    assert found is not None and found.rate is None and "takes the whole velocity" in found.drag
+    json.dumps(advice.as_dict(found), allow_nan=False)
+    assert raised(case, tmp_path) == {advice.BRAKES}
+
+
 @pytest.mark.parametrize(("gg", "step", "cut"), [(0.98, 1e-3, 0.1148), (0.99, 1e-2, 0.8963), (0.98, 1e-2, 0.6892)])
 def test_what_a_discount_leaves_of_a_way_is_what_dda_slides(gg: float, step: float, cut: float) -> None:
     case = SLIDES.with_values({"time.gg": gg, "time.step": step, "time.steps": round(1 / step)})

@@ -54,7 +54,7 @@ def test_a_run_that_overflows_leaves_no_history_behind(scene_file: Path, tmp_pat
 
 
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     results, scene = Results(tmp_path), load_scene("figures-3-4").with_values({"time.step": 0.002}, label=True)
     rows = [made_row("dda", {}, scene.name, seconds={"setup": 1.25, "stepping": 2.5}),
@@ -68,6 +68,14 @@ def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
     assert [row[1:] for row in shown] == [
         [*middle, "0.0512", "0.031", "..", "0.042", "FAIL", "3.75"],
         [*middle, "0.04", "0.031", "..", "0.042", "PASS", "3.75"],
+    ]
+    monkeypatch.setattr("validation.cli.printing.output.PAGE", 60)
+    tables.print_verdicts([judge(gate, 0.0512), judge(gate, 0.04)], results, ["made"])
+    narrow = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert narrow == [
+        [scene.name],
+        ["FAIL", *middle, "0.0512", "0.031", "..", "0.042"],
+        ["PASS", *middle, "0.04", "0.031", "..", "0.042"],
     ]
     tables.print_ends(results, ["made"])
     assert capsys.readouterr().out == f"{scene.name} bar: overflow: {Outcome.OVERFLOW.sentence} at 3\n"

@@ -17,6 +17,7 @@ from dda import (
     Scheme,
     Unilateral,
     UnilateralModel,
+    UnilateralOptions,
     opening_subdivided,
     solve_opening_system,
     solve_unilateral,
@@ -26,6 +27,7 @@ from dda.contact.lagged import lagged
 from dda.contact.unilateral import OPEN, SLIP
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
+SINGLY = UnilateralOptions(full=True)
 MODEL = KNOWN["incline"].model
 
 
@@ -66,7 +68,7 @@ def cutting():
 
         unilateral.advance = stubborn
         try:
-            result = solve_unilateral(model, Scheme(0.5, 1.0, 0.9, 2e-4), steps)
+            result = solve_unilateral(model, Scheme(0.5, 1.0, 0.9, 2e-4), steps, options=SINGLY)
         finally:
             unilateral.advance = real
         assert result.step_cuts[first] == 2 and calls[first] == calls[first + 1] == calls[first + 2]

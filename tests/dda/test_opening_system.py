@@ -212,9 +212,9 @@ def test_of_many_glued_points_not_all_states_are_tried():
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     real, given = stepping.Length.advance, []
 
-    def stubborn(length, state, limit):
+    def stubborn(length, state, limit, carried):
         given.append((length.ratio, state, [np.copy(part) for part in state[:4]]))
-        after, found = real(length, state, limit)
+        after, found = real(length, state, limit, carried)
         return (None, points.Found(None, limit, NONE)) if len(given) <= 2 else (after, found)
 
     monkeypatch.setattr(stepping.Length, "advance", stubborn)

@@ -13,7 +13,7 @@ import dda.rotation.step as step
 from dda import BaseMotion, Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions
 from dda import solve_unilateral as solve_small
 from dda.contact.iteration import NONE
-from dda.rotation.body import FIRST_ORDER
+from dda.rotation.body import FIRST_ORDER, turned
 from dda.rotation.model import RollingModel, RollingOptions
 from dda.rotation.solution import solve_rolling
 from dda.rotation.step import Made
@@ -35,7 +35,7 @@ def losses(result):
     return sum(e[name] for name in STORED) / size, np.diff([e[name] for name in LOST]) / size
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 103))])
+@pytest.mark.parametrize("seed", [1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, *range(3, 103)))])
 def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed):
     model, dt = random_rolling(seed)
     scheme = Scheme(*CONSTANT, 0.98 if seed % 5 == 0 else 1.0, dt, "consistent" if seed % 2 else "zero")
@@ -85,6 +85,13 @@ def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     assert angle == pytest.approx(steps * math.atan(r), rel=1e-11)
 
 
+def test_the_matrices_of_a_grown_outline_are_those_of_its_polygon():
+    own = RollingModel(QUADRILATERAL, FAR).body
+    M, K = own.grown(1.1 * turned(0.4))
+    larger = Block(own.xi * 1.1, MATERIAL)
+    assert np.allclose(M, larger.mass(), rtol=1e-12, atol=1e-9) and np.allclose(K, larger.elastic()[3:, 3:], rtol=1e-12)
+
+
 def test_small_motion_is_the_limit_of_small_loads():
     law, scheme, e = Unilateral(1e9, 4e8), Scheme(*CONSTANT, 1.0, 2e-3), 0.3
     block = Block([[0, 0], [2, 1], [1.5, 2.2], [-0.5, 1.0]], MATERIAL)  # its base leans
@@ -132,12 +139,16 @@ def test_a_mirrored_block_moves_as_its_mirror_image():
 
 
 def test_a_base_that_moves_steadily_is_a_block_that_flies_the_other_way():
-    scheme, V = Scheme(*AVERAGE, 1.0, 2e-3), np.array([0.4, 0.3])
+    scheme, V = Scheme(*AVERAGE, 1.0, 2e-3, "consistent"), np.array([0.4, 0.3])
     motion = BaseMotion([0.0, 1.0], [[0.0, 0.0], V])
     carried = solve_rolling(replace(HEAVY, load=Load(gravity=9.81, motion=motion)), scheme, 120)
     thrown = solve_rolling(replace(HEAVY, velocity=tuple(-V)), scheme, 120)
     assert np.max(np.abs(carried.gap - thrown.gap)) < 1e-11
-    assert np.max(np.abs(carried.energies["strain"] - thrown.energies["strain"])) < 1e-6
+    assert np.max(np.abs(carried.slide - thrown.slide)) < 1e-11
+    for name in ("strain", *LOST):  # what is lost does not depend on who looks on
+        assert np.max(np.abs(carried.energies[name] - thrown.energies[name])) < 1e-9 * np.max(
+            thrown.energies["kinetic"]
+        )
     total, lost = losses(carried)
     assert np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
 
@@ -189,10 +200,13 @@ def test_the_parts_of_a_cut_step_are_a_whole_step():
         return real(setting, scheme, state, base)
 
     real, scheme = solution.advance, Scheme(*AVERAGE, 0.99, 1e-3)
+    shaken = replace(HEAVY, load=Load(gravity=9.81, motion=BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.4, 0.0]])))
     with patch.object(solution, solution.advance.__name__, once):
-        cut = solve_rolling(HEAVY, scheme, 40)
-    whole = solve_rolling(HEAVY, scheme, 40)
+        cut = solve_rolling(shaken, scheme, 40)
+    whole = solve_rolling(shaken, scheme, 40)
     assert cut.step_cuts.sum() == 1 and len(cut.parts) > len(whole.parts)
+    instants = np.cumsum([part.scheme.step for part in cut.parts[1:]])
+    assert np.allclose([part.base[0] for part in cut.parts[1:]], 0.4 * instants, rtol=1e-12)
     total, lost = losses(cut)
     assert np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
     assert np.max(np.abs(cut.gap - whole.gap)) < 1e-5
@@ -211,6 +225,14 @@ def test_a_polygon_rolls_over_its_corners():
     assert x == pytest.approx(-r * n * side / (2 * math.pi), abs=side)  # a side of the way for each corner
     touched = np.flatnonzero(np.any(result.of_points("state") != 0, axis=1))
     assert len(touched) >= 4
+
+
+def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
+    scheme, rocking = Scheme(*CONSTANT, 1.0, 5e-3), replace(HEAVY, tilt=0.1)
+    sound = solve_rolling(rocking, scheme, 120)
+    with patch.object(step, "REACH", -100.0):
+        blind = solve_rolling(rocking, scheme, 120)
+    assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.of_points("state"))) > 1
 
 
 def test_overflow_is_an_outcome():
@@ -248,3 +270,40 @@ def test_bad_options_are_refused_by_name(given, words):
 def test_rigid_stops_and_explicit_schemes_exclude_each_other():
     with pytest.raises(ValueError, match="stiffness: must be finite in an explicit scheme"):
         solve_rolling(RollingModel(QUADRILATERAL, Unilateral(math.inf)), Scheme(0.0, 0.5, 1.0, 1e-3), 1)
+
+
+@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.5, 1.0, 1.0), (0.25, 0.5, 0.99), (0.3025, 0.6, 0.97)])
+def test_while_all_corners_slip_the_centroid_moves_freely_along_the_slope(alpha, delta, gg):
+    """Its u + tan(phi) v is the same recursion without contact, under g (sin b - tan(phi) cos b)."""
+    b, friction = 35.0, 0.3
+    block = Block.rectangle(2.0, 1.0, MATERIAL)
+    sliding = RollingModel(block, Unilateral(1e9, 1e9, friction=friction), Load(gravity=9.81, slope=b))
+    scheme = Scheme(alpha, delta, gg, 1e-3, "consistent")
+    found = solve_rolling(sliding, scheme, 60, COLUMNS)
+    assert set(np.unique(found.of_points("state")[found.base])) <= {0, 2} and np.max(found.normal) > 0
+    across = 9.81 * (math.sin(math.radians(b)) - friction * math.cos(math.radians(b)))
+    free = solve_rolling(RollingModel(block, FAR, Load(gravity=-across)), scheme, 60, COLUMNS)
+    moved = found.columns["horizontal_displacement"] + friction * found.columns["displacement"]
+    assert np.max(np.abs(moved - free.columns["displacement"])) < 1e-12  # m, of 100 m
+    assert found.slip[-1] == pytest.approx(np.max(found.slide[found.base]), rel=0.05)
+    lost = np.diff(found.energies["friction"])
+    assert np.min(lost) >= 0 and np.max(lost) > 0
+
+
+def test_friction_of_small_motion_is_the_limit_of_small_turns():
+    law, scheme = Unilateral(1e9, 4e8, friction=0.3), Scheme(*CONSTANT, 1.0, 1e-3)
+    block = Block.rectangle(2.0, 2.0, MATERIAL)
+    small = solve_small(UnilateralModel(block, law, gravity=9.81, slope=15.0), scheme, 80, COLUMNS)
+    turned = solve_rolling(RollingModel(block, law, Load(gravity=9.81, slope=15.0)), scheme, 80, COLUMNS)
+    for name in COLUMNS:
+        assert np.max(np.abs(turned.columns[name] - small.columns[name])) < 2e-3 * np.ptp(small.columns[name]), name
+    assert np.max(np.abs(small.columns["rotation"])) < 1e-3
+    assert np.max(np.abs(turned.normal[0] - small.normal_force_m)) < 2e-3 * np.max(turned.normal)
+
+
+def test_a_rigid_stop_takes_a_block_that_turns():
+    model = replace(HEAVY, contact=Unilateral(math.inf, 4e9, friction=1.0))
+    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 5e-3), 160)
+    total, lost = losses(result)
+    assert result.outcome == "completed" and np.max(np.diff(total)) < 1e-13 and np.min(lost) > -1e-13
+    assert np.all(result.gap[result.of_points("state").astype(bool)] == 0) and np.min(result.gap) >= 0

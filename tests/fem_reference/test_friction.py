@@ -9,8 +9,10 @@ from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
+from fem_reference.contact.open_close import NONE, Contact
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper
+from fem_reference.history.unilateral import advance_with_cuts
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 2e-4, "consistent")
 AVERAGE = Scheme(0.25, 0.5, 1.0, 2e-4, "consistent")
@@ -192,3 +194,39 @@ def test_a_mirrored_incline_mirrors_the_block(degree):
     assert np.abs(right.shear + left.shear[:, ::-1]).max() <= 1e-9 * np.abs(right.shear).max()
     mirrored = np.where(np.abs(left.states) == 2, -left.states, left.states)[:, ::-1]
     assert np.array_equal(right.states, mirrored)
+
+
+class Refusing(ContactStepper):
+    """A stepper that finds no contact in steps longer than 0.3 of its own."""
+
+    def advance(self, state, length=None):
+        if length > 0.3 * self.scheme.step * (1 + 1e-9):
+            return None, Contact(None, state.states, 3, NONE)
+        return super().advance(state, length)
+
+
+def test_a_cut_step_starts_from_the_state_as_it_was_and_the_base_from_its_place():
+    problem = replace(incline(25.0, elements=2), motion=SHAKE)
+    one, fresh = (
+        kind(build(problem), replace(CONSTANT, gg=0.9, step=1e-3), "glued", friction=Friction(10.0, 1e3))
+        for kind in (Refusing, ContactStepper)
+    )
+    first = state = again = one.advance(one.start(), 0.3e-3)[0]
+
+    def arrays():
+        return [*vars(first.motion).values(), *list(vars(first).values())[1:]]
+
+    saved = [np.copy(part) for part in arrays()]
+    for _ in range(4):
+        step = advance_with_cuts(one, state, RUBBING)
+        assert step.cuts == 1 and step.pieces == pytest.approx([0.3, 0.3, 0.3, 0.1])
+        for piece in step.pieces:
+            again = fresh.advance(again, piece * 1e-3)[0]
+        state = step.state
+    assert all(np.array_equal(a, b) for a, b in zip(saved, arrays(), strict=True))
+    assert 2 in state.states and state.time == pytest.approx(4.3e-3, rel=1e-12)
+    for name, value in vars(state).items():
+        if name != "motion":
+            assert np.array_equal(value, getattr(again, name)), name
+    # the base is where its record says, whatever the steps were cut into
+    assert state.base[1] == pytest.approx(np.interp(4.3e-3, SHAKE.time, SHAKE.x), rel=1e-12)

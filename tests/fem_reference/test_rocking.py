@@ -7,6 +7,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from conftest import thinned
 
 from fem_reference.exact.rocking import Pulse, RockingBlock, overturning_amplitude, overturns, solve
 from validation.solvers.rigid import rocking as adapter
@@ -26,8 +27,10 @@ def quarter(block: RockingBlock, tilt: float) -> float:
         return float(mpmath.quad(slow, [0, 0.01, 0.1, 0.5, 1]) / p)
 
 
-@pytest.mark.parametrize("share", [1e-6, 0.01, 0.5, 0.99])
-@pytest.mark.parametrize("size", [(1.0, 1.0), (0.8, 2.0), (0.05, 3.0)])
+@pytest.mark.parametrize(
+    ("share", "size"),
+    thinned([(x, size) for x in (1e-6, 0.01, 0.5, 0.99) for size in ((1.0, 1.0), (0.8, 2.0), (0.05, 3.0))], 5),
+)
 def test_the_quarter_period_is_the_energy_integral(share: float, size: tuple[float, float]) -> None:
     block = RockingBlock(*size)
     tilt = share * block.alpha
@@ -121,8 +124,10 @@ def slender(x: float, pT: float, shape: str) -> float:
     return x * (w * math.exp(-pT + lift / w) + math.sin(lift) + w * math.cos(lift)) - (1 + w * w)
 
 
-@pytest.mark.parametrize("shape", ["rectangle", "half-sine"])
-@pytest.mark.parametrize("duration", [0.3, 0.7])
+@pytest.mark.parametrize(
+    ("shape", "duration"),
+    thinned([("rectangle", 0.3), ("half-sine", 0.3), ("half-sine", 0.7), ("rectangle", 0.7)], 3),
+)
 def test_the_overturning_threshold_of_a_slender_block_is_in_closed_form(shape: str, duration: float) -> None:
     block = RockingBlock(0.004, 2.0)  # the rest is alpha^2 = 4e-6
     found = overturning_amplitude(block, duration, shape) / (9.81 * block.alpha)
@@ -130,7 +135,8 @@ def test_the_overturning_threshold_of_a_slender_block_is_in_closed_form(shape: s
     assert under < 0 < over
 
 
-@pytest.mark.parametrize("shape", ["rectangle", "half-sine"])
+@pytest.mark.long
+@pytest.mark.parametrize("shape", ["half-sine", "rectangle"])
 def test_the_threshold_parts_what_falls_from_what_rocks_on(shape: str) -> None:
     limit = overturning_amplitude(BLOCK, 0.4, shape)
     assert limit > BLOCK.lifting

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import thinned
 from scipy.integrate import solve_ivp
 
 from fem_reference.exact.sliding_block import Segment, SlidingBlock, SlidingMotion, harmonic, moved, recorded, solve
@@ -92,7 +93,7 @@ def random_base(seed: int) -> tuple[Segment, ...]:
     return recorded(t, rng.uniform(-8, 8, 9)) if seed % 3 == 1 else moved(t, np.cumsum(rng.normal(0, 0.03, 9)))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", thinned([0, 3, 1, 4, 2, 5], 2))
 def test_an_independent_integration_agrees(seed: int) -> None:
     base = random_base(seed)
     motion = solve(SLOPE, base, 2.0)

@@ -12,7 +12,8 @@ from conftest import beside
 from oracles.pages import BLOCK, FEW, ROOT
 
 PAGES = ("theory.md", "extending.md", "columns.md")
-LONG = ("friction.md", "contact.md", "rotation.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")  # seconds each
+# Pages that take seconds each.
+LONG = ("friction.md", "contact.md", "rotation.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")
 
 
 def run_line(line: str, directory: Path) -> None:

@@ -35,7 +35,7 @@ def slipping_problem(seed: int, moved: bool = False) -> BlockProblem:
 class Slipping(Integrated):
     """The block of `Integrated` with Coulomb's friction in its corners."""
 
-    def __init__(self, problem: BlockProblem) -> None:
+    def __init__(self, problem: BlockProblem, longest: float = math.inf) -> None:
         super().__init__(problem)
         q = self.problem
         self.tan = math.tan(math.radians(q.friction or 0.0))
@@ -44,6 +44,7 @@ class Slipping(Integrated):
         weight = q.density * q.width * q.height * q.gravity
         self.F += weight * (math.sin(turn) * self.T(0, 0)[0] + (1 - math.cos(turn)) * self.T(0, 0)[1])
         self.states, self.references = [OPEN, OPEN], [0.0, 0.0]
+        self.longest = longest  # a step that is longer may jump over two events
 
     def base(self, t: float) -> tuple[Array, Array]:
         if self.problem.base is None:
@@ -86,7 +87,8 @@ class Slipping(Integrated):
             if abs(self.states[c]) == RIGHT and self.corner(c, t, y)["d"] < -1e-9:  # the base turned round
                 found.append(self.switch(c, STICKS, t, y))
         events = [(c, *event) for c in (0, 1) for event in self.events(c)]
-        done = solve_ivp(self.motion, (t, end), y, "DOP853", rtol=1e-13, atol=1e-16, events=[e[2] for e in events])
+        options = {"rtol": 1e-13, "atol": 1e-16, "max_step": self.longest, "events": [event for _, _, event in events]}
+        done = solve_ivp(self.motion, (t, end), y, "DOP853", **options)
         t, y = float(done.t[-1]), done.y[:, -1]
         for (c, state, _), times in zip(events, done.t_events, strict=True):
             if len(times):

@@ -190,6 +190,9 @@ def test_what_steps_cost_reads_across_as_its_heads_say() -> None:
     assert [group for group, _ in heads] == ["", "", *["DDA − bar: model"] * 2, *["bar − continuum: time"] * 2, ""]
     rows = table.rows  # type: ignore[union-attr]
     assert rows[0] == ("10", "37.2\u00a0%", "0.8\u00a0%", "0.7\u00a0%", "60\u00a0%", "70\u00a0%", "none")
+    small = case(2e-3, pressure__minimum=-1e-3)  # of 5 MPa: rounding
+    (table, _) = decisions._as_run({"model-form": made_group(small, comparisons=FOUND["model-form"].comparisons)})
+    assert table.rows[0][-1] == "none"  # type: ignore[union-attr]
     assert rows[2] == ("0.1", "0.9\u00a0%", "64\u00a0%", "74\u00a0%", "70\u00a0%", "70\u00a0%", "−1.40")
 
 

@@ -13,7 +13,7 @@ from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table
 from validation.report.blocks import Lines
-from validation.report.chapters import core, two_codes
+from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
 from validation.report.chapters.scene import history_block
 from validation.report.figures import motion
@@ -99,8 +99,9 @@ def test_lines_on_one_another_are_one_line_with_all_names() -> None:
 def test_more_swings_than_can_be_drawn_are_a_band_with_their_start_below() -> None:
     time = np.arange(1, 20_001)
     fast = panel(dda=1 - np.cos(0.5 * time))  # 1592 periods
-    slow = panel(dda=1 - np.cos(0.005 * time) + 0.01 * np.cos(time))  # 16, and noise on them
+    slow = panel(dda=1 - np.cos(0.005 * time) + 0.09 * np.cos(time))  # 16, and noise on them
     assert motion.start_of([slow], "displacement") is None
+    assert motion.start_of([panel(dda=1 - np.cos(0.05 * time))], "displacement") is not None  # 159
     span = motion.start_of([fast], "displacement")
     assert span == pytest.approx(12 * 2 * np.pi / 0.5 * 0.1, rel=0.01)  # 24 crossings, 12 periods
     top, start = motion.history_figure([fast], "displacement").axes
@@ -156,10 +157,9 @@ def test_locking_is_told_by_the_share_that_linear_elements_keep() -> None:
         ("0.3", "−4.2000", "−4.2500", "98.8\u00a0%"), ("0.499", "−0.5000", "−4.0000", "12.5\u00a0%"),
     )  # fmt: skip
     assert "at μ = 0.499 they keep 12.5\u00a0% of the displacement" in locking.locked_sentence(group)
-    drift = made_group(
-        made_case(PAPER, {"dda": {"energy.drift": 3e-11}}), made_case(PAPER, {"dda": {"energy.drift": 1e-13}})
-    )
-    assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 100 steps."
+    long = PAPER.with_values({"time.steps": 1_000_000})
+    drift = made_group(*(made_case(long, {"dda": {"energy.drift": value}}) for value in (3e-11, 1e-13)))
+    assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 1\u00a0000\u00a0000 steps."
 
 
 def test_two_codes_are_told_apart_by_their_largest_difference() -> None:

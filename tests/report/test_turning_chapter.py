@@ -9,7 +9,7 @@ import pytest
 
 from validation.engine.run import run_study
 from validation.report.blocks import FigureBlock, Heading, Table
-from validation.report.chapters import turning
+from validation.report.chapters.opened import turning
 from validation.runs.results import Results
 from validation.studies.rocking import rocking, toppling
 

@@ -44,7 +44,7 @@ SCENES = {  # constant acceleration: average acceleration multiplies rounding at
     "all states": GLUED | {"fem.elements": 2, "load.eccentricity": 0.5, "contact.solve_limit": 1, "time.step": 1e-3},
 }
 
-SHORT = ("centred", "glued", "cut", "rubbing", "shaken")  # of these in the short set
+SHORT = ("centred", "glued", "cut", "shaken")  # of these in the short set
 
 
 @pytest.fixture

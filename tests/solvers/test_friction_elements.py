@@ -39,7 +39,7 @@ def far(scene: Scene) -> float:
     return max(found)
 
 
-@pytest.mark.parametrize("values", thinned([{}, {"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}], 2))
+@pytest.mark.parametrize("values", thinned([{"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}, {}], 2))
 def test_stiff_elements_on_corners_tend_to_the_stiff_block(scene: Scene, values: dict[str, object]) -> None:
     """Both tend to the rigid block with p/E, two decades of which take two decades of what is between them."""
     moved = {"load.base_motion": str(Path(__file__).with_name("shake.csv")), "time.start": "consistent", **values}
@@ -85,3 +85,24 @@ def test_without_friction_no_slip_is_reported(scene: Scene) -> None:
     prepared = get_solver("fem").prepare(scene.with_values({"contact": glued, "time.steps": 5}))
     prepared.run()
     assert prepared.contact_record().slip is None
+
+
+@pytest.mark.parametrize("name", ["fem", pytest.param("fenicsx", marks=pytest.mark.fenicsx)])
+def test_a_base_that_is_displaced_at_the_start_is_refused(scene: Scene, name: str, tmp_path: Path) -> None:
+    record = tmp_path / "record.csv"
+    record.write_text("time,x\n0,1e-6\n1,0.001\n")
+    with pytest.raises(InputError, match="motion: must be zero at t = 0 where contact opens"):
+        solve(scene.with_values({"load.base_motion": str(record)}), name)
+
+
+def test_static_answers_on_an_incline_are_odd_and_even_in_its_angle(scene: Scene) -> None:
+    locked = {"contact": {"stiffness": 1e9, "shear_stiffness": 4e8}, "block.poisson": 0.25, "fem.elements": 4}
+    flat, up, down = (
+        get_solver("fem").static(scene.with_values({**locked, "load": {"gravity": 9.81, "slope": slope}}))
+        for slope in (0.0, 25.0, -25.0)
+    )
+    for name in ("displacement", "contact_pressure"):
+        assert up[name] + down[name] == pytest.approx(2 * np.cos(np.radians(25.0)) * flat[name], rel=1e-9)
+    assert up["horizontal_displacement"] == pytest.approx(-down["horizontal_displacement"], rel=1e-9)
+    # the springs' part of it, and some of the body's
+    assert up["horizontal_displacement"] > 10800 * 9.81 * np.sin(np.radians(25.0)) / 8e8

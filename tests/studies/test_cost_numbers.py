@@ -113,7 +113,7 @@ def test_the_sentences_of_the_work_chapter() -> None:
 def test_orders_are_shown_by_what_was_refined_and_quantity() -> None:
     verdicts = [{"scene": scene, "metric": metric, "value": value} for scene, metric, value in
                 (("a", "order.displacement", 1.98765), ("a", "order.pressure", 2.5), ("b", "order.pressure", None),
-                 ("c", "order.pressure", 4.0), ("c", "record.work", 1.0))]  # fmt: skip
+                 ("c", "order.pressure", 4.0), ("d", "record.work", 1.0))]  # fmt: skip
     shown = chapters_work.order_table(verdicts)
     assert [(c.group, c.title) for c in shown.columns] == [
         ("", "Refined"),

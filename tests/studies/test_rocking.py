@@ -16,6 +16,8 @@ from faults.kill_matrix import check_kill_matrix
 from scipy.integrate import solve_ivp
 
 from dda.rotation.body import EXACT, FIRST_ORDER, turned
+from fem_reference.exact.rocking import Pulse, RockingBlock
+from fem_reference.exact.rocking import solve as solve_rigid
 from validation.engine.study import Study
 from validation.gates.rigid_rocking import Rectangle
 from validation.studies.bands import cases
@@ -173,6 +175,18 @@ def test_quarter_periods_and_falls_are_those_of_the_differential_equation() -> N
     rates = motion.sol(np.linspace(0, duration, 4001))[1]
     squared = np.trapezoid(rates**2, dx=duration / 4000)
     assert tower.squared_rate(slope - tower.alpha, duration) == pytest.approx(squared, rel=1e-6)
+
+
+def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package() -> None:
+    for height, tilt in ((2.0, 1e-3), (4.0, 1e-3), (8.0, 0.12)):
+        own, other = Rectangle(2.0, height, 9.81), RockingBlock(2.0, height, 9.81)
+        assert own.quarter_period(tilt) == pytest.approx(other.quarter_period(tilt), rel=1e-12)
+        assert own.housner == pytest.approx(other.ratio, rel=1e-14)
+    own, other, duration = Rectangle(1.0, 4.0, 9.81), RockingBlock(1.0, 4.0, 9.81), 0.36
+    least = 9.81 * own.pulse_threshold(duration)
+    for size, falls in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        motion = solve_rigid(other, 20.0, pulse=Pulse(size * least, duration, "rectangle"))
+        assert motion.overturned is falls
 
 
 def test_the_small_quarter_period_and_the_rate_ratio_are_the_textbook_ones() -> None:

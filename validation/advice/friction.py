@@ -55,13 +55,18 @@ class Sliding:
     braked: float  # the same with the scene's scheme and discount [m]
     offset: float  # by which springs that give put it ahead [m]
     creep: float  # g / w_n, by which a stable block creeps on springs that ring [m/s]
-    rate: float  # -ln(gg) / dt [1/s]
+    rate: float | None  # -ln(gg) / dt [1/s]; None where gg = 0, which takes the whole velocity in every step
     constant: float  # dt / (1 - gg), in which a discount stops a body [s]
 
     @property
     def stands(self) -> bool:
         """Whether the block is stable."""
         return self.acceleration <= 0
+
+    @property
+    def drag(self) -> str:
+        """The drag of the discount in words."""
+        return "takes the whole velocity" if self.rate is None else f"is a drag of {self.rate:.3g} 1/s"
 
 
 def sliding(scene: Scene) -> Sliding | None:
@@ -78,7 +83,7 @@ def sliding(scene: Scene) -> Sliding | None:
         float(braked[-1]),
         friction.penalty_offset(scene),
         friction.creep_scale(scene) if math.isfinite(scene.contact.stiffness) else 0.0,
-        friction.drag_rate(scene),
+        friction.drag_rate(scene) if scene.time.discount > 0 else None,
         friction.time_constant(scene),
     )
 
@@ -118,7 +123,7 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
         )
         if t.discount < 1:
             yield (
-                f"  gg          {t.discount:g} a step of {t.step:g} s is a drag of {found.rate:.4g} 1/s: it cuts "
+                f"  gg          {t.discount:g} a step of {t.step:g} s {found.drag}: it cuts "
                 f"{found.run_out:.3g} m to {found.braked:.3g} m, in flight as well; no speed beyond "
                 f"{found.acceleration * found.constant:.3g} m/s"
             )
@@ -142,10 +147,11 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
         yield from _hides(scene, found)
     elif found is not None and found.braked < (1 - NOTABLE) * found.run_out and scene.time.discount < 1:
         said = (
-            f"gg = {scene.time.discount:g} a step is a drag of {found.rate:.3g} 1/s: it cuts the run-out from "
+            f"gg = {scene.time.discount:g} a step {found.drag}: it cuts the run-out from "
             f"{found.run_out:.3g} m to {found.braked:.3g} m"
         )
-        yield Alarm(BRAKES, scene.name, said, {"rate": found.rate, "run_out": found.run_out, "braked": found.braked})
+        rate = {} if found.rate is None else {"rate": found.rate}
+        yield Alarm(BRAKES, scene.name, said, {**rate, "run_out": found.run_out, "braked": found.braked})
 
 
 def _stateless(scene: Scene, row: Row) -> Iterator[Alarm]:

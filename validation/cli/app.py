@@ -93,15 +93,17 @@ def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, st
     """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.table import Column
 
     start = time.monotonic()
     bar = Progress(
         TextColumn("{task.description}"),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[label]}"),
+        TextColumn("{task.fields[label]}", table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)),
         console=Console(stderr=True),
         transient=True,
+        expand=True,
     )
     task = bar.add_task(title, label="")
 

@@ -33,7 +33,7 @@ def compare(
         ),
     ] = None,
     tolerance: Annotated[
-        float, typer.Option(help="Relative difference (L2) of a column that counts as none.", min=0.0, max=1.0)
+        float, typer.Option(help="Relative difference (L2) up to which a column counts as the same.", min=0.0, max=1.0)
     ] = 0.0,
     report: Annotated[
         Path | None, typer.Option("--out", "--report", help="Write a one-page report.", metavar="FILE.pdf")
@@ -84,7 +84,7 @@ def _print(answer: Answer) -> None:
             number = f"{answer.values[name]:.5g}" if name in answer.values else ""
             typer.echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
     for one in answer.alike:
-        typer.echo(f"\nthe same rows by {_listed(one)}; to tell them apart: {one['further_scene']}")
+        typer.echo(f"\n{_listed(one)} would give the same history here; to tell them apart, try {one['further_scene']}")
     if answer.evidence:
         typer.echo("\nevidence")
         for stage in answer.evidence:

@@ -47,9 +47,9 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
     from validation.report.front.found import found_scenes
     from validation.report.front.pages import front_pages
 
-    chapters: list[Part] = []
+    chapters: list[Part] = [PageBreak()]
     for study in studies:
-        chapters += [PageBreak(), *_chapter_or_why(results, study, figures)]
+        chapters += _chapter_or_why(results, study, figures)
     with _told(results, "the first and the last pages"):
         found, verdicts = found_scenes(results, studies), results.verdicts()
         front = front_pages(found, verdicts, studies, figures)

@@ -210,14 +210,12 @@ class DDA(Solver):
         own = set(features.of(scene))
         if features.ROTATION in own:
             return rotation_apart(scene)
-        if {features.SUB_BLOCKS, features.UNILATERAL, features.BASE_MOTION} <= own:
-            return (
-                f"it does not handle {features.BASE_MOTION}, {features.UNILATERAL} and {features.SUB_BLOCKS} together"
-            )
         if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
         if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
             return "a corner that pulls within its band rubs under lagged rules only"
+        if {features.CONSERVING, features.BASE_MOTION} <= own:
+            return f"it does not handle {features.BASE_MOTION} together with {features.CONSERVING}"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)

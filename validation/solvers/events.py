@@ -162,9 +162,14 @@ class Motion(Prepared):
         """Run the scene."""
         no_fields(self.name, self.scene, fields)
         check_columns(self.scene, self.names)
+        from fem_reference.events.switches import NoContactStateError
+
         began = perf_counter()
-        with naming(self.scene):
-            columns = dict(zip(self.names, self.moved(), strict=True))
+        try:
+            with naming(self.scene):
+                columns = dict(zip(self.names, self.moved(), strict=True))
+        except NoContactStateError as error:
+            return Run(Outcome.NO_CONTACT_STATE, notes=(f"{error}; any other load, however near, has one",))
         asked = {name: columns[name] for name in self.scene.run.columns}
         work = {"switches": len(self.found or ()), "steps": self.scene.time.steps}
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
@@ -234,9 +239,7 @@ class BlockMotion(Motion):
         )
 
     def _energies(self, found: block_events.BlockHistory) -> dict[str, Array]:
-        """Return the energies; none where the base moves, whose work is not among them."""
-        if self.scene.load.base_motion is not None:
-            return {}
+        """Return the energies; the work of the base is counted as that of the loads."""
         stored = {name: getattr(found, name) for name in STORED}
         none = dict.fromkeys(LOST[:2], np.zeros_like(found.time))
         return stored | none | {"switching": found.released, "friction": found.friction}

@@ -32,12 +32,15 @@ def start_energy(scene: Scene) -> float:
 def given_energy(scene: Scene) -> float:
     """Kinetic energy at t = 0, and what the loads put in until they stand still: springs, strain and gap [J].
 
-    m V^2 / 2 + F g0 + F^2 / (4 p) + F^2 h / (2 E a), with F their resultant and h the height of the block.
+    m V^2 / 2 + F g0 + F^2 / (4 p) + F^2 h / (2 E a), with F their resultant and h the height of the block; on a slope
+    the weight's part along it adds H^2 / (4 p_s).
     """
     F, b = pushing(scene), scene.block
+    along = mass(scene) * scene.load.gravity * math.sin(math.radians(scene.load.slope))
+    held = along**2 / (4 * scene.contact.shear) if scene.contact.shear else 0.0
     height = float(np.ptp([y for _, y in b.outline]))
     soft = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
-    return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * soft
+    return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * soft + held
 
 
 def summed(force: Array, step: float, late: float) -> Array:

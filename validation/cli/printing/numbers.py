@@ -21,7 +21,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 
 MOST_CASES = 200  # of a sweep that are looked at, evenly taken
-MOST_BLOCKS = 16  # sub-blocks whose modes are found at once; `damping` finds those of more
+MOST_BLOCKS = 4  # sub-blocks whose modes are found at once; `damping` finds those of more
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
+from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import console
 from validation.gates.gate import Verdict, said
 from validation.runs.case_name import CaseName
@@ -30,7 +31,7 @@ MOST = 20  # pairs that are shown
 
 
 def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
-    """Print one table, a row a gate: scene, pair, metric, value, band, verdict, seconds."""
+    """Print one table, a row a gate: scene, pair, metric, value, band, verdict, seconds; without seconds if narrow."""
     rows = results.rows()
     cases = [case for study in studies for case in results.manifest(study)["cases"]]
     seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
@@ -51,11 +52,33 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
             said(v.value),
-            f"{g.low:.4g} .. {g.high:.4g}",
+            _band(v),
             f"[{STYLES[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
         )
-    console().print(table)
+    printer = console()
+    if printer.measure(table, options=printer.options.update(width=10_000)).maximum <= printer.width:
+        printer.print(table)
+    else:
+        print_lines(_by_scene(verdicts))
+
+
+def _by_scene(verdicts: Sequence[Verdict]) -> Iterator[Line]:
+    """Yield the gates of each scene below its name: verdict, pair, metric, value and band."""
+    cells = [
+        (str(v.status), " | ".join(v.gate.pair), v.gate.id.rpartition(":")[2], said(v.value), _band(v))
+        for v in verdicts
+    ]
+    scene = ""
+    for v, row in zip(verdicts, in_columns(cells).splitlines(), strict=True):
+        if v.gate.scene != scene:
+            scene = v.gate.scene
+            yield printable(scene), ""
+        yield row, str(v.status)
+
+
+def _band(verdict: Verdict) -> str:
+    return f"{verdict.gate.low:.4g} .. {verdict.gate.high:.4g}"
 
 
 def _namer(cases: Iterable[str]) -> Callable[[str], str]:

@@ -8,16 +8,16 @@ from validation.report.blocks import Chapter
 
 # study name to "module:function"; a study without an entry gets DEFAULT_CHAPTER
 CHAPTERS: dict[str, str] = {
-    "core": "validation.report.chapters.core:chapter",
-    "two-codes": "validation.report.chapters.two_codes:chapter",
+    "core": "validation.report.chapters.block.core:chapter",
+    "two-codes": "validation.report.chapters.block.two_codes:chapter",
     "limits": "validation.report.chapters.limits.locking:chapter",
     "work-precision": "validation.report.chapters.work:chapter",
     "paper": "validation.report.chapters.paper:paper_chapter",
     "subblocks": "validation.report.chapters.subblocks:chapter",
     "stability": "validation.report.chapters.limits.stability:stability_chapter",
     "stability-small": "validation.report.chapters.limits.stability:stability_chapter",
-    "rocking": "validation.report.chapters.turning:rocking_chapter",
-    "toppling": "validation.report.chapters.turning:toppling_chapter",
+    "rocking": "validation.report.chapters.opened.turning:rocking_chapter",
+    "toppling": "validation.report.chapters.opened.turning:toppling_chapter",
     "impacts": "validation.report.chapters.opened.impacts:chapter",
     "rebound": "validation.report.chapters.opened.rebound:chapter",
     "slopes": "validation.report.chapters.slopes.sliding:chapter",

@@ -34,6 +34,7 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 MOST_PANELS = 10
+FEW = 4  # scenes of a study; of more of them a figure holds the first column alone
 CALM = 1.5  # times the time in which the slowest line settles
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
@@ -45,7 +46,8 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list
     if manifest.get("purpose"):
         blocks.append(Paragraph(manifest["purpose"]))
     for group in found:
-        blocks += scene_section(group, directory, apart=len(found) == 1)
+        shown = _columns(group)[:1] if len(found) > FEW else None
+        blocks += scene_section(group, directory, shown, apart=len(found) == 1)
     blocks += ledger_blocks(found, manifest["study"], directory) if len(found) > 1 else []
     return [*blocks, *budget_blocks(found[0], directory)] if len(found) == 1 else blocks
 

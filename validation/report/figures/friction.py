@@ -15,7 +15,7 @@ from validation.report.figures.histories import Margins, axes_grid, house_style
 from validation.runs.history import Array
 
 HEIGHT = 48.0  # mm
-Place = Literal["best", "upper left", "upper right", "lower left"]
+Place = Literal["best", "upper left", "upper center", "lower left"]
 
 
 @dataclass(frozen=True)
@@ -65,9 +65,10 @@ def _draw(axes: Axes, panel: Panel) -> None:
     if panel.logarithmic:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.yaxis.set_minor_formatter(NullFormatter())
-    else:
+    elif panel.traces:
         axes.set_xlim(0.0, float(np.max([np.max(trace.x) for trace in panel.traces])))
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
-    axes.legend(loc=panel.legend, frameon=False, fontsize=6, handlelength=1.6)
+    if panel.traces:
+        axes.legend(loc=panel.legend, frameon=False, fontsize=6, handlelength=1.6)

@@ -80,5 +80,5 @@ def drift_sentence(group: Group) -> str:
     if not drifts:
         return f"{steps} steps; the energy was not measured."
     largest = max(drifts)
-    said = f"{steps:,}".replace(",", "\u202f")
+    said = f"{steps:,}".replace(",", "\u00a0")
     return f"The energy drifts by {bounded(largest, power(largest))} at most over {said} steps."

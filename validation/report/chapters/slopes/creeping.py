@@ -29,8 +29,9 @@ SAID = (
     "The normal springs ring when the weight comes on. Each swing takes normal force off the base, friction lets go, "
     "and the block moves by some g/ω_n²: undamped it creeps for ever, by the order of g/ω_n = g √(m/2p) a second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
-    "the exact block does. Where friction is that of the pass before and stick and slip are not looked at, the block "
-    "goes on: with an open contact that closes only beyond a dead band, ever faster as the step is refined."
+    "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the pass "
+    "before and stick and slip are not looked at, the block goes on: with an open "
+    "contact that closes only beyond a dead band, ever faster as the step is refined."
 )
 
 
@@ -65,7 +66,7 @@ def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlo
     slips += [across(case) for case in exact[:1]]
     panels = (
         Panel("Slide", "t [s]", "slide [mm]", tuple(line for line in lines if len(line.x)), legend="upper left"),
-        Panel("Slip in a second", "dt [ms]", "slip [mm]", tuple(s for s in slips if len(s.x)), True, "upper right"),
+        Panel("Slip in a second", "dt [ms]", "slip [mm]", tuple(s for s in slips if len(s.x)), True, "upper center"),
     )
     return saved(panels_figure(panels), directory, "creep.svg", CAPTION)
 

@@ -51,7 +51,8 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     if found.get(study.SLIDING) and found.get(study.DRAG):
         blocks.append(trajectories(found[study.SLIDING], found[study.DRAG], directory))
     blocks += [Heading("Run-out", 2), run_outs(slides)] if slides else []
-    return [*blocks, *(thresholds(starts) if starts else [])]
+    shaken = found.get(study.SHAKEN)
+    return [*blocks, *(thresholds(starts) if starts else []), *(shaking(shaken) if shaken else [])]
 
 
 def trajectories(free: Group, braked: Group, directory: Path) -> FigureBlock:
@@ -140,3 +141,25 @@ def thresholds(cases: Sequence[Case]) -> Iterator[Block]:
         "g (sin β − tan φ cos β): the slope at which that passes through zero is the angle of friction."
     )
     yield Table(titles, tuple(rows), "Acceleration over the second half of each run.")
+
+
+def shaking(group: Group) -> Iterator[Block]:
+    """Yield the slides over a base that shakes, beside those of a rigid mass."""
+    titles = columns(
+        "decimal", "p/E", "slide, rigid [mm]", "slide, dda [mm]", "largest difference [mm]", "allowed [mm]"
+    )
+    rows = []
+    for case in group.cases:
+        own = {v["metric"]: v for v in group.verdicts if v["scene"] == case.name and v["pair"] == [study.RIGID]}
+        if not {"slide", "largest difference"} <= set(own):
+            continue
+        low, high = own["slide"]["band"]
+        found = (own["slide"]["value"], own["largest difference"]["value"])
+        said = (DASH if not isinstance(value, float) else plain(1e3 * value, 4) for value in found)
+        ratio = case.scene.contact.stiffness / case.scene.block.young
+        rows.append((plain(ratio, 3), plain(500 * (low + high), 5), *said, plain(500 * (high - low), 3)))
+    if rows:
+        yield Heading("A base that shakes", 2)
+        yield Table(
+            titles, tuple(rows), "Slide over a base that shakes at 2 Hz for two seconds: Newmark's sliding block."
+        )

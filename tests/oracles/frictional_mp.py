@@ -1,0 +1,88 @@
+"""A block that rubs on two corners, in many digits: every combination of open, stick and slip is tried."""
+
+from itertools import product
+
+from mpmath import mp, mpf
+from oracles.unilateral_mp import DIGITS, Oracle
+
+OPEN, STICK = 0, 1  # and 2, -2 for slip
+
+
+class Rubbing(Oracle):
+    """The displacement form: T of a slipping corner makes the matrix of the step unsymmetric."""
+
+    def __init__(self, model, scheme):
+        super().__init__(model, scheme)
+        beta = mpf(model.slope) * mp.pi / 180
+        weight = self.M[0, 0] * mpf(model.gravity)
+        self.F[0] += weight * mp.sin(beta)
+        self.F[1] += weight * (1 - mp.cos(beta))
+        if scheme.start == "consistent":
+            self.A = self.M**-1 * self.F
+        self.mu, self.c = mpf(model.contact.friction), mpf(model.contact.cohesion)
+
+    def step(self):
+        """Advance by one step; return (u, v, r), N of both corners, T of both corners."""
+        found = [trial for trial in map(self._tried, product((OPEN, STICK, 2, -2), repeat=2)) if trial]
+        assert len(found) == 1, "the oracle needs exactly one contact state"
+        D1, N, T, self.r, self.closed = found[0]
+        push = mp.zeros(6, 1)
+        for c in (0, 1):
+            push += N[c] * self.normal[c].T + T[c] * self.shear[c].T
+        A1 = self.M**-1 * (self.F - self.K0 * D1 + push)
+        self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
+        self.D, self.A = D1, A1
+        return [D1[0], D1[1], D1[2]], N, T
+
+    def _tried(self, states):
+        shares = [mpf(1) if was else mpf(1) / 2 for was in self.closed]
+        for _ in range(400):
+            D1 = self._rubbed(states, shares)
+            gaps = [self.g0 + (row * D1)[0] for row in self.normal]
+            new = self._shares(gaps)
+            if max(abs(x - y) for x, y in zip(new, shares, strict=True)) < mpf(10) ** (10 - DIGITS):
+                return self._agreed(D1, gaps, states, shares)
+            shares = new
+        return None
+
+    def _rubbed(self, states, shares):
+        h = self.alpha * self.dt**2
+        star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
+        S, b = self.M + h * self.K0, self.M * star + h * self.F
+        for i, state in enumerate(states):
+            if state == OPEN:
+                continue
+            n, s, sign = self.normal[i], self.shear[i], mpf(state) / 2
+            S += h * self.p * n.T * n
+            b -= h * self.p * self.g0 * n.T
+            if state == STICK:
+                S += h * self.ps * shares[i] * s.T * s
+                b += h * self.ps * shares[i] * self._reference(i) * s.T
+            else:  # T = -sign (mu N + c), N = -p w
+                S -= h * sign * self.mu * self.p * s.T * n
+                b += h * sign * (self.mu * self.p * self.g0 - self.c) * s.T
+        return mp.lu_solve(S, b)
+
+    def _agreed(self, D1, gaps, states, shares):
+        N, T, r = [mpf(0)] * 2, [mpf(0)] * 2, [mpf(0)] * 2
+        for i, (state, w) in enumerate(zip(states, gaps, strict=True)):
+            if (w < 0) != (state != OPEN):
+                return None
+            if state == OPEN:
+                continue
+            N[i], s = -self.p * w, (self.shear[i] * D1)[0]
+            moved, limit = shares[i] * (s - self._reference(i)), self.mu * N[i] + self.c
+            T[i] = -self.ps * moved if state == STICK else -mpf(state) / 2 * limit
+            if state == STICK and abs(T[i]) > limit:
+                return None
+            if state != STICK and state * (moved + T[i] / self.ps) < 0:
+                return None
+            r[i] = s + T[i] / self.ps
+        return D1, N, T, r, tuple(state != OPEN for state in states)
+
+
+def history(model, scheme, steps):
+    """Return (u, v, r) [m, m, 1], the normal forces and the shear forces [N] of every step."""
+    with mp.workdps(DIGITS):
+        oracle = Rubbing(model, scheme)
+        return [oracle.step() for _ in range(steps)]
