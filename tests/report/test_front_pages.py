@@ -115,7 +115,7 @@ def test_the_force_is_judged_at_rest_and_on_the_way() -> None:
 def test_the_step_is_told_with_the_damping_as_run_and_the_step_for_five_per_cent() -> None:
     _, said = first.steps(FOUND, PAPER)
     assert "37.2\u00a0% at 10\u00a0ms, 8.45\u00a0% at 1\u00a0ms of critical at p = 1E" in said
-    assert "for 5\u00a0% take dt = 0.584\u00a0ms (page 2)" in said
+    assert "for 5\u00a0% take dt = 0.584\u00a0ms (decision 1)" in said
 
 
 def test_stiff_springs_are_told_with_their_steps_and_their_ring() -> None:

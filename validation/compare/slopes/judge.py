@@ -58,20 +58,19 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     weight, softness = _fitted(plain, scheme, place[:FITTED])
     body = plain.heavier(weight).softer(softness)
     soft = _compliance(scene, body, softness)
-    if not HARDER <= soft <= BENIGN:
-        body = replace(body, shear=body.shear * math.exp(-softness))  # springs of another stiffness, not a base
-    motion = motion_of(place, scheme, body)
-    runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
-    tolerance = max(CLOSE, _digits(scheme, body, rounding, runs["consistent"]))
+    yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
+    bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
+    tried = [_Tried.of(one, scheme, place, rounding) for one in bodies]
+    chosen = max(tried, key=lambda one: max(one.shares.values()))
+    body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
     own = scene.contact.rules
-    right = {name: _right(body, run, tolerance) for name, run in runs.items()}
     telling = _telling(body, runs, tolerance)
     best = _law(right, telling, own)
     run = runs[best]
     normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
     band = _band(body, run)
     causes, values = _causes(scene, weight, softness, soft, best, band)
-    shares = {name: float(np.mean(held[run.settled])) for name, held in right.items()}
+    shares = chosen.shares
     active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
     held = shares[best] >= MOST and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
     sound = normal <= NORMAL and held and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
@@ -83,6 +82,27 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     first = min(firsts, default=1 if "springs-factor" in causes else None)
     named = tuple(name for name in causes if not name.endswith("?"))
     return Found(named, values, sound, best == "lagged", shares, int(telling.sum()), normal, tolerance, first, opened)
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A motion followed by both laws: the steps in which each holds, and how often."""
+
+    body: Body
+    runs: dict[str, Followed]
+    right: dict[str, np.ndarray]
+    shares: dict[str, float]
+    tolerance: float
+
+    @classmethod
+    def of(cls, body: Body, scheme: Scheme, place: Array, rounding: Array) -> _Tried:
+        """Follow it."""
+        motion = motion_of(place, scheme, body)
+        runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
+        tolerance = max(CLOSE, _digits(scheme, body, rounding, runs["consistent"]))
+        right = {name: _right(body, run, tolerance) for name, run in runs.items()}
+        shares = {name: float(np.mean(held[runs[name].settled])) for name, held in right.items()}
+        return cls(body, runs, right, shares, tolerance)
 
 
 def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
@@ -120,15 +140,21 @@ def _limit(body: Body, run: Followed) -> float:
     return body.coefficient * run.scale + body.cohesion or 1.0
 
 
+def _limits(body: Body, run: Followed) -> Array:
+    """Return the limit of friction at each step, of the larger resultant there or a step before, or of the mean [N]."""
+    pressed = np.maximum(run.shown[:, 1], np.concatenate(([0.0], run.shown[:-1, 1])))
+    return np.asarray(body.coefficient * np.maximum(pressed, run.scale) + body.cohesion)
+
+
 def _right(body: Body, run: Followed, tolerance: float) -> np.ndarray:
     """Return the steps in which a law gives the force that the motion shows."""
-    return np.asarray(np.abs(run.given - run.shown)[:, 0] <= tolerance * _limit(body, run))
+    return np.asarray(np.abs(run.given - run.shown)[:, 0] <= tolerance * _limits(body, run))
 
 
 def _telling(body: Body, runs: dict[str, Followed], tolerance: float) -> np.ndarray:
     """Return the steps in which two laws ask for forces that digits tell apart."""
     one, other = runs.values()
-    apart = np.abs(one.given - other.given)[:, 0] > 3 * tolerance * _limit(body, one)
+    apart = np.abs(one.given - other.given)[:, 0] > 3 * tolerance * _limits(body, one)
     return np.asarray(apart & one.settled & other.settled)
 
 
