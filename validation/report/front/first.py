@@ -85,9 +85,7 @@ def force(found: Found) -> tuple[str, str] | None:
     rests = [case.number("dda", "pressure.static") for case, _, _ in rows]
     right = all(value is not None and abs(value / scene.load.pressure - 1) < SETTLED for value in rests)
     spoken = ", ".join(f"{percent(error)} at {milliseconds(case.scene.time.step)}" for case, _, error in rows)
-    at_rest = (
-        f"every run comes to rest at {scene.load.pressure / 1e6:g} MPa" if right else "not every run rests at the load"
-    )
+    at_rest = f"every run tends to {scene.load.pressure / 1e6:g} MPa" if right else "not every run tends to the load"
     return (
         "Is DDA's force right?",
         f"At rest {'yes' if right else 'no'}: {at_rest}; on the way not: against the bar the contact pressure is "
