@@ -19,6 +19,7 @@ from conftest import SCENE, typed
 from gallery.browser import absent, chromium
 
 from dda.scheme import spectral
+from fem_reference.events.restitution import ContactScheme, statistics
 from validation.advice import contact, rayleigh
 from validation.advice.advice import SEARCHES
 from validation.engine import run_study
@@ -28,7 +29,6 @@ from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.rigid.impacts import impact_statistics
 from validation.studies.catalogue import scene_study
 
 pytestmark = [
@@ -204,8 +204,9 @@ def test_formulas_of_a_rebound(opened: Callable[..., Any]) -> None:
     for i, s in enumerate(random_settings()):
         omega = float(10 ** np.linspace(-1.5, 1.0, SETTINGS)[i])
         found = page.evaluate("([s, omega]) => formulas.impact_statistics(s, omega)", [s, omega])
-        expected = impact_statistics(s["alpha"], s["delta"], s["gg"], omega)
-        agrees([found[name] for name in ("mean", "low", "high", "energy")], expected, 1.0)
+        expected = statistics(ContactScheme(s["alpha"], s["delta"], s["gg"]), omega)
+        names = {"mean": expected.mean, "low": expected.low, "high": expected.high, "energy": expected.mean_square}
+        agrees(found, names, 1.0)
 
 
 # ---- calculators, as the command line --------------------------------------------------------------------------------
@@ -375,3 +376,13 @@ def test_printed_pages_have_no_controls_and_all_verdicts(opened: Callable[..., A
     assert light(page.evaluate("getComputedStyle(document.documentElement).color")) == 0
     assert page.locator(".gates tbody tr").count() == 4
     assert len(page.pdf()) > 10_000
+    page = opened("scene-swept.html", 1400, color_scheme="dark")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")  # charts are drawn anew, on white and as wide as a page
+    assert page.locator(".histories .uplot").bounding_box()["width"] <= 680
+    dark = (
+        "(() => { const c = document.querySelector('canvas');"
+        " const all = c.getContext('2d').getImageData(0, 0, c.width, c.height);"
+        " let n = 0; for (let i = 0; i < all.data.length; i += 4) n += all.data[i + 3] > 200 && all.data[i] < 60;"
+        " return n; })()"
+    )
+    assert page.evaluate(dark) > 100  # the exact bar is black again

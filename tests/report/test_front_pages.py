@@ -104,18 +104,18 @@ def test_the_force_is_judged_at_rest_and_on_the_way() -> None:
     head, said = first.force(FOUND)  # type: ignore[misc]
     assert head == "Is DDA's force right?"
     assert said == (
-        "At rest yes: every run comes to rest at 5 MPa; on the way not: against the bar the contact pressure is off by "
+        "At rest yes: every run tends to 5 MPa; on the way not: against the bar the contact pressure is off by "
         "0.7\u00a0% at 10\u00a0ms, 4\u00a0% at 2\u00a0ms, 74\u00a0% at 0.1\u00a0ms (relative L2 over 1.0 s, p = 1E)."
     )
     wrong = made_group(case(pressure__static=4.9e6), comparisons=FOUND["model-form"].comparisons)
-    assert "At rest no: not every run rests at the load" in first.force({"model-form": wrong})[1]  # type: ignore[index]
+    assert "At rest no: not every run tends to the load" in first.force({"model-form": wrong})[1]  # type: ignore[index]
     assert first.force({}) is None and first.beware({}) is None and first.springs({}) is None
 
 
 def test_the_step_is_told_with_the_damping_as_run_and_the_step_for_five_per_cent() -> None:
     _, said = first.steps(FOUND, PAPER)
     assert "37.2\u00a0% at 10\u00a0ms, 8.45\u00a0% at 1\u00a0ms of critical at p = 1E" in said
-    assert "for 5\u00a0% take dt = 0.584\u00a0ms (page 2)" in said
+    assert "for 5\u00a0% take dt = 0.584\u00a0ms (decision 1)" in said
 
 
 def test_stiff_springs_are_told_with_their_steps_and_their_ring() -> None:

@@ -27,7 +27,7 @@ ANSWERS = {  # question -> what is read on which page
         1: "the contact rings: it flips sign each step",
         3: "At p = 100E they give way by 0.05 mm",
     },
-    "is DDA's force right": {1: "At rest yes: every run comes to rest at 5 MPa; on the way not"},
+    "is DDA's force right": {1: "At rest yes: every run tends to 5 MPa; on the way not"},
     "what does gg = 0.98 do": {1: "It takes 2 % of the velocity each step", 4: "gg = 0.98 per step is 1.52 % at 2 ms"},
     "what must I not believe": {1: "What must I not believe? The agreement at a long step: 0.813 % at 10 ms"},
 }

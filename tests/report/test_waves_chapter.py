@@ -64,8 +64,7 @@ def test_parts_of_the_study_make_parts_of_the_chapter(tmp_path: Path) -> None:
     blocks = told(part("waves-discount"), tmp_path)
     assert [type(block) for block in blocks] == [Heading, Paragraph, Table]
     page = chapter_of("")(Results(tmp_path / "results"), Results(tmp_path / "results").whole("waves"), tmp_path)
-    titles = [block.text for block in page if isinstance(block, Heading)]
-    assert "Damping, settling and peaks" not in titles
+    assert not [block for block in page if isinstance(block, Table)]  # a column has no first axial mode to tell
     assert told(part("waves-site-usual"), tmp_path / "site")[-1].file == "waves-site.svg"  # type: ignore[union-attr]
 
 

@@ -7,7 +7,9 @@ import pytest
 from conftest import SCENE
 
 from validation import load_scene, solve
+from validation.advice.friction import friction_alarms
 from validation.errors import InputError
+from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver, solver_names
 
@@ -74,6 +76,14 @@ def test_the_contact_record_balances(prepared):
     mass, fallen = 2700.0 * 2.5, record.velocity + 9.81 * record.time
     assert np.max(np.abs(record.impulse - mass * fallen)) < 1e-9 * record.impulse[-1]
     assert np.max(record.penetration) > 0 and record.force[-1] > 0
+
+
+def test_a_block_that_is_let_go_on_a_corner_does_not_creep(prepared, scene):
+    rubbing = scene.with_values({"contact.friction": 45.0})
+    row = Row("", "", scene.name, "dda", Outcome.COMPLETED, {"contact.slip_rate": 0.1})
+    standing = rubbing.with_values({"block.tilt": 0.0, "time.steps": 2000})
+    assert not list(friction_alarms(rubbing, {"dda": row}))
+    assert [alarm.kind for alarm in friction_alarms(standing, {"dda": row})] == ["creep of a stable block"]
 
 
 def test_rotation_is_the_default_of_no_scene(scene):

@@ -135,7 +135,7 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     if name is None or features.FRICTION not in features.of(scene):
         return
     yield from _stateless(scene, rows[name])
-    found = sliding(scene)
+    found = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
         said = (
             "a slipping corner has the friction of the pass before: a stable block creeps, the faster the finer the "

@@ -3,6 +3,7 @@
 (() => {
   const STEPS = 65534, NONE = 65535;  // of a value in two bytes, see validation/gallery/histories.py
   const { written } = numerals;
+  let printing = false;
   const charts = [];  // functions that draw again, for another width or another colour scheme
 
   function element(name, properties = {}, ...children) {
@@ -12,7 +13,8 @@
   }
 
   const data_of = (place) => JSON.parse(place.querySelector("script.data").textContent);
-  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const PAPER = { "--text": "#000", "--soft": "#333", "--line": "#ccc" }, PAPER_WIDTH = 680;  // px
+  const color = (name) => printing ? PAPER[name] : getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const dark = matchMedia("(prefers-color-scheme: dark)");
 
   // A line that is not seen on a dark ground: black becomes the colour of the text, a dark colour is lightened
@@ -24,8 +26,6 @@
     return luminance < 0.1 ? `color-mix(in srgb, ${line} 60%, white)` : line;
   }
 
-  let printing = false;
-
   // ---- charts ------------------------------------------------------------------------------------------------------
 
   // spec: x, lines [{label, color, dash, width, y, points}], xlabel, ylabel, log, logy, range, at (a marked x)
@@ -36,7 +36,7 @@
       font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 18 };
     const values = (u, splits) => splits.map((v) => v === null ? "" : written(v, 6));
     const options = {
-      width: Math.max(280, place.clientWidth), height: place.clientWidth < 600 ? 260 : 340,
+      width: Math.max(280, Math.min(place.clientWidth, printing ? PAPER_WIDTH : Infinity)), height: place.clientWidth < 600 ? 260 : 340,
       scales: { x: { time: false, distr: spec.log ? 3 : 1, range: (u, low, high) => [low, high] }, y: { distr: spec.logy ? 3 : 1, range: spec.range } },
       axes: [{ ...axis, label: spec.xlabel, values, ...(spec.log ? logarithmic : {}) },
         { ...axis, label: spec.ylabel, size: 62, values, ...(spec.logy ? logarithmic : {}) }],

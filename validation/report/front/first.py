@@ -85,9 +85,7 @@ def force(found: Found) -> tuple[str, str] | None:
     rests = [case.number("dda", "pressure.static") for case, _, _ in rows]
     right = all(value is not None and abs(value / scene.load.pressure - 1) < SETTLED for value in rests)
     spoken = ", ".join(f"{percent(error)} at {milliseconds(case.scene.time.step)}" for case, _, error in rows)
-    at_rest = (
-        f"every run comes to rest at {scene.load.pressure / 1e6:g} MPa" if right else "not every run rests at the load"
-    )
+    at_rest = f"every run tends to {scene.load.pressure / 1e6:g} MPa" if right else "not every run tends to the load"
     return (
         "Is DDA's force right?",
         f"At rest {'yes' if right else 'no'}: {at_rest}; on the way not: against the bar the contact pressure is "
@@ -106,7 +104,9 @@ def steps(found: Found, paper: Scene) -> tuple[str, str]:
         if (xi := case.number("dda", "mode1.damping")) is not None:
             measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
     wanted = closed.step_for(paper, WANTED)
-    take = f"for {100 * WANTED:g}\u00a0% take dt = {1e3 * wanted:.3g}\u00a0ms (page 2)" if wanted else "see page 2"
+    take = (
+        f"for {100 * WANTED:g}\u00a0% take dt = {1e3 * wanted:.3g}\u00a0ms (decision 1)" if wanted else "see decision 1"
+    )
     return (
         "Which time step?",
         f"The step is the damping: constant acceleration damps the first mode by {', '.join(measured)} of "
@@ -131,7 +131,7 @@ def springs(found: Found) -> tuple[str, str] | None:
         f"{numbers[1]:.0f} steps instead of {numbers[0]:.0f}), but the contact rings: it flips sign each step and "
         f"keeps {percent(radius)} of its swing, so that the pressure needs {numbers[3]:.0f} steps to come within "
         f"0.01\u00a0% of rest and the displacement {numbers[2]:.0f}, at "
-        f"dt = {milliseconds(stiff.scene.time.step)} (page 3).",
+        f"dt = {milliseconds(stiff.scene.time.step)} (decision 2).",
     )
 
 
@@ -146,7 +146,7 @@ def discount(paper: Scene) -> tuple[str, str]:
         f"What does gg = {DISCOUNT:g} do?",
         f"It takes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity each step, not each second: alone, under average "
         f"acceleration, it damps the first mode by {', '.join(spoken)} of critical; hold "
-        "the rate instead, gg = exp(−c dt) (page 4).",
+        "the rate instead, gg = exp(−c dt) (decision 3).",
     )
 
 

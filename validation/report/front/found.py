@@ -38,11 +38,6 @@ def case_where(group: Group | None, fits: Callable[[Scene], bool]) -> Case | Non
     return next((case for case in group.cases if fits(case.scene)), None) if group else None
 
 
-def at_step(step: float) -> Callable[[Scene], bool]:
-    """Return the question whether a scene has this time step [s]."""
-    return lambda scene: abs(scene.time.step / step - 1) < 1e-9
-
-
 def at_ratio(ratio: float, alpha: float | None = None) -> Callable[[Scene], bool]:
     """Return the question whether a scene has this p/E, and this alpha if one is named."""
     return lambda scene: abs(ratio_of(scene) / ratio - 1) < 1e-9 and alpha in (None, scene.time.alpha)
