@@ -26,6 +26,7 @@ NAMED = {
     "advice/advice.py": {"dda", "fem", "continuum"},
     "compare/diagnosis.py": {"dda", "fem", "bar", "continuum"},
     "compare/other_solvers.py": {"fem", "continuum"},
+    "compare/slopes/forward.py": {"dda"},
 }
 
 

@@ -157,7 +157,7 @@ def _consistent(k, ahead, D, r0, states):
     s, tried, order = k.s, 0, itertools.product((STICK, 2, -2, OPEN), repeat=2)
     queue, passing, r = tuple(states), True, r0
     while True:
-        for _ in range(3):  # the crossing depends on the step's end
+        for _ in range(60):  # the crossing depends on the step's end
             D1 = k.solve(ahead, queue, r)
             moved = _reference(k, D, D1, r0)
             if np.max(np.abs(moved - r)) <= 1e-15:

@@ -309,7 +309,7 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     found = judge(scene, read.place, read.step, read.rounding)
     ids = answer.ids_of(found, read)
     t = scene.time
-    left = float(f"{1 - max(found.shares.values()):.4g}")
+    left = float(f"{min(1.0, np.nanmax([1 - max(found.shares.values()), found.run.left])):.4g}")
     near = {"causes": list(found.causes), "values": found.values, "left": left}
     return Answer(
         {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from validation.compare.evidence import Stage
 from validation.compare.fits.rectangle import upright
 from validation.compare.reading import SIDEWAYS, Foreign, steppings
 from validation.compare.sentences import per_cent, scheme_words
-from validation.compare.slopes.judge import BLURRED, CLOSE, NORMAL, Found
+from validation.compare.slopes.judge import BLURRED, NORMAL, Found
 from validation.compare.slopes.motion import body_of
 from validation.errors import InputError
 from validation.runs.history import Array
@@ -54,8 +55,15 @@ def read(scene: Scene, foreign: Foreign) -> Read:
         )
     stepping = steppings(foreign, scene.time.step)[0]
     steps = stepping.steps
-    if len(stepping.rows) != len(steps) or np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
-        raise InputError(f"{scene.name}: time: with friction a history must show every step, all alike, got others")
+    if len(stepping.rows) != len(steps):
+        last, rows = float(np.max(np.diff(foreign.time))), len(stepping.rows)
+        raise InputError(
+            f"{scene.name}: time: with friction a history must show every step, got one of {len(steps) // rows} or so: "
+            f"its rows are {last:.6g} s apart, the scene's step is {scene.time.step:.6g} s; if that is the program's "
+            f"step, use --set time.step={last:.6g}"
+        )
+    if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
+        raise InputError(f"{scene.name}: time: with friction all steps must be alike, in seconds, got others")
     place = np.column_stack([foreign.sideways, foreign.displacement])
     no_digits = np.zeros(len(place))
     units = [no_digits if unit is None else unit for unit in (foreign.sideways_rounding, foreign.rounding)]
@@ -105,8 +113,11 @@ def stages(found: Found, read: Read) -> list[Stage]:
     numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
     right = "signs and columns are the scene's" if not read.slips else "a sign is turned"
     pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
+    run = found.run
+    left = None if math.isnan(run.left) else run.left
     return [
         Stage("reading", not read.slips, right, {}),
+        Stage("motion", run.same, _motion(found), {"misfit": left}),
         Stage("normal forces", found.normal <= NORMAL, pressed, {"misfit": found.normal, "allowed": NORMAL}),
         Stage(
             "friction",
@@ -117,6 +128,17 @@ def stages(found: Found, read: Read) -> list[Stage]:
     ]
 
 
+def _motion(found: Found) -> str:
+    """Return what the suite's own run leaves of the displacements, in words."""
+    run = found.run
+    if math.isnan(run.left):
+        return "the suite has no run of it"
+    part = f" up to step {run.until}, from where on the scene makes much of rounding" if run.until else ""
+    if run.same:
+        return f"the suite's own run gives the displacements to their digits or noise{part}"
+    return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
+
+
 def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
     """Return the first line of the answer."""
     t = scene.time
@@ -125,13 +147,13 @@ def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
     held = f"{law} friction gives the force of {100 * found.shares[law]:.4g} % of the steps"
     if not found.explained:
         why = "the digits of the file do not show its forces" if found.tolerance > BLURRED else f"at best, {held}"
-        return f"Departs, not explained: {why}; the normal law leaves {per_cent(found.normal, 2)} %."
+        normal = f"the normal law leaves {per_cent(found.normal, 2)} %"
+        return f"Departs, not explained: {why}; {normal}; {_motion(found)}."
     faults = [_fault(name, found) for name in ids if not CAUSES[name].benign]
     benign = [_benign(name, found) for name in ids if CAUSES[name].benign]
     allowed = f", allowing for {' and '.join(benign)}" if benign else ""
     if not faults:
-        blunt = f" within {per_cent(found.tolerance, 2)} %" if found.tolerance > CLOSE else ""
-        return f"Same model, same scheme: {own}{allowed}; {held}{blunt}."
+        return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
     where = f" from step {found.first} on" if found.first else ""
     return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
 

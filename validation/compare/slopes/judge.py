@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from validation.compare.slopes.forward import NO_RUN, SURROUNDINGS, Agreement, agreement, at_step, surrounded
 from validation.compare.slopes.laws import Followed, follow
 from validation.compare.slopes.motion import Body, Scheme, body_of, motion_of
 from validation.runs.history import Array
@@ -22,6 +23,7 @@ FEWEST, FEW_RIGHT = 2, 0.3  # steps that tell two laws apart, and the share of t
 NORMAL = 0.002  # relative root mean square that the normal law may leave: moving geometry and a base
 WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or to none
 YIELDS, BENIGN, HARDER = 5e-4, 0.05, -0.01  # share of the static displacement: what counts as a base, what it may add
+POWERS = (0.0, 0.5, 1.5)  # of the factor on the springs across the base, for those along it: what rules it out for them
 DEEP = 0.05  # of the mean penetration: what an open corner may show of it before a dead band is in question
 
 
@@ -39,10 +41,14 @@ class Found:
     tolerance: float  # of the limit of friction, within which a law holds
     first: int | None  # step, from 1, at which the scene's own law is left
     opened: tuple[int, int] | None  # first and last step with both corners open
+    run: Agreement = NO_RUN  # what the suite's own run leaves, of the scene, or of what surrounds the block
 
 
 def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     """Judge displacements of the centroid along and across the base against a scene's contact.
+
+    The same is said only of what the scene's own run gives, or its run with what surrounds the block; the laws say how
+    another history departs.
 
     Parameters
     ----------
@@ -55,6 +61,25 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     rounding
         Units of their last digits [m], (steps, 2).
     """
+    exact = at_step(scene, step, len(place))
+    run = agreement(exact, place, rounding)
+    found, fitted = _by_laws(scene, place, step, rounding)
+    if run.same and (run.until is None or found.shares[scene.contact.rules] >= MOST_SLIPS):
+        return replace(found, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
+    run = replace(run, same=False)
+    if not found.explained or not set(found.causes) <= SURROUNDINGS:
+        return replace(found, run=run)
+    if found.causes:
+        run = surrounded(exact, found.causes, fitted, place, rounding)
+    return replace(found, explained=run.same, run=run)
+
+
+def _lags(scene: Scene) -> bool:
+    return scene.contact.rules == "lagged"
+
+
+def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[Found, tuple[float, float]]:
+    """Return what the forces of a motion show, and the fitted weight [-] and softness [ln]."""
     scheme, plain = Scheme.of(scene, step), body_of(scene)
     weight, softness = _fitted(plain, scheme, place[:FITTED])
     body = plain.heavier(weight).softer(softness)
@@ -71,6 +96,8 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
     band = _band(body, run)
     causes, values = _causes(scene, weight, softness, soft, best, band)
+    if "springs-factor" in causes and not _along_too(yields, softness, scheme, place, best):
+        causes[causes.index("springs-factor")] = "springs-factor?"
     shares = chosen.shares
     active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
     least = MOST if telling.sum() < MANY else MOST_OF_MANY
@@ -83,7 +110,9 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     opened = (int(both[0]) + 1, int(both[-1]) + 1) if len(both) else None
     first = min(firsts, default=1 if "springs-factor" in causes else None)
     named = tuple(name for name in causes if not name.endswith("?"))
-    return Found(named, values, sound, best == "lagged", shares, int(telling.sum()), normal, tolerance, first, opened)
+    told = int(telling.sum())
+    found = Found(named, values, sound, best == "lagged", shares, told, normal, tolerance, first, opened)
+    return found, (weight, softness)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +149,17 @@ def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
     start = min(starts, key=lambda z: float(np.linalg.norm(left(z))))
     found = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
     return float(found.x[0]), float(found.x[1])
+
+
+def _along_too(body: Body, softness: float, scheme: Scheme, place: Array, law: str) -> bool:
+    """Whether springs along the base by the factor of those across it suit a motion better than by its other powers."""
+
+    def left(power: float) -> float:
+        tried = replace(body, shear=body.shear * math.exp((1 - power) * softness))
+        run = follow(tried, motion_of(place, scheme, tried), law == "lagged")
+        return float(np.mean(np.abs(run.given - run.shown)[run.settled, 0]))
+
+    return left(1.0) < 0.5 * min(left(power) for power in POWERS)
 
 
 def _compliance(scene: Scene, body: Body, softness: float) -> float:
