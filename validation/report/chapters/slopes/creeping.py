@@ -27,7 +27,7 @@ CAPTION = (
 )
 SAID = (
     "The normal springs ring when the weight comes on. Each swing takes normal force off the base, friction lets go, "
-    "and the block moves by some g/ω_n²: undamped it creeps for ever, by the order of g/ω_n = g √(m/2p) a second. "
+    "and the block moves by some g/ωₙ²: undamped it creeps for ever, by the order of g/ωₙ = g √(m/2p) a second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
     "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the pass "
     "before and stick and slip are not looked at, the block goes on: with an open "
@@ -143,5 +143,5 @@ def by_step(found: Mapping[str, Group]) -> Table:
     titles = columns(
         "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "a program of the trade [mm]"
     )
-    caption = f"Slip in a second. g/ω_n = {1e3 * scale:.3g} mm/s for the block under its own weight."
+    caption = f"Slip in a second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
     return Table(titles, tuple(rows), caption)

@@ -27,7 +27,7 @@ CAPTION = (
     "continuous drag (line) and runs (circles)."
 )
 SAID = (
-    "While every corner slips one way or is open, u_t + tan φ u_n of the centroid moves freely under "
+    "While every corner slips one way or is open, the centroid's uₜ + uₙ tan φ moves freely under "
     "g (sin β − tan φ cos β) − c a / m, whatever springs, step and scheme, through bounces too. The springs put the "
     "block ahead by tan φ times its settlement, at any step: this is what papers call the penalty error of sliding. "
     "A discount is a drag of −ln(gg)/dt per second, in sliding and in flight alike: gg without dt says nothing."
