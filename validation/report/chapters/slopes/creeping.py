@@ -19,7 +19,7 @@ from validation.runs.results import Results
 from validation.studies.slopes import creep as study
 
 CONSTANT, AVERAGE = "constant acceleration", "average acceleration"
-ORANGE, BLUE, GREEN, BLACK = "#d55e00", "#0072b2", "#009e73", "black"
+ORANGE, AMBER, BLUE, GREEN, BLACK = "#d55e00", "#e69f00", "#0072b2", "#009e73", "black"
 CAPTION = (
     "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip in a second "
     "over the step; the exact block's is drawn across. Lagged friction with dead bands is that of another load, nine "
@@ -55,7 +55,7 @@ def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlo
     exact = [case for case in cases(found, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
     steps = cases(found, study.STEPS)
-    for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, GREEN)):
+    for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, AMBER)):
         lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
     lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
     kinds = ((CONSTANT, "(1/2, 1), consistent", ORANGE), (AVERAGE, "(1/4, 1/2), consistent", BLUE))
