@@ -21,6 +21,8 @@ from validation.studies.slopes import creep as study
 CONSTANT, AVERAGE = "constant acceleration", "average acceleration"
 ORANGE, AMBER, BLUE, GREEN, BLACK = "#d55e00", "#e69f00", "#0072b2", "#009e73", "black"
 CAPTION = (
+    "Constant acceleration stops the creep, average acceleration keeps it, and lagged friction with dead bands speeds "
+    "it up as the step is refined. "
     "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip in a second "
     "over the step; the exact block's is drawn across. Lagged friction with dead bands is that of another load, nine "
     "times the weight, and is laid beside a program of the trade (circles)."

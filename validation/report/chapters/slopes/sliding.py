@@ -22,6 +22,7 @@ OURS, ALONG = "dda", "horizontal_displacement"
 ORANGE, BLUE, GREY = "#d55e00", "#0072b2", "#666666"
 RATES = np.geomspace(0.1, 100.0, 61)  # 1/s
 CAPTION = (
+    "DDA follows the closed form down the incline, and a discount brakes it as a drag. "
     "Left: way of the block down its incline, dda (lines) and the closed form (dashed), without a discount and with "
     "gg = 0.98 and 0.99 a step. Right: share of its way that a body goes in a second, over the rate of the drag: "
     "continuous drag (line) and runs (circles)."
