@@ -133,6 +133,36 @@ def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path,
     check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
 
 
+def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a corner that opens keep the shear reference that it had."""
+
+    def faulty(length: Any, D: Any, before: Any, after: Any) -> Any:
+        found = sound(length, D, before, after)
+        slipped = after.slipped or [0.0] * len(after.closed)
+        pairs = zip(before.reference, found.reference, slipped, strict=True)
+        return found._replace(reference=tuple(new if way else old for old, new, way in pairs))
+
+    return faulty
+
+
+SPRINGS = [
+    Fault("shear reference kept while open", DDA, seams.DDA_REFERENCES, kept_reference),
+    Fault("gravity a hundredth high", DDA, seams.DDA_OPENED,
+          of_model(lambda model: {"gravity": 1.01 * model.gravity})),
+    Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
+    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
+    Fault("no friction in the exact motion", ("block-events",), seams.EVENTS_BLOCK,
+          lambda sound: lambda problem, *a, **k: sound(replace(problem, friction=0.0), *a, **k)),
+]  # fmt: skip
+
+
+@pytest.mark.long
+def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    gates = list(creep.stiffness_gates())
+    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
+    check_kill_matrix(creep.STUDY, own, gates, SPRINGS, tmp_path, finished_cases)
+
+
 def test_dda_is_the_plain_program_step_by_step() -> None:
     """The oracle shares no line with it; consistent and lagged, sticking, slipping and open."""
     for rules in ("consistent", "lagged"):
