@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault
@@ -21,7 +22,9 @@ from validation.engine.run import finish
 from validation.gates import friction
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
+from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
+from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.bands import cases
 from validation.studies.slopes import creep, sliding
 
@@ -83,6 +86,17 @@ FAULTS = [
 @pytest.mark.long
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.gates(), FAULTS, tmp_path, finished_cases)
+
+
+def test_the_record_of_the_shaking_is_its_formula() -> None:
+    record = base_record(next(cases(sliding.QUAKE)))
+    assert record is not None
+    t = record.time
+    parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
+    swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
+    assert record.x == pytest.approx((t / 0.4) ** 3 * np.exp(3 - 3 * t / 0.4) * swings, rel=1e-9, abs=1e-12)
+    ways = [{way for _, way in rigid_slide(case, smooth=True).switches} for case in cases(sliding.QUAKE)]
+    assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
 
 
 def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:

@@ -101,6 +101,15 @@ def creep_scale(scene: Scene) -> float:
     return scene.load.gravity / normal_frequency(scene)
 
 
+def lag(scene: Scene) -> float:
+    """Phase by which average acceleration lags the normal ringing at the end of a run, (w_n dt)^2 / 12 of w_n t [rad].
+
+    Share of a swing by which such a run differs from the exact one, as long as both stick and slip in one order.
+    """
+    ringing, t = normal_frequency(scene), scene.time
+    return (ringing * t.step) ** 2 / 12 * ringing * t.duration
+
+
 def ringing_decay(scene: Scene) -> float:
     """Rate at which scheme and discount damp the slowest normal ringing [1/s].
 

@@ -20,7 +20,7 @@ from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, OTHER, about, cases
+from validation.studies.bands import APART, LAGS, OTHER, about, cases
 from validation.studies.declaration import Study
 
 EXACT, STEPS, LAGGED = "creep-exact", "creep-steps", "creep-lagged"
@@ -148,13 +148,10 @@ def step_gates() -> Iterator[Gate]:
 def stiffness_gates() -> Iterator[Gate]:
     """Yield the gates on springs of any stiffness: the creep of an undamped block, and where a damped one stands."""
     order = "the speed is of the order g / w_n = g sqrt(m / (2 p)), soft springs or stiff: between a half and twice"
-    lag = "average acceleration lags by (w_n dt)^2 / 12 of the phase w_n t of the ringing; two programs always differ"
     for case in cases(STIFFNESS):
         yield Gate(case.name, ("base",), "share", 0.5, 2.0, order)
-        ringing, t = friction.normal_frequency(case), case.time
-        late = (ringing * t.step) ** 2 / 12 * ringing * t.duration
         for column in ("displacement", "horizontal"):
-            yield Gate(case.name, (DDA, EVENTS), f"{column}.l2", APART, late, lag)
+            yield Gate(case.name, (DDA, EVENTS), f"{column}.l2", APART, friction.lag(case), LAGS)
     stands = "scheme or discount damp the normal ringing: the block stands; band: rounding"
     far = "more than one hop g / w_n^2, less than twice g / w_n until the damped ringing unloads the friction no more"
     for case in cases(DAMPED):
