@@ -32,7 +32,7 @@ def coefficient(scene: Scene) -> float:
 
 
 def along(scene: Scene) -> float:
-    """Gravity along the base, downhill [m/s2]."""
+    """Gravity along the base, towards +x [m/s2]."""
     return scene.load.gravity * math.sin(math.radians(scene.load.slope))
 
 
@@ -47,11 +47,11 @@ def adhesion(scene: Scene) -> float:
 
 
 def sliding_acceleration(scene: Scene) -> float:
-    """Acceleration a_s of a sliding block [m/s2]; negative where the block stands.
+    """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands.
 
-    g (sin b - tan(phi) cos b) - c a / m.
+    g (sin |b| - tan(phi) cos b) - c a / m.
     """
-    return along(scene) - coefficient(scene) * across(scene) - adhesion(scene)
+    return abs(along(scene)) - coefficient(scene) * across(scene) - adhesion(scene)
 
 
 def run_out(scene: Scene, time: float) -> float:
