@@ -141,9 +141,9 @@ def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path,
     def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
         return lambda problem, *a, **k: sound(replace(problem, gravity=1.2 * problem.gravity), *a, **k)
 
-    exact = [gate for gate in creep.exact_gates() if "friction=30" in gate.scene]
+    exact = list(creep.exact_gates())
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, heavy)]
-    own = [case for case in creep.STUDY.cases() if case.scene.name == exact[0].scene]
+    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith(creep.EXACT)]
     check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
 
 
@@ -175,6 +175,15 @@ def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, f
     gates = list(creep.stiffness_gates())
     own = [case for case in creep.STUDY.cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
     check_kill_matrix(creep.STUDY, own, gates, SPRINGS, tmp_path, finished_cases)
+
+
+@pytest.mark.long
+def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    gates = [*creep.step_gates(), *creep.lagged_gates(), *creep.order_gates()]
+    others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
+    own = [case for case in creep.STUDY.cases() if not case.scene.name.startswith(others)]
+    soft = next(fault for fault in SPRINGS if fault.name == "springs a thousandth soft")
+    check_kill_matrix(creep.STUDY, own, gates, [*CREEP, soft], tmp_path, finished_cases)
 
 
 def test_dda_is_the_plain_program_step_by_step() -> None:
