@@ -49,6 +49,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     ]
     if found.get(study.STEPS):
         blocks += [over_time_and_step(found, directory), by_step(found)]
+    blocks += by_stiffness(found)
     return blocks
 
 
@@ -147,3 +148,33 @@ def by_step(found: Mapping[str, Group]) -> Table:
     )
     caption = f"Slip in a second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
     return Table(titles, tuple(rows), caption)
+
+
+def by_stiffness(found: Mapping[str, Group]) -> list[Block]:
+    """Return the table of the creep on springs of any stiffness, where a run has it."""
+    damped = cases(found, study.DAMPED)
+    rows = []
+    for case in sorted(cases(found, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
+        p, scale = case.scene.contact.stiffness, friction.creep_scale(case.scene)
+        speeds = [speed(case, solver) for solver in ("block-events", "dda")]
+        stands = [one for one in damped if one.scene.contact.stiffness == p]
+        stops = [
+            next((slip(one) for one in stands if (one.scene.time.discount < 1) == gg), None) for gg in (False, True)
+        ]
+        numbers = (*speeds, *stops)
+        cells = (DASH if value is None else plain(1e3 * value, 3) for value in numbers)
+        rows.append((plain(p / case.scene.block.young, 3), plain(1e3 * scale, 3), *cells))
+    titles = columns(
+        "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
+    )
+    caption = (
+        "Springs of other stiffness, steps with them: mean speed over seven swings, and the slide at which the block "
+        "stands under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 a step (ω_n dt = 0.17)."
+    )
+    return [Table(titles, tuple(rows), caption)] if rows else []
+
+
+def speed(case: Case, solver: str) -> float | None:
+    """Return the mean speed of the corners over a run [m/s]."""
+    history = case.histories.get(solver)
+    return None if history is None else float(study.slid(history.columns)[-1] / history.time[-1])
