@@ -53,7 +53,7 @@ class ContactRecord:
     solves, cuts
         Solves of the open-close iteration and cuts of each step [-], shape (steps,).
     slip
-        Largest way that any corner or point has slipped from its start, its shear reference with it [m], shape (steps,).
+        Largest way that any corner or point has slipped from its start [m], shape (steps,).
     """
 
     time: Array
