@@ -56,6 +56,14 @@ def test_a_run_without_states_is_told_what_to_do() -> None:
     assert "smaller time.step" in alarm.sentence
 
 
+def test_a_slope_to_the_other_side_is_the_same_slope(tmp_path: Path) -> None:
+    here = advice.sliding(SLIDES)
+    there = SLIDES.with_values({"load.slope": -SLIDES.load.slope})
+    assert here is not None and not here.stands
+    assert advice.sliding(there) == here
+    assert raised(there.with_values({"time.steps": 100}), tmp_path) == {advice.BRAKES}
+
+
 def test_a_discount_of_nothing_has_no_rate(tmp_path: Path) -> None:
     case = SLIDES.with_values({"time.gg": 0.0, "time.steps": 20})
     found = advice.sliding(case)

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from conftest import SCENE, thinned, typed
 
+from validation.cli.printing import scene_page
 from validation.scenes.scene import load_scene, scene_names
 
 
@@ -138,3 +139,9 @@ def test_bad_input_is_refused_as_by_run(tmp_path: Path) -> None:
     for words, said in ((("nowhere.toml",), "no such scene file"), (("drop", "--set", "time.stop=1"), "unknown key")):
         done = typed("show", *words)
         assert done.returncode == 2 and said in done.stderr and not done.stdout
+
+
+@pytest.mark.parametrize("name", ["slope-base", "rocking-release", "two-codes-friction", "waves-joint"])
+def test_a_page_keeps_to_the_width_of_a_terminal(name: str) -> None:
+    lines = "\n".join(scene_page.page(load_scene(name), name, 80)).splitlines()
+    assert max(map(len, lines)) <= 80 and any("next: " in line for line in lines)

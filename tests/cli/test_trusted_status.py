@@ -271,6 +271,7 @@ def command(*arguments: object) -> list[str]:
 
 
 @pytest.mark.parametrize("ending", thinned(["xdmf", "vtu"], 2))
+@pytest.mark.long
 def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_file: Path, tmp_path: Path) -> None:
     out = tmp_path / f"f.{ending}"
     out.write_text("a good file")
@@ -312,6 +313,7 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
 
 
 @pytest.mark.parametrize(("text", "status"), thinned([(WIDE, 0), (TIGHT, 1)], 2))
+@pytest.mark.long
 def test_a_reader_that_has_gone_does_not_change_the_status(
     text: str, status: int, scene_file: Path, tmp_path: Path
 ) -> None:
@@ -326,6 +328,7 @@ def test_a_reader_that_has_gone_does_not_change_the_status(
 
 
 @pytest.mark.parametrize(("text", "status"), thinned([(TIGHT, 1), (WIDE, 0)], 2))
+@pytest.mark.long
 def test_a_closed_output_does_not_change_the_status(text: str, status: int, scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(text)
     line = 'exec "$0" -m validation run "$1" --results "$2" >&-'

@@ -33,6 +33,7 @@ def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option:
     assert np.array_equal(table, response(SCENE, np.linspace(2, 180, 7), "bar", exact).table())
 
 
+@pytest.mark.long
 def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(tmp_path: Path) -> None:
     for ending in ("svg", "pdf", "png"):
         path = tmp_path / f"r.{ending}"

@@ -20,7 +20,9 @@ def fifty():
     return confusion.judge()
 
 
-@pytest.fixture(scope="module", params=["one of each cause", pytest.param("fifty", marks=pytest.mark.long)])
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, marks=pytest.mark.long) for name in ("one of each cause", "fifty")]
+)
 def judged(request: pytest.FixtureRequest):
     return request.getfixturevalue("fifty") if request.param == "fifty" else confusion.judge(first=True)
 
@@ -92,6 +94,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("name", thinned(FAULTS, 4))
+@pytest.mark.long
 def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     seam, wrap, cause = FAULTS[name]
     seam.wrap(monkeypatch, wrap)

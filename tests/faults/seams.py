@@ -19,7 +19,7 @@ import fem_reference.mesh.elasticity as elasticity
 from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
 from dda.model.block import Block
-from dda.one_block import gap_form, solution
+from dda.one_block import gap_form, solution, unilateral_step
 from dda.one_block import response as dda_vibration
 from dda.rotation import model as rolling_model
 from dda.rotation import solution as rolling
@@ -97,6 +97,7 @@ DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
 DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
 DDA_OPENED = Seam(dda, dda.solve_unilateral)
+DDA_REFERENCES = Seam(unilateral_step, unilateral_step._referred)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 
 # Answers to what vibrates

@@ -235,6 +235,7 @@ def test_damped_bar_against_the_kernel(kappa, a, step):
 @pytest.mark.parametrize(
     ("gg", "dt"), thinned([(0.5, 1e-6), (0.98, 1e-2), (0.01, 1e-3), (0.5, 1e-9), (0.999999, 1e-6)], 2)
 )
+@pytest.mark.long
 def test_damped_bar_sums_a_bounded_number_of_modes(gg, dt, monkeypatch):
     asked, waves = [], []
     wave_numbers_of, undamped = damped.wave_numbers, continuum.undamped

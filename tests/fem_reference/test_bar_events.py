@@ -180,6 +180,7 @@ def test_momentum_and_the_digits_of_random_motions(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", thinned(range(30, 34), 3))
+@pytest.mark.long
 def test_energy_and_mean_velocity_from_the_fields(seed: int) -> None:
     problem = random_problem(seed)
     end = 9 * problem.travel

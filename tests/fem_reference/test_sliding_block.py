@@ -197,3 +197,16 @@ def test_bad_input_is_refused_by_name() -> None:
     ):
         with pytest.raises(ValueError, match="must"):
             make()
+
+
+def test_a_smooth_record_slides_as_the_motion_that_it_was_taken_from(tmp_path: Path) -> None:
+    """Rows of 5 m/s2 sin(w t) twice integrated: the second differences err by (w dt)^2 / 12."""
+    rate, t = 4 * math.pi, 0.002 * np.arange(501)
+    x = 5.0 / rate * (t - np.sin(rate * t) / rate)
+    rows = "".join(f"{q!r},{w!r}\n" for q, w in np.column_stack([t, x]).tolist())
+    scene = scene_of(tmp_path, "time,x\n" + rows, SCENE.replace("cohesion = 1000.0", ""))
+    found = rigid_slide(scene, smooth=True)
+    exact = harmonic_slide(0.0, 5.0, 5.0, rate, 1.0, found.time)
+    largest = float(np.max(np.abs(exact.slide)))
+    assert largest > 1e-3
+    assert np.max(np.abs(found.slide - exact.slide)) < 2 * (rate * 0.002) ** 2 * largest

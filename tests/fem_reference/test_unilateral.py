@@ -40,6 +40,7 @@ def distances(problem, scheme, steps, contact=None):
     # displacement, and of the pressure behind the base spring: over the width d it leaves d^(3/2) in the L2 norm.
     [(AVERAGE, (1.0, 1.0)), (CONSTANT, (0.75, 0.75))],
 )
+@pytest.mark.long
 def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
     found = []
     for level in (64, 128, 256):

@@ -138,6 +138,7 @@ def test_scenes_of_a_pack_give_its_histories(pack: Path) -> None:
         assert np.array_equal(history.contact_pressure, kept.contact_pressure)
 
 
+@pytest.mark.long
 def test_another_code_of_the_same_model_is_inside_every_band(pack: Path) -> None:
     bands = json.loads((pack / "bands.json").read_text())
     judged = [band for band in bands if band["reference"] and band["metric"].endswith((".max", ".l2"))]

@@ -110,3 +110,20 @@ def test_a_rate_is_what_a_discount_takes_in_a_second() -> None:
     assert friction.terminal_speed(scene(), 2.0) == math.inf
     many = friction.free_motion(scene(time__gg=0.9, time__steps=2000), 2.0)[1]
     assert np.max(np.abs(many[1000:] / friction.terminal_speed(scene(time__gg=0.9), 2.0) - 1)) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("alpha", "delta", "gg", "stops"), [(0.5, 1.0, 1.0, True), (0.25, 0.5, 0.996, True), (0.25, 0.5, 1.0, False)]
+)
+def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: float, gg: float, stops: bool) -> None:
+    """The decay is that of the amplification matrix of (D, V, A), and the creep ends after it."""
+    case = scene(time__alpha=alpha, time__delta=delta, time__gg=gg, time__step=1e-4, contact__friction=40.0)
+    dt, w2 = case.time.step, friction.across(case) / friction.settlement(case)
+    now = np.array([[1.0, 0.0, -alpha * dt**2], [0.0, 1.0, -delta * dt], [w2, 0.0, 1.0]])
+    before = np.array([[1.0, gg * dt, (0.5 - alpha) * dt**2], [0.0, gg, (1 - delta) * dt], [0.0, 0.0, 0.0]])
+    radius = np.max(np.abs(np.linalg.eigvals(np.linalg.solve(now, before))))
+    assert friction.ringing_decay(case) == pytest.approx(-math.log(radius) / dt, rel=0.02, abs=1e-9)
+    if stops:
+        held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
+        until = friction.damped_creep(case) / friction.creep_scale(case)
+        assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)

@@ -161,7 +161,7 @@ def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme(
         "pressure (9/16, 1)": ([1.0, 100.0], [55.0, 62.0]),
     }
     said = chapters_contact.conclusion(table)
-    assert "under (1/2, 1) up to 530 steps (at p = 1 E) and under (9/16, 1) up to 62 steps (at p = 100 E)" in said
+    assert "under (1/2, 1) up to 530 steps (at p = 1E) and under (9/16, 1) up to 62 steps (at p = 100E)" in said
 
 
 # ---- extremes -----------------------------------------------------------------------------------------------------

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from oracles.made_cases import between, made_case, made_group, made_history
 
+from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table
 from validation.report.blocks import Lines
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
-from validation.report.chapters.scene import history_block
+from validation.report.chapters.scene import conclusion, gate_count, history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import Panel
 from validation.scenes.scene import load_scene
@@ -171,3 +172,25 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
     assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [("w_n dt = 4.3: it is damped", "w_n"), ("delta = 0.5 gains", "delta"), ("dt is varied", "dt"), ("a root", "A ")],
+)
+def test_a_remark_begins_with_a_capital_letter_unless_it_is_a_symbol(said: str, told: str) -> None:
+    alarm: Any = {"kind": "creep", "scene": "a", "sentence": said, "values": {}}
+    assert remark([alarm], {}).startswith(told)
+
+
+@pytest.mark.parametrize(("verdict", "said"), [("PASS", "passes"), ("FAIL", "fails"), ("NOT RUN", "did not run")])
+def test_one_gate_is_told_as_one(verdict: str, said: str) -> None:
+    judged: Any = {"verdict": verdict}
+    assert gate_count([judged]) == f"its one gate {said}"
+
+
+def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
+    case = made_case(load_scene("unlocked").expand()[0], {})
+    pair = between(case.name, "block-events", "bar-events", **{"displacement.l2": 0.02, "pressure.l2": 0.5})
+    group = replace(made_group(case), comparisons=(pair,))
+    assert conclusion(group).startswith("Against bar-events, block-events differs by 2\u00a0% in displacement and 50")

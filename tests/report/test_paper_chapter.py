@@ -37,6 +37,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return kept
 
 
+@pytest.mark.long
 def test_a_part_of_the_scenes_gives_its_figures(results: Results, tmp_path: Path) -> None:
     manifest = results.manifest("paper")
     manifest["cases"] = [case for case in manifest["cases"] if case["scene"].startswith("figure-9")]

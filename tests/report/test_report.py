@@ -303,6 +303,7 @@ def test_conclusion_of_a_scene_is_computed(results):
     assert "damping grows" not in chapters.conclusion(group_of(results, "figure-8"))  # two cases are no trend
 
 
+@pytest.mark.long
 def test_drift_of_corner_springs_is_fitted(results, tmp_path):
     group = group_of(results, "corner-springs")
     assert chapters.drift_values(group) == [

@@ -267,6 +267,19 @@ def test_the_data_of_a_scene_are_those_of_the_scene_with_their_units() -> None:
     assert all(part in line for part in ("plane strain", "gg = 0.941765", "consistent initial acceleration"))
 
 
+def test_the_data_of_a_scene_tell_its_contact_friction_slope_and_geometry() -> None:
+    line = chapters_text.parameters(load_scene("toppling-growth"), set())
+    for part in (
+        "10 m wide, 25 m high", "tilted by −1°", "springs without tension", "friction φ = 60°", "consistent friction",
+        "g = 9.81 m/s²", "slope β = 40°", "updated geometry", "first-order rotation",
+    ):  # fmt: skip
+        assert f", {part}," in f", {line}"
+    other = load_scene("slope-base").with_values({"contact.cohesion": 2000.0, "contact.band": [1e-3, 0.0]})
+    line = chapters_text.parameters(other.with_values({"damping.mass": 0.5}), {"contact.friction"})
+    assert all(part in line for part in ("cohesion 2000 Pa", "dead band −0.001 to 0 m", "base moved by slope-base.csv"))
+    assert "a₀ = 0.5 1/s" in line and "φ" not in line
+
+
 def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:
     base = BASE.with_values({"block.young": 2e9})
     scenes = [base.with_values({"contact.stiffness": p, "load.pressure": q}, label=True)

@@ -24,6 +24,8 @@ CREEPS = {
     creep.STEPS: {"mode": "zip", "time.step": [0.002, 0.002], "time.steps": [500, 500], "time.delta": [1.0, 0.5],
                   "time.alpha": [0.5, 0.25], "time.start": ["zero", "consistent"], "time.gg": [1.0, 1.0]},
     creep.LAGGED: {"time.step": [0.01]},
+    creep.STIFFNESS: {"contact.stiffness": [4e9], "contact.shear_stiffness": [1.6e9], "time.step": [5e-5]},
+    creep.DAMPED: {"contact.stiffness": [4e9], "contact.shear_stiffness": [1.6e9], "time.step": [5e-4]},
 }  # fmt: skip
 
 
@@ -53,7 +55,8 @@ def test_the_chapter_of_creep_lays_rules_and_schemes_beside_a_program(tmp_path: 
     blocks = creeping.chapter(kept, kept.manifest("creep"), tmp_path)
     (figure,) = [block for block in blocks if isinstance(block, FigureBlock)]
     assert (tmp_path / figure.file).stat().st_size > 1000
-    (table,) = [block for block in blocks if isinstance(block, Table)]
+    table, stiffness = [block for block in blocks if isinstance(block, Table)]
+    assert stiffness.rows == (("4.00", "11.4", "–", "10.7", "0.142", "–"),)
     cells = {row[0]: row[1:] for row in table.rows}
     assert cells["10.0"] == ("–", "–", "1.01", "1.00")
     assert cells["2.00"][0] == "0.142"

@@ -38,6 +38,7 @@ STEPS = [
 
 
 @pytest.mark.parametrize("fault", ANSWERS, ids=lambda fault: fault.name)
+@pytest.mark.long
 def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault: Fault, finished_cases: Path) -> None:
     gates = [g for g in STUDY.gates() if g.metric != "damping.steps" and reached(g, fault.name)]
     finished = finish(STUDY.cases(), STUDY, Results(finished_cases))
@@ -51,6 +52,7 @@ def reached(gate: Gate, solver: str) -> bool:
     return gate.pair[0].startswith(solver) or (solver == "bar" and gate.metric.endswith(".mesh"))
 
 
+@pytest.mark.long
 def test_gates_on_steps_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(BASE) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)

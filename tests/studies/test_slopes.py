@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault
@@ -21,7 +22,9 @@ from validation.engine.run import finish
 from validation.gates import friction
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
+from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
+from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.bands import cases
 from validation.studies.slopes import creep, sliding
 
@@ -85,6 +88,17 @@ def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path,
     check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.gates(), FAULTS, tmp_path, finished_cases)
 
 
+def test_the_record_of_the_shaking_is_its_formula() -> None:
+    record = base_record(next(cases(sliding.QUAKE)))
+    assert record is not None
+    t = record.time
+    parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
+    swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
+    assert record.x == pytest.approx((t / 0.4) ** 3 * np.exp(3 - 3 * t / 0.4) * swings, rel=1e-9, abs=1e-12)
+    ways = [{way for _, way in rigid_slide(case, smooth=True).switches} for case in cases(sliding.QUAKE)]
+    assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
+
+
 def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:
     """Run the cases of some scenes of the study of creep and judge gates on them."""
     study = creep.STUDY
@@ -127,10 +141,49 @@ def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path,
     def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
         return lambda problem, *a, **k: sound(replace(problem, gravity=1.2 * problem.gravity), *a, **k)
 
-    exact = [gate for gate in creep.exact_gates() if "friction=30" in gate.scene]
+    exact = list(creep.exact_gates())
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, heavy)]
-    own = [case for case in creep.STUDY.cases() if case.scene.name == exact[0].scene]
+    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith(creep.EXACT)]
     check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
+
+
+def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a corner that opens keep the shear reference that it had."""
+
+    def faulty(length: Any, D: Any, before: Any, after: Any) -> Any:
+        found = sound(length, D, before, after)
+        slipped = after.slipped or [0.0] * len(after.closed)
+        pairs = zip(before.reference, found.reference, slipped, strict=True)
+        return found._replace(reference=tuple(new if way else old for old, new, way in pairs))
+
+    return faulty
+
+
+SPRINGS = [
+    Fault("shear reference kept while open", DDA, seams.DDA_REFERENCES, kept_reference),
+    Fault("gravity a hundredth high", DDA, seams.DDA_OPENED,
+          of_model(lambda model: {"gravity": 1.01 * model.gravity})),
+    Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
+    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
+    Fault("no friction in the exact motion", ("block-events",), seams.EVENTS_BLOCK,
+          lambda sound: lambda problem, *a, **k: sound(replace(problem, friction=0.0), *a, **k)),
+]  # fmt: skip
+
+
+@pytest.mark.long
+def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    gates = list(creep.stiffness_gates())
+    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
+    check_kill_matrix(creep.STUDY, own, gates, SPRINGS, tmp_path, finished_cases)
+
+
+@pytest.mark.long
+def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    gates = [*creep.step_gates(), *creep.lagged_gates(), *creep.order_gates()]
+    others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
+    own = [case for case in creep.STUDY.cases() if not case.scene.name.startswith(others)]
+    soft = next(fault for fault in SPRINGS if fault.name == "springs a thousandth soft")
+    check_kill_matrix(creep.STUDY, own, gates, [*CREEP, soft], tmp_path, finished_cases)
 
 
 def test_dda_is_the_plain_program_step_by_step() -> None:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, app, one_case
+from validation.cli.printing.listing import in_columns
+from validation.cli.printing.output import broken, terminal_width
 
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
@@ -92,7 +94,7 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
     if as_json:
         typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
         return
-    typer.echo(f"{found.sentence}\n{found.advice}\n")
+    typer.echo(f"{broken(found.sentence)}\n{broken(found.advice)}\n")
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "damping")]
     for name, passage in (("present", found.present), ("advised", found.advised)):
         if passage is not None:
@@ -147,7 +149,7 @@ def claims(
 
 def _print_damping(found: Damping) -> None:
     rate = "" if found.gg_rate is None else f", c = {found.gg_rate:.4g} 1/s"
-    typer.echo(f"{found.sentence}\n\ngg = {found.gg:.6g} per step{rate}")
+    typer.echo(f"{broken(found.sentence)}\n\ngg = {found.gg:.6g} per step{rate}")
     tables = any(mode.viscous for mode in found.modes)
     parts = ("algorithmic", "kinetic", "viscous") if tables else ("algorithmic", "kinetic")
     heads = ("mode", "w [rad/s]", "w dt", "xi [%]", *parts, "|lambda|", "w/w' - 1")
@@ -169,17 +171,18 @@ def _print_damping(found: Damping) -> None:
     print_table([heads, *rows])
     if found.alias is not None:
         first = found.references["bar"]["frequency"] or 0.0
-        typer.echo(
-            f"\nalias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
+        said = (
+            f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
             f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
         )
+        typer.echo(f"\n{broken(said)}")
 
 
 def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
-    typer.echo(found.sentence)
+    typer.echo(broken(found.sentence))
     for solution, error in zip(found.solutions, errors, strict=True):
         typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
-        print_table(_facts(solution, error))
+        typer.echo(in_columns(_facts(solution, error), terminal_width()))
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:

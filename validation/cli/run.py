@@ -67,7 +67,7 @@ def list_command(
         return
     for title, lines in short().items():
         typer.echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
-    typer.echo("dda-validate list NAME shows one of the four in full, dda-validate show SCENE a scene and its numbers")
+    typer.echo("dda-validate list NAME shows one of the four in full,\ndda-validate show SCENE a scene and its numbers")
 
 
 @app.command()

@@ -32,7 +32,7 @@ def coefficient(scene: Scene) -> float:
 
 
 def along(scene: Scene) -> float:
-    """Gravity along the base, downhill [m/s2]."""
+    """Gravity along the base, towards +x [m/s2]."""
     return scene.load.gravity * math.sin(math.radians(scene.load.slope))
 
 
@@ -47,11 +47,11 @@ def adhesion(scene: Scene) -> float:
 
 
 def sliding_acceleration(scene: Scene) -> float:
-    """Acceleration a_s of a sliding block [m/s2]; negative where the block stands.
+    """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands.
 
-    g (sin b - tan(phi) cos b) - c a / m.
+    g (sin |b| - tan(phi) cos b) - c a / m.
     """
-    return along(scene) - coefficient(scene) * across(scene) - adhesion(scene)
+    return abs(along(scene)) - coefficient(scene) * across(scene) - adhesion(scene)
 
 
 def run_out(scene: Scene, time: float) -> float:
@@ -99,6 +99,34 @@ def creep_scale(scene: Scene) -> float:
     Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2.
     """
     return scene.load.gravity / normal_frequency(scene)
+
+
+def lag(scene: Scene) -> float:
+    """Phase by which average acceleration lags the normal ringing at the end of a run, (w_n dt)^2 / 12 of w_n t [rad].
+
+    Share of a swing by which such a run differs from the exact one, as long as both stick and slip in one order.
+    """
+    ringing, t = normal_frequency(scene), scene.time
+    return (ringing * t.step) ** 2 / 12 * ringing * t.duration
+
+
+def ringing_decay(scene: Scene) -> float:
+    """Rate at which scheme and discount damp the slowest normal ringing [1/s].
+
+    w_1^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
+    """
+    t = scene.time
+    return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + (1 - t.discount) / (2 * t.step)
+
+
+def damped_creep(scene: Scene) -> float:
+    """Way g / w_n t_s that a stable block creeps until its damped ringing unloads the friction no more [m].
+
+    The weight comes on at once, so that the normal force swings between nothing and twice its rest; the block stands
+    once it stays above tan(b) / tan(phi) of its rest: t_s = ln(tan(phi) / (tan(phi) - tan(b))) / decay.
+    """
+    held, pushed = coefficient(scene), math.tan(math.radians(scene.load.slope))
+    return creep_scale(scene) * math.log(held / (held - pushed)) / ringing_decay(scene)
 
 
 # ---- the discount as a drag -----------------------------------------------------------------------------------------

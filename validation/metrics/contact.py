@@ -122,7 +122,7 @@ def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float])
 
 
 def slip(record: ContactRecord) -> Value:
-    """Way that a corner or point slips over the run, to and fro summed; the largest of any."""
+    """Way that a corner or point has slipped from its start at the end of the run; the largest of any."""
     return NOT_REPORTED if record.slip is None else float(record.slip[-1])
 
 

@@ -53,7 +53,7 @@ class ContactRecord:
     solves, cuts
         Solves of the open-close iteration and cuts of each step [-], shape (steps,).
     slip
-        Largest movement of the shear reference of any corner or point, summed while it was pressed [m], shape (steps,).
+        Largest way that any corner or point has slipped from its start [m], shape (steps,).
     """
 
     time: Array

@@ -13,6 +13,8 @@ OTHER = "other code"  # the kind of a reference that an independent program comp
 OWN = "own last value"
 APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
 
+LAGS = "average acceleration lags by (w_n dt)^2 / 12 of the phase w_n t of the ringing; two programs always differ"
+
 
 def cases(*names: str) -> Iterator[Scene]:
     """Yield the single cases of built-in scenes."""

@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -55,6 +56,12 @@ def console() -> Console:
 def width() -> int:
     """Return the characters of a line: those of the terminal, or `PAGE` where the output is none."""
     return console().width
+
+
+def broken(text: str) -> str:
+    """Return a sentence in lines of the terminal; in one line where the output is none."""
+    wide = terminal_width()
+    return text if wide is None else "\n".join(wrap(text, wide, break_long_words=False, break_on_hyphens=False))
 
 
 def terminal_width() -> int | None:

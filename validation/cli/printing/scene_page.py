@@ -14,6 +14,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 
 INSIDE, NARROWEST = 15, 5  # characters of a block's width in the drawing
+BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
 SCHEMES = {
     (0.5, 1.0): "constant acceleration",
     (0.25, 0.5): "average acceleration",
@@ -29,7 +30,7 @@ def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
     found = [numbers.numbers(case) for case in looked]
     yield from textwrap.wrap(f"{scene.name}: {scene.title or 'a scene'}", width or 1000, break_long_words=False)
     yield ""
-    yield from (column(every[0]) if scene.column is not None else block(every[0]))
+    yield from (column(every[0]) if scene.column is not None else block(every[0], width))
     yield ""
     yield in_columns(list(_facts(scene, len(every))), width)
     yield ""
@@ -38,7 +39,8 @@ def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
         yield f"over {of_all} cases of the sweep (drawn is the first):"
     yield in_columns(_table(numbers.ranges(found)), width)
     for text, count in _remarks(looked, found).items():
-        yield f"! {text}" + (f" (in {count} of {len(looked)} cases)" if len(looked) > 1 else "")
+        told = f"{text} (in {count} of {len(looked)} cases)" if len(looked) > 1 else text
+        yield from textwrap.wrap(told, width or 1000, initial_indent="! ", subsequent_indent="  ")
     yield ""
     yield f"next: dda-validate run {source}"
 
@@ -95,12 +97,14 @@ def _table(found: Sequence[numbers.Range]) -> list[Line]:
 # ---- drawings -----------------------------------------------------------------------------------------------------
 
 
-def block(scene: Scene) -> Iterator[str]:
+def block(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
     across, rows = _extent(scene)
     beside = [*filter(None, (_size(scene), _material(scene), _start(scene)))]
     foot = "z" if scene.contact.law == "locked" else "x"
-    yield f"  {_arrows(scene, across).ljust(across + 2)}   {_loads(scene)}"
+    *above, last = textwrap.wrap(_loads(scene), (width or 1000) - across - BESIDE, break_on_hyphens=False)
+    yield from (" " * (across + BESIDE) + text for text in above)
+    yield f"  {_arrows(scene, across).ljust(across + 2)}   {last}"
     yield f"  +{'-' * across}+"
     for text in (*beside, *[""] * (rows - len(beside))):
         yield f"  |{' ' * across}|   {text}".rstrip()

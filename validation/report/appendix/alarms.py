@@ -41,9 +41,11 @@ def alarm_table(found: Mapping[str, Group]) -> list[Block]:
 
 
 def remark(alarms: Alarms, labels: Mapping[str, str]) -> str:
-    """Return the sentence of the first alarm."""
+    """Return the sentence of the first alarm, with a capital letter unless it begins with a symbol."""
     said = alarms[0]["sentence"]
-    return f"{said[:1].upper()}{said[1:]}."
+    first, *rest = said.split()
+    symbol = first in ("dt", "gg") or "_" in first or rest[:1] == ["="]  # which stays as it is written
+    return f"{said if symbol else said[:1].upper() + said[1:]}."
 
 
 def agreement(alarms: Alarms, labels: Mapping[str, str]) -> str:

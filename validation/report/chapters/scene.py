@@ -13,7 +13,7 @@ import numpy as np
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.damping import budget_blocks, damping_table
 from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.ledger import METRICS, ledger_blocks
+from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
     AS_STATED,
     bounded,
@@ -90,13 +90,14 @@ def conclusion(group: Group) -> str:
 
 
 def _agreement(group: Group) -> str:
-    for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT)):
+    pairs = [("dda", reference) for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT))]
+    for solver, reference in (*pairs, *parts_of(group.cases[0]).values()):
         said = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
-            if values := _pair_values(group, "dda", reference, metric):
+            if values := _pair_values(group, solver, reference, metric):
                 said.append(f"{span(values)} in {name}")
         if said:
-            return f"against {reference}, dda differs by {' and '.join(said)} (relative L2)"
+            return f"against {reference}, {solver} differs by {' and '.join(said)} (relative L2)"
     return "no pair of solvers was compared"
 
 
@@ -113,6 +114,8 @@ def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
     if count["PASS"] == len(verdicts):
         return f"all {len(verdicts)} gates pass" if len(verdicts) > 1 else "its one gate passes"
     verb = "fails" if count["FAIL"] == 1 else "fail"
+    if len(verdicts) == 1:
+        return "its one gate " + ("fails" if count["FAIL"] else "did not run")
     said = [f"{count['FAIL']} of {len(verdicts)} gates {verb}"] * bool(count["FAIL"])
     return " and ".join(said + [f"{count['NOT RUN']} did not run"] * bool(count["NOT RUN"]))
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
+from validation.runs.text import shown
 from validation.scenes.scene import Scene
 
 DASH = "–"
@@ -42,6 +44,16 @@ _SYMBOLS = {
     "block.pattern": ("", ""),
     "block.subdivide": ("", " sub-blocks"),
     "block.glue_ratio": ("glue", "E"),
+    "block.width": ("w", " m"),
+    "block.height": ("h", " m"),
+    "block.tilt": ("tilt", "°"),
+    "block.velocity": ("v", " m/s"),
+    "contact.friction": ("φ", "°"),
+    "contact.cohesion": ("cohesion", " Pa"),
+    "contact.gap": ("gap", " m"),
+    "contact.rule": ("", ""),
+    "contact.rules": ("", ""),
+    "load.slope": ("β", "°"),
 }
 
 
@@ -144,6 +156,7 @@ def parameters(scene: Scene, varied: set[str]) -> str:
         ("time.alpha", f"α = {time.alpha:g}"),
         ("time.delta", f"δ = {time.delta:g}"),
         ("time.gg", f"gg = {time.discount:.6g}"),
+        *_of_damping(scene),
         ("time.start", f"{time.start} initial acceleration"),
         ("fem.degree", f"elements of degree {scene.fem.degree}"),
         *_of_mesh(scene),
@@ -151,19 +164,86 @@ def parameters(scene: Scene, varied: set[str]) -> str:
     return ", ".join(text for field, text in items if field not in varied) + "."
 
 
-def _of_block(scene: Scene) -> list[tuple[str, str]]:
-    """Return the data of a block, its contact and its load, by their fields."""
+def _of_block(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Yield the data of a block, its contact and its load, by their fields; what is absent is left out."""
     block = scene.block
-    outline = f"a = {block.side:g} m" if block.side else f"polygon of {len(block.outline)} vertices"
-    return [
-        ("block.side", outline),
-        ("block.density", f"ρ = {block.density:g} kg/m³"),
-        ("block.young", f"E = {short(block.young, 2)} Pa"),
-        ("block.poisson", f"μ = {block.poisson:g}"),
-        ("block.hypothesis", block.hypothesis),
-        ("contact.stiffness", f"p = {short(scene.contact.stiffness, 2)} N/m"),
-        ("load.pressure", f"q = {short(scene.load.pressure, 2)} Pa"),
-    ]
+    if block.vertices is not None:
+        yield "block.vertices", f"polygon of {len(block.outline)} vertices"
+    elif block.side is not None:
+        yield "block.side", f"a = {block.side:g} m"
+    else:
+        yield from (("block.width", f"{block.width:g} m wide"), ("block.height", f"{block.height:g} m high"))
+    yield "block.density", f"ρ = {block.density:g} kg/m³"
+    yield "block.young", f"E = {short(block.young, 2)} Pa"
+    yield "block.poisson", f"μ = {block.poisson:g}"
+    yield "block.hypothesis", block.hypothesis
+    if block.subdivide is not None:
+        yield "block.subdivide", f"{block.subdivide[0]} by {block.subdivide[1]} sub-blocks"
+        yield "block.pattern", block.pattern
+        yield "block.glue_ratio", f"glue = {short(block.glue_ratio, 2)}E"
+    if block.velocity:
+        yield "block.velocity", f"{block.velocity:g} m/s upwards at t = 0".replace("-", "−")
+    if block.tilt:
+        yield "block.tilt", f"tilted by {_degrees(block.tilt)}"
+    yield from (*_of_contact(scene), *_of_load(scene))
+
+
+def _of_contact(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Yield the data of the contact; one that is locked has its stiffness alone."""
+    contact = scene.contact
+    yield "contact.stiffness", "rigid stops" if math.isinf(contact.stiffness) else f"p = {_newtons(contact.stiffness)}"
+    if contact.shear_stiffness is not None:
+        yield "contact.shear_stiffness", f"in shear {_newtons(contact.shear)}" if contact.shear else "frictionless"
+    if contact.law == "unilateral":
+        yield "contact.law", "springs without tension"
+    if contact.friction is not None:
+        yield "contact.friction", f"friction φ = {_degrees(contact.friction)}"
+        yield "contact.rules", f"{contact.rules} friction"
+    if contact.cohesion:
+        yield "contact.cohesion", f"cohesion {short(contact.cohesion, 2)} Pa"
+    if contact.rule != "newmark":
+        yield "contact.rule", f"{contact.rule} contact"
+    if contact.gap:
+        yield "contact.gap", f"gap {short(contact.gap)} m"
+    if any(contact.band):
+        yield "contact.band", f"dead band −{short(contact.band[0])} to {short(contact.band[1])} m"
+
+
+def _of_load(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Yield the loads, of which the pressure is told where it is zero as well, and how the outline follows."""
+    load = scene.load
+    yield "load.pressure", f"q = {short(load.pressure, 2)} Pa"
+    if load.eccentricity:
+        yield "load.eccentricity", f"e = {load.eccentricity:g} m".replace("-", "−")
+    if load.traction:
+        yield "load.traction", f"τ = {short(load.traction, 2)} Pa"
+    if load.gravity:
+        yield "load.gravity", f"g = {load.gravity:g} m/s²"
+    if load.slope:
+        yield "load.slope", f"slope β = {_degrees(load.slope)}"
+    if load.base_motion is not None:
+        yield "load.base_motion", f"base moved by {shown(Path(load.base_motion).name)}"
+    if scene.run.geometry == "updated":
+        yield "run.geometry", "updated geometry"
+        yield "run.rotation", f"{scene.run.rotation} rotation"
+
+
+def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Yield the viscous damping and the adaptive discount, where there are any."""
+    damping = scene.damping
+    if damping.present:
+        yield "damping.mass", f"a₀ = {damping.mass:g} 1/s"
+        yield "damping.stiffness", f"a₁ = {damping.stiffness:g} s"
+    if damping.kinetic == "adaptive":
+        yield "damping.kinetic", "adaptive gg"
+
+
+def _newtons(stiffness: float) -> str:
+    return f"{short(stiffness, 2)} N/m"
+
+
+def _degrees(angle: float) -> str:
+    return f"{angle:.4g}°".replace("-", "−")
 
 
 def _of_mesh(scene: Scene) -> list[tuple[str, str]]:

@@ -68,7 +68,7 @@ def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     return [
         Heading("Decision 1: which time step?", 2),
         _rule(
-            "Choose the damping ratio ξ, then dt = 4 ξ / ω₁"
+            "Choose the damping ratio ξ, then dt ≈ 4 ξ / ω₁"
             + (f": for 5\u00a0% at p = 1E, dt = {1e3 * five:.3g}\u00a0ms" if five else "")
             + ". Small damping and the wave both need a short step, and no step repairs the model: what is left "
             "when the damping is gone is one strain in the place of a wave."

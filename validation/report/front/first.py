@@ -238,7 +238,9 @@ def carrying_caption(found: Found, paper: Scene) -> str:
 def verdict_line(verdicts: Sequence[VerdictRecord]) -> Callout:
     """Return the one line of verdicts."""
     count = Counter(v["verdict"] for v in verdicts)
-    words = f"{len(verdicts)} gates: {count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
+    gates = "gate" if len(verdicts) == 1 else "gates"
+    told = f"{count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
+    words = f"{len(verdicts)} {gates}: {told}"
     if not verdicts:
         return Callout("No gate was judged.", "warn")
     return Callout(words, "fail" if count["FAIL"] else "warn" if count["NOT RUN"] else "pass")

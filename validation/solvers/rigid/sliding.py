@@ -28,17 +28,19 @@ class Slide:
     switches: tuple[tuple[float, int], ...]  # instants [s]; 1 and -1: it begins to slide towards +x or -x, 0: it sticks
 
 
-def rigid_slide(scene: Scene) -> Slide:
+def rigid_slide(scene: Scene, smooth: bool = False) -> Slide:
     """Return how a rigid mass in the place of a scene's block slides, at the end of each step.
 
-    Its base follows the scene's record, linear between rows; what presses it down is its weight.
+    Its base follows the scene's record, linear between rows; what presses it down is its weight. Such a base jumps in
+    velocity at every row, which springs do not pass on: a smooth one has the accelerations of the rows' second
+    differences, linear between them.
 
     Raises
     ------
     InputError
         The scene has no friction, other loads than weight and base motion, or a base that moves upwards.
     """
-    from fem_reference.exact.sliding_block import moved, solve
+    from fem_reference.exact.sliding_block import moved, recorded, solve
 
     record, load = base_record(scene), scene.load
     if scene.contact.friction is None:
@@ -47,7 +49,11 @@ def rigid_slide(scene: Scene) -> Slide:
         raise InputError(f"{scene.name}: load must be weight and base motion for a sliding block, got another one")
     if record is not None and np.any(record.y):
         raise InputError(f"{scene.name}: load.base_motion must be along x for a sliding block, got a motion in y")
-    base = moved([0.0], [0.0]) if record is None else moved(*_from_start(record.time, record.x))
+    if record is None:
+        base = moved([0.0], [0.0])
+    else:
+        time, x = _from_start(record.time, record.x)
+        base = recorded(time, _accelerations(time, x)) if smooth else moved(time, x)
     t = scene.time.step * np.arange(1.0, scene.time.steps + 1)
     return _reported(solve(block_of(scene), base, float(t[-1])), t)
 
@@ -57,6 +63,12 @@ def _from_start(time: Array, x: Array) -> tuple[Array, Array]:
     later = time > 0
     start = np.interp(0.0, time, x)
     return np.concatenate([[0.0], time[later]]), np.concatenate([[start], x[later]])
+
+
+def _accelerations(time: Array, x: Array) -> Array:
+    """Return the second differences of a record [m/s2], none at its ends."""
+    speeds, middles = np.diff(x) / np.diff(time), (time[1:] + time[:-1]) / 2
+    return np.concatenate([[0.0], np.diff(speeds) / np.diff(middles), [0.0]])
 
 
 def block_of(scene: Scene) -> SlidingBlock:

@@ -21,16 +21,18 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_slide
-from validation.studies.bands import APART, about, cases
+from validation.studies.bands import APART, LAGS, about, cases
 from validation.studies.declaration import Study
 
-SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN = (
+SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN, QUAKE, QUAKE_EXACT = (
     "slope-sliding",
     "slope-average",
     "slope-drag",
     "slope-threshold",
     "slope-manual",
     "slope-base",
+    "slope-quake",
+    "slope-quake-exact",
 )
 IDENTITY = "sliding identity"
 ROUNDED = 1e-10  # of the run-out: two formulations over 500 steps
@@ -48,7 +50,7 @@ def derived() -> tuple[Derived, ...]:
     ]
     rows += [
         Derived(case.name, RIGID, ((case.name, "dda"),), functools.partial(_against_rigid, case))
-        for case in cases(SHAKEN)
+        for case in cases(SHAKEN, QUAKE)
     ]
     pair = tuple(cases(THRESHOLD))
     needs = tuple((case.name, "dda") for case in pair)
@@ -91,7 +93,7 @@ def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     if history is None:
         return {}
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
-    rigid = rigid_slide(scene).slide
+    rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
     return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
 
 
@@ -117,6 +119,8 @@ def gates() -> tuple[Gate, ...]:
         *energy_gates(),
         *element_gates(),
         *shaken_gates(),
+        *quake_gates(),
+        *quake_exact_gates(),
     )
 
 
@@ -202,13 +206,43 @@ def shaken_gates() -> Iterator[Gate]:
         yield Gate(case.name, (RIGID,), "largest difference", APART, allowed, why)
 
 
+def quake_gates() -> Iterator[Gate]:
+    """Yield the gates on a base that follows a record of several frequencies, against Newmark's sliding block."""
+    why = (
+        "a rigid mass under the record's accelerations; band: a slide begins with up to the speed Y / w_s of a swing "
+        "on the shear springs and up to a step late, Y dt, for as long as it lasts; Y / w_s^2 of stretch at both its "
+        "ends"
+    )
+    for case in cases(QUAKE):
+        rigid = rigid_slide(case, smooth=True)
+        allowed = _late(case, rigid.switches)
+        yield Gate(case.name, (RIGID,), "slide", *about(float(rigid.slide[-1]), allowed), why)
+        yield Gate(case.name, (RIGID,), "largest difference", APART, allowed, why)
+
+
+def _late(case: Scene, switches: tuple[tuple[float, int], ...]) -> float:
+    """Return how far a block on shear springs may be from a rigid mass that slides between some switches [m]."""
+    ends = [*(t for t, _ in switches[1:]), case.time.duration]
+    lasts = [end - t for (t, way), end in zip(switches, ends, strict=True) if way]
+    resisted = friction.coefficient(case) * friction.across(case)
+    swing = math.sqrt(2 * case.contact.shear / friction.mass(case))
+    return resisted * (math.fsum(lasts) * (1 / swing + case.time.step) + 2 * len(lasts) / swing**2)
+
+
+def quake_exact_gates() -> Iterator[Gate]:
+    """Yield the gates on the same record against the exact motion of the block on its springs."""
+    for case in cases(QUAKE_EXACT):
+        for column in ("displacement", "horizontal"):
+            yield Gate(case.name, ("dda", "block-events"), f"{column}.l2", APART, friction.lag(case), LAGS)
+
+
 STUDY = Study(
     name="slopes",
     title="Blocks that slide down inclines",
     purpose="A block on an incline slides by g (sin b - tan(phi) cos b), whatever its springs and steps, and stands up "
     "to the angle of friction. How far does each code, and each discount, let it run?",
-    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN),
+    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN, QUAKE, QUAKE_EXACT),
     gates=gates,
     derived=derived,
-    pairs=(("dda", "fem"),),
+    pairs=(("dda", "fem"), ("dda", "block-events")),
 )

@@ -27,7 +27,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
     table = by_ratio(group)
     longest = float(max(case.scene.time.steps for case in group.cases))
     caption = (
-        "Steps until displacement and contact pressure stay within 1e-4 of their static values, dda; a hollow mark has "
+        "Steps until displacement and contact pressure stay within 10⁻⁴ of their static values, dda; a hollow mark has "
         "not settled within the run."
     )
     ring = (
@@ -80,9 +80,9 @@ def conclusion(table: Rows) -> str:
             found += [] if steps is None else [(steps, -ratio)]
         if found:
             steps, ratio = max(found)  # of equal waits that of the softest contact
-            parts.append(f"under {name} up to {steps:.0f} steps (at p = {short(-ratio)} E)")
+            parts.append(f"under {name} up to {steps:.0f} steps (at p = {short(-ratio)}E)")
     said = " and ".join(parts)
-    return f"The contact pressure settles within 1e-4 {said}: constant acceleration rings, (9/16, 1) does not."
+    return f"To settle within 10⁻⁴ the contact pressure takes {said}: constant acceleration rings, (9/16, 1) does not."
 
 
 def settling_table(table: Rows) -> Table:
@@ -93,7 +93,7 @@ def settling_table(table: Rows) -> Table:
     rows = []
     for ratio, row in table.items():
         rows.append((short(ratio), *itertools.chain(*(_parts(row.get(alpha)) for alpha in SCHEMES))))
-    return Table(titles, tuple(rows), "Steps to settle within 1e-4 of static, and the contact mode's |λ|, dda.")
+    return Table(titles, tuple(rows), "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.")
 
 
 def _parts(case: Case | None) -> tuple[str, str, str]:

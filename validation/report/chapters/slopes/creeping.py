@@ -19,15 +19,17 @@ from validation.runs.results import Results
 from validation.studies.slopes import creep as study
 
 CONSTANT, AVERAGE = "constant acceleration", "average acceleration"
-ORANGE, BLUE, GREEN, BLACK = "#d55e00", "#0072b2", "#009e73", "black"
+ORANGE, AMBER, BLUE, GREEN, BLACK = "#d55e00", "#e69f00", "#0072b2", "#009e73", "black"
 CAPTION = (
+    "Constant acceleration stops the creep, average acceleration keeps it, and lagged friction with dead bands speeds "
+    "it up as the step is refined. "
     "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip in a second "
     "over the step; the exact block's is drawn across. Lagged friction with dead bands is that of another load, nine "
     "times the weight, and is laid beside a program of the trade (circles)."
 )
 SAID = (
     "The normal springs ring when the weight comes on. Each swing takes normal force off the base, friction lets go, "
-    "and the block moves by some g/ω_n²: undamped it creeps for ever, by the order of g/ω_n = g √(m/2p) a second. "
+    "and the block moves by some g/ωₙ²: undamped it creeps for ever, by the order of g/ωₙ = g √(m/2p) a second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
     "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the pass "
     "before and stick and slip are not looked at, the block goes on: with an open "
@@ -47,6 +49,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     ]
     if found.get(study.STEPS):
         blocks += [over_time_and_step(found, directory), by_step(found)]
+    blocks += by_stiffness(found)
     return blocks
 
 
@@ -55,7 +58,7 @@ def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlo
     exact = [case for case in cases(found, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
     steps = cases(found, study.STEPS)
-    for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, GREEN)):
+    for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, AMBER)):
         lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
     lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
     kinds = ((CONSTANT, "(1/2, 1), consistent", ORANGE), (AVERAGE, "(1/4, 1/2), consistent", BLUE))
@@ -143,5 +146,35 @@ def by_step(found: Mapping[str, Group]) -> Table:
     titles = columns(
         "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "a program of the trade [mm]"
     )
-    caption = f"Slip in a second. g/ω_n = {1e3 * scale:.3g} mm/s for the block under its own weight."
+    caption = f"Slip in a second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
     return Table(titles, tuple(rows), caption)
+
+
+def by_stiffness(found: Mapping[str, Group]) -> list[Block]:
+    """Return the table of the creep on springs of any stiffness, where a run has it."""
+    damped = cases(found, study.DAMPED)
+    rows = []
+    for case in sorted(cases(found, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
+        p, scale = case.scene.contact.stiffness, friction.creep_scale(case.scene)
+        speeds = [speed(case, solver) for solver in ("block-events", "dda")]
+        stands = [one for one in damped if one.scene.contact.stiffness == p]
+        stops = [
+            next((slip(one) for one in stands if (one.scene.time.discount < 1) == gg), None) for gg in (False, True)
+        ]
+        numbers = (*speeds, *stops)
+        cells = (DASH if value is None else plain(1e3 * value, 3) for value in numbers)
+        rows.append((plain(p / case.scene.block.young, 3), plain(1e3 * scale, 3), *cells))
+    titles = columns(
+        "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
+    )
+    caption = (
+        "Springs of other stiffness, steps with them: mean speed over seven swings, and the slide at which the block "
+        "stands under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 a step (ω_n dt = 0.17)."
+    )
+    return [Table(titles, tuple(rows), caption)] if rows else []
+
+
+def speed(case: Case, solver: str) -> float | None:
+    """Return the mean speed of the corners over a run [m/s]."""
+    history = case.histories.get(solver)
+    return None if history is None else float(study.slid(history.columns)[-1] / history.time[-1])
