@@ -441,11 +441,11 @@ def test_every_kind_of_block_is_set(tmp_path):
     assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 
 
-def test_the_core_study_comes_first(tmp_path):
+def test_studies_stand_in_the_order_of_their_chapters(tmp_path):
     directory = Results(tmp_path)
-    for study in ("zeta", "alpha", "core"):
+    for study in ("zeta", "alpha", "toppling", "rocking", "opening", "core"):
         directory.write_json(f"studies/{study}.json", {"study": study})
-    assert ordered_studies(directory) == ["core", "alpha", "zeta"]
+    assert ordered_studies(directory) == ["core", "opening", "rocking", "toppling", "alpha", "zeta"]
 
 
 def test_the_longest_window_of_a_pair_counts_in_either_order(results):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from validation.errors import InputError
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Part
-from validation.report.chapters.registry import chapter_of
+from validation.report.chapters.registry import CHAPTERS, chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
@@ -16,14 +16,15 @@ from validation.runs.text import printable
 
 
 def ordered_studies(results: Results) -> list[str]:
-    """Return the studies of a directory, the core study first.
+    """Return the studies of a directory in the order of their chapters, those of users' scenes last.
 
     Raises
     ------
     InputError
         There is none.
     """
-    studies = sorted(results.studies(), key=lambda name: (name != "core", name))
+    order = {name: place for place, name in enumerate(CHAPTERS)}
+    studies = sorted(results.studies(), key=lambda name: (order.get(name, len(order)), name))
     if not studies:
         raise InputError(f"{results.directory}: no study's results here; run a study first")
     return studies
