@@ -13,7 +13,9 @@ _COMMAND = re.compile(r"([A-Za-z])([^A-Za-z]*)")
 _STYLE = re.compile(r' style="[^"]*"')
 _ALONE = re.compile(r"<g>(<(?:use|path)\b[^>]*/>)</g>")
 _LETTER = re.compile(r'<path id="(DejaVu[^"]*)"[^>]*/>')
-_USED_LETTER = re.compile(r'<use xlink:href="#(DejaVu[^"]*)"(?: transform="translate\((\S+) (\S+)\)( scale[^"]*)?")?/>')
+_USED_LETTER = re.compile(  # placed by a transform, or by x and y as older versions of matplotlib do
+    r'<use xlink:href="#(DejaVu[^"]*)"(?: transform="translate\((\S+) (\S+)\)( scale[^"]*)?"|((?: [xy]="[^"]*")*))/>'
+)
 _NAME = re.compile(r'(id="|href="#|url\(#)([^")]+)')
 _ROOT = re.compile(r"<svg\b[^>]*?viewBox=\"([^\"]*)\"[^>]*>")
 REPEATED = "LQC"  # commands that go on without their letter
@@ -80,7 +82,9 @@ class Sheet:
 
     def _used(self, match: re.Match[str]) -> str:
         """Return a letter at its place, which is stated in units of a hundredth of its size and less."""
-        name, x, y, scale = match.groups()
+        name, x, y, scale, placed = match.groups()
+        if placed:
+            return f'<use href="#{self._letters[name]}"{placed}/>'
         if scale:
             return f'<use href="#{self._letters[name]}" transform="translate({x} {y}){scale}"/>'
         place = [f' {axis}="{float(v):.4g}"' for axis, v in (("x", x), ("y", y)) if v and float(v)]
