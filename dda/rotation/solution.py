@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -14,8 +15,8 @@ from dda.one_block.solution import check_damping, check_request, step_times
 from dda.one_block.unilateral import COMPLETED, OVERFLOW, check_scheme
 from dda.rotation.model import RollingModel, RollingOptions
 from dda.rotation.result import RollingResult, observed
-from dda.rotation.step import Part, advance
-from dda.scheme.cutting import FLOOR
+from dda.rotation.step import Made, Part, advance
+from dda.scheme.cutting import in_parts
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
@@ -44,42 +45,27 @@ class Rolling:
     def run(self, steps: int) -> None:
         """Make the steps that are reached; `outcome` says how it ended."""
         for number in range(steps):
-            parts, solves, cuts = self._interval(self.parts[-1], number)
-            if not parts:
+            made = in_parts(partial(self._attempt, number), self.parts[-1], self.options.cut)
+            if made.failure is not None:
+                self.outcome = made.failure
                 return
-            last = parts[-1]
-            if not math.isfinite(float(np.sum(last.state.V) + np.sum(last.state.c))):
+            parts = [after for _, _, after in made.parts]
+            if not math.isfinite(float(np.sum(parts[-1].state.V) + np.sum(parts[-1].state.c))):
                 self.outcome = OVERFLOW
                 return
             self.parts += parts
             self.ends.append(len(self.parts) - 1)
-            self.solves.append(solves)
-            self.cuts.append(cuts)
+            self.solves.append(made.solves)
+            self.cuts.append(made.cuts)
 
-    def _interval(self, last: Part, number: int) -> tuple[list[Part], int, int]:
-        """Return the parts of one step of the scheme, none where it cannot be made, with solves and cuts."""
-        parts: list[Part] = []
-        left = ratio = 1.0
-        solves = cuts = 0
-        while True:
-            own = self.scheme
-            if ratio != 1:
-                own = replace(own, step=own.step * ratio, gg=own.gg**ratio)
-            after = self._base(self.scheme.step * (number + 1 - left + ratio))
-            made = advance(self.setting, own, last.state, np.array([last.base, after]))
-            solves += made.solves
-            if made.state is None:
-                if ratio <= FLOOR:
-                    self.outcome = str(made.failure)
-                    return [], solves, cuts
-                ratio, cuts = max(self.options.cut * ratio, FLOOR), cuts + 1
-                continue
-            last = Part(made.state, own, after)
-            parts.append(last)
-            if ratio == left:
-                return parts, solves, cuts
-            left -= ratio
-            ratio = left
+    def _attempt(self, number: int, last: Part, begun: float, ratio: float) -> tuple[Part | None, Made]:
+        """Return a part of step `number`, where it begins and how long it is in steps; None where it has no state."""
+        own = self.scheme
+        if ratio != 1:
+            own = replace(own, step=own.step * ratio, gg=own.gg**ratio)
+        after = self._base(self.scheme.step * (number + begun + ratio))
+        made = advance(self.setting, own, last.state, np.array([last.base, after]))
+        return None if made.state is None else Part(made.state, own, after), made
 
 
 def solve_rolling(

@@ -18,7 +18,6 @@ from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
-from validation.solvers import opened
 from validation.solvers.rigid.impacts import impact_restitution
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
@@ -152,7 +151,7 @@ def test_forces_of_an_impact() -> None:
     row, _ = execute(Case(scene.with_values({"time.steps": 400}), "block-events"), "", "")
     assert row.metrics["contact.peak_force"] == pytest.approx(contact.impact_force(scene, -2.0), rel=0.02)
     assert contact.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
-    assert opened.mass(scene) == 10800
+    assert scene.block.mass == 10800
 
 
 def test_the_restitution_of_a_phase_lies_in_the_range_of_the_map() -> None:

@@ -97,7 +97,7 @@ def test_the_settled_block_is_in_equilibrium(changes: dict[str, object]) -> None
     )
     still = get_solver("dda").prepare(locked.with_values({"time.step": 0.01})).static()
     assert friction.settlement(case) == pytest.approx(-still["displacement"], rel=1e-12)
-    weight, springs = friction.mass(case) * friction.across(case), 2 * case.contact.stiffness
+    weight, springs = case.block.mass * friction.across(case), 2 * case.contact.stiffness
     assert friction.penalty_offset(case) > friction.coefficient(case) * weight / springs
 
 

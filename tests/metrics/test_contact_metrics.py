@@ -138,7 +138,7 @@ RIGID = {"block.young": 1e16, "block.velocity": -1.0, "load.pressure": 0.0, "con
 def impact(**values: Any) -> Scene:
     """Return a rigid block of 10800 kg that comes down on 4e9 N/m with Omega = 2."""
     scene = load_scene("unlocked-constant").expand()[0].with_values(RIGID | {"time.steps": 40, **values})
-    return scene.with_values({"time.step": 2 * (opened.mass(scene) / 4e9) ** 0.5})
+    return scene.with_values({"time.step": 2 * (scene.block.mass / 4e9) ** 0.5})
 
 
 @pytest.mark.parametrize(("scheme", "e"), [((0.5, 1.0), 1 / 3), ((0.25, 0.5), 1.0)])
@@ -168,7 +168,7 @@ CASES = {
 def test_impulse_and_energy_close_the_balances_of_dda(name: str) -> None:
     values = {"time.step": 4e-4, "time.steps": 100, "load.pressure": 3e6} | CASES[name]
     scene = load_scene("unlocked-constant").expand()[0].with_values(values)
-    record, m, gg = record_of(scene), opened.mass(scene), scene.time.discount
+    record, m, gg = record_of(scene), scene.block.mass, scene.time.discount
     assert record.velocity is not None and record.gap.max() > 0 and not record.cuts.any()
     before = np.concatenate(([scene.block.velocity], record.velocity[:-1]))
     late = np.concatenate(([1 - scene.time.delta if scene.time.start == "zero" else 0.0], np.zeros(99)))

@@ -200,5 +200,5 @@ def test_dda_is_the_plain_program_step_by_step() -> None:
 
 def oracle(case: Scene, lagged: bool) -> Slider:
     c, t = case.contact, case.time
-    pull = friction.mass(case) * friction.along(case), -friction.mass(case) * friction.across(case)
+    pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
     return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)

@@ -52,7 +52,7 @@ class Needed:
 
 def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
     """Return w_c = sqrt(8 p / m) of a scene, or of other springs [rad/s]."""
-    return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / opened.mass(scene))
+    return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / scene.block.mass)
 
 
 def omega(scene: Scene) -> float:
@@ -97,7 +97,7 @@ def hidden_from(scene: Scene) -> float | None:
 
 def impact_force(scene: Scene, speed: float) -> float:
     """Return the force V sqrt(p m / 2) with which the block of one strain lands on its springs at a speed [N]."""
-    return abs(speed) * math.sqrt(scene.contact.stiffness * opened.mass(scene) / 2)
+    return abs(speed) * math.sqrt(scene.contact.stiffness * scene.block.mass / 2)
 
 
 def wave_force(scene: Scene, speed: float) -> float:
@@ -139,7 +139,7 @@ def needed(
         Function of p that returns how deep the exact block goes [m], None where there is no answer.
     """
     static = abs(opened.pushing(scene)) / (2 * penetration)
-    landing = speed**2 * opened.mass(scene) / (8 * penetration**2)
+    landing = speed**2 * scene.block.mass / (8 * penetration**2)
     p = max(static, landing) or scene.contact.stiffness  # without load and speed any springs do
     limit = largest_omega(scene, error)
     enough, depth = p, probe(p) if probe else None

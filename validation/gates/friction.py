@@ -17,13 +17,7 @@ import numpy as np
 
 from validation.gates.closed_forms import moduli, size
 from validation.runs.history import Array
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-
-
-def mass(scene: Scene) -> float:
-    """Mass of the block of unit thickness [kg]."""
-    return scene.block.density * area(scene.block.outline)
 
 
 def coefficient(scene: Scene) -> float:
@@ -43,7 +37,7 @@ def across(scene: Scene) -> float:
 
 def adhesion(scene: Scene) -> float:
     """Deceleration c a / m by cohesion over the whole base [m/s2]."""
-    return scene.contact.cohesion * scene.block.base_length / mass(scene)
+    return scene.contact.cohesion * scene.block.base_length / scene.block.mass
 
 
 def sliding_acceleration(scene: Scene) -> float:
@@ -66,7 +60,7 @@ def settlement(scene: Scene) -> float:
     """
     width, height = size(scene)
     modulus, _ = moduli(scene)
-    weight = mass(scene) * across(scene)
+    weight = scene.block.mass * across(scene)
     return weight * (1 / (2 * scene.contact.stiffness) + height / (4 * modulus * width))
 
 
@@ -90,7 +84,7 @@ def threshold_angle(scene: Scene) -> float:
 
 def normal_frequency(scene: Scene) -> float:
     """Frequency sqrt(2 p / m) of the rigid block on its normal springs [rad/s]."""
-    return math.sqrt(2 * scene.contact.stiffness / mass(scene))
+    return math.sqrt(2 * scene.contact.stiffness / scene.block.mass)
 
 
 def creep_scale(scene: Scene) -> float:

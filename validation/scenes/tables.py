@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
-from validation.scenes.outline import Point, check_polygon, convex_quadrilateral
+from validation.scenes.outline import Point, area, check_polygon, convex_quadrilateral
 
 FINE_ELEMENTS = 16
 
@@ -137,6 +137,11 @@ class BlockSection(Section):
         """Length a of the base edge [m]."""
         (x1, y1), (x2, y2) = self.edge(self.base)
         return math.hypot(x2 - x1, y2 - y1)
+
+    @property
+    def mass(self) -> float:
+        """Mass of the block of unit thickness [kg]."""
+        return self.density * area(self.outline)
 
     def edge(self, index: int) -> tuple[Point, Point]:
         """Return the end points of an edge [m]."""

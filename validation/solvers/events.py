@@ -225,7 +225,7 @@ class BlockMotion(Motion):
         return ContactRecord(
             time=t,
             force=found.normal_force.sum(axis=0),
-            impulse=opened.mass(self.scene) * (velocity - start) + push * t,
+            impulse=self.scene.block.mass * (velocity - start) + push * t,
             penetration=np.maximum(0.0, -found.gap).max(axis=0),
             gap=np.maximum(0.0, found.gap).max(axis=0),
             open_share=1 - found.closed.mean(axis=0),

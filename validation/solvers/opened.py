@@ -8,25 +8,20 @@ import numpy as np
 
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.history import Array
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-
-
-def mass(scene: Scene) -> float:
-    """Mass of the block of unit thickness [kg]."""
-    return scene.block.density * area(scene.block.outline)
 
 
 def pushing(scene: Scene) -> float:
     """Resultant of pressure and weight, downwards, of the weight on a slope across it [N]."""
     (x1, y1), (x2, y2) = scene.block.edge(scene.block.top)
     length = float(np.hypot(x2 - x1, y2 - y1)) - 2 * abs(scene.load.eccentricity)
-    return scene.load.pressure * length + mass(scene) * scene.load.gravity * math.cos(math.radians(scene.load.slope))
+    weight = scene.block.mass * scene.load.gravity * math.cos(math.radians(scene.load.slope))
+    return scene.load.pressure * length + weight
 
 
 def start_energy(scene: Scene) -> float:
     """Kinetic energy at t = 0 [J]."""
-    return mass(scene) * scene.block.velocity**2 / 2
+    return scene.block.mass * scene.block.velocity**2 / 2
 
 
 def given_energy(scene: Scene) -> float:
@@ -36,7 +31,7 @@ def given_energy(scene: Scene) -> float:
     the weight's part along it adds H^2 / (4 p_s).
     """
     F, b = pushing(scene), scene.block
-    along = mass(scene) * scene.load.gravity * math.sin(math.radians(scene.load.slope))
+    along = scene.block.mass * scene.load.gravity * math.sin(math.radians(scene.load.slope))
     held = along**2 / (4 * scene.contact.shear) if scene.contact.shear else 0.0
     height = float(np.ptp([y for _, y in b.outline]))
     soft = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
@@ -52,7 +47,7 @@ def summed(force: Array, step: float, late: float) -> Array:
 def balanced(scene: Scene, velocity: Array) -> Array:
     """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
-    gained = mass(scene) * np.cumsum(velocity - scene.time.discount * before)
+    gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
     return np.asarray(gained + pushing(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64)
 
 

@@ -85,7 +85,7 @@ def _block(scene: Scene) -> Iterator[Number]:
     b, dt = scene.block, scene.time.step
     height = float(np.ptp([y for _, y in b.outline]))
     speed = math.sqrt(closed_forms.moduli(scene)[0] / b.density)
-    yield Number("m", opened.mass(scene), "kg", "mass of the block")
+    yield Number("m", scene.block.mass, "kg", "mass of the block")
     yield Number("p/E", scene.contact.stiffness / b.young, "", "springs over Young's modulus, unit thickness")
     yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
     yield Number("h/c", height / speed, "s", "time of the wave through the block")

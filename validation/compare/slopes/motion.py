@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.gates.closed_forms import moduli, size
-from validation.gates.friction import across, along, mass
+from validation.gates.friction import across, along, coefficient
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -47,7 +47,7 @@ class Body:
 def body_of(scene: Scene) -> Body:
     """Return the rectangle of a scene."""
     width, height = size(scene)
-    m, q, c = mass(scene), scene.load, scene.contact
+    m, q, c = scene.block.mass, scene.load, scene.contact
     x2, y2 = m * width**2 / 12, m * height**2 / 12
     inertia = np.diag([x2 + y2, x2, y2, (x2 + y2) / 4])
     inertia[0, 3] = inertia[3, 0] = (x2 - y2) / 2
@@ -59,10 +59,9 @@ def body_of(scene: Scene) -> Body:
     load = np.array([m * along(scene) + pulled, -m * across(scene) - pressed])
     e, h = q.eccentricity, height / 2
     internal = -pressed * np.array([e, 0.0, h, e / 2]) + pulled * np.array([-h, 0.0, 0.0, h / 2])
-    tan = float(np.tan(np.radians(c.friction or 0.0)))
     held = c.cohesion * width / 2
     corners = -width / 2, width / 2
-    return Body(m, inertia, elastic, load, internal, corners, height, c.stiffness, c.shear, tan, held)
+    return Body(m, inertia, elastic, load, internal, corners, height, c.stiffness, c.shear, coefficient(scene), held)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
-from validation.solvers.opened import mass
 
 if TYPE_CHECKING:
     from fem_reference.exact.sliding_block import SlidingBlock, SlidingMotion
@@ -80,7 +79,7 @@ def block_of(scene: Scene) -> SlidingBlock:
         slope=load.slope,
         friction=c.friction or 0.0,
         gravity=load.gravity,
-        cohesion=c.cohesion * scene.block.base_length / mass(scene),
+        cohesion=c.cohesion * scene.block.base_length / scene.block.mass,
     )
 
 

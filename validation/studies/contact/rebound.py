@@ -19,7 +19,6 @@ from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.solvers import opened
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
@@ -44,7 +43,7 @@ SOFT = 1e-7  # the block's own strain: eight times p/E, the steepest slope of th
 
 def omega(scene: Scene) -> float:
     """Return sqrt(2 p / m) dt of a rigid block [-]."""
-    return math.sqrt(2 * scene.contact.stiffness / opened.mass(scene)) * scene.time.step
+    return math.sqrt(2 * scene.contact.stiffness / scene.block.mass) * scene.time.step
 
 
 def phase(scene: Scene) -> float:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
+from validation.gates.friction import coefficient, sliding_acceleration
 from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
@@ -26,12 +27,6 @@ LET_GO = ("toppling-fall", "toppling-growth")  # on their lower corner
 ROW = "trajectory"  # derived row
 TURN = 0.5  # by which falling blocks are timed [rad]
 ROUNDING = 1e-9  # of identities over some hundred steps
-
-
-def down(scene: Scene) -> float:
-    """Return the acceleration g (sin b - tan(phi) cos b) of a block that slides [m/s2]."""
-    b, phi = math.radians(scene.load.slope), math.radians(scene.contact.friction or 0.0)
-    return scene.load.gravity * (math.sin(b) - math.tan(phi) * math.cos(b))
 
 
 def beyond(scene: Scene) -> float:
@@ -49,7 +44,7 @@ def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
         return {}
     u, steps = history.columns["horizontal_displacement"], scene.time.steps
     moved = float(u[-1] - u[steps // 2 - 1])
-    way = (steps - steps // 2) * scene.time.step**2 / 2 * down(scene)
+    way = (steps - steps // 2) * scene.time.step**2 / 2 * sliding_acceleration(scene)
     return {"moved": moved / (way if way > 0 else rectangle(scene).width)}
 
 
@@ -61,10 +56,10 @@ def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, "dda")
     if history is None:
         return {}
-    u, v, way = history.columns["horizontal_displacement"], history.displacement, down(scene) * history.time**2 / 2
-    rubbed = math.tan(math.radians(scene.contact.friction or 0.0))
+    u, v = history.columns["horizontal_displacement"], history.displacement
+    way = sliding_acceleration(scene) * history.time**2 / 2
     return {
-        "identity": float(np.max(np.abs(u + rubbed * v - way)) / way[-1]),
+        "identity": float(np.max(np.abs(u + coefficient(scene) * v - way)) / way[-1]),
         "run-out": float(u[-1] / way[-1]),
     }
 
@@ -106,12 +101,12 @@ def sliding_gates() -> Iterator[Gate]:
     stands = "friction above the slope: a block without velocities comes to rest; band: rounding"
     slips = "friction below the slope: dt^2 / 2 g (sin b - tan(phi) cos b) a step; band: what is left of settling"
     for case in cases(STATIC):
-        steady = down(case) > 0
+        steady = sliding_acceleration(case) > 0
         edges = about(1.0, 1e-6) if steady else about(0.0, ROUNDING)
         yield Gate(case.name, (ROW,), "moved", *edges, slips if steady else stands)
     for case in cases(SLIDE):
-        way = down(case) * case.time.duration**2 / 2
-        offset = math.tan(math.radians(case.contact.friction or 0.0)) * settlement(case) / way
+        way = sliding_acceleration(case) * case.time.duration**2 / 2
+        offset = coefficient(case) * settlement(case) / way
         why = "both corners slip: the free motion of the scheme, exact for constant acceleration; band: rounding"
         yield Gate(case.name, (ROW,), "identity", 0.0, ROUNDING, why)
         why = "rigid block; above: tan(phi) times the settlement, twice that of both corners at rest"

@@ -173,8 +173,8 @@ def energy_gates() -> Iterator[Gate]:
         if case.time.delta == 1:
             yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
     for case in cases(SLIDING):
-        pressed = friction.mass(case) * friction.across(case)
-        held = friction.coefficient(case) * pressed + friction.mass(case) * friction.adhesion(case)
+        pressed = case.block.mass * friction.across(case)
+        held = friction.coefficient(case) * pressed + case.block.mass * friction.adhesion(case)
         lost = held * friction.run_out(case, case.time.duration)
         why = "tan(phi) m g cos b + c a times the way; band: the swinging of the normal force at first, 1e-3"
         yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
@@ -194,7 +194,7 @@ def shaken_gates() -> Iterator[Gate]:
     """Yield the gates on a base that shakes, against Newmark's sliding block."""
     for case in cases(SHAKEN):
         resisted = friction.coefficient(case) * friction.across(case)
-        stretch = friction.mass(case) * resisted / (2 * case.contact.shear)
+        stretch = case.block.mass * resisted / (2 * case.contact.shear)
         late = resisted * case.time.step / (2 * RATE)  # a phase that begins a step late, until the next one
         why = (
             "a rigid mass on the same record; band: shear springs that stretch and return twice a cycle, and one step "
@@ -225,7 +225,7 @@ def _late(case: Scene, switches: tuple[tuple[float, int], ...]) -> float:
     ends = [*(t for t, _ in switches[1:]), case.time.duration]
     lasts = [end - t for (t, way), end in zip(switches, ends, strict=True) if way]
     resisted = friction.coefficient(case) * friction.across(case)
-    swing = math.sqrt(2 * case.contact.shear / friction.mass(case))
+    swing = math.sqrt(2 * case.contact.shear / case.block.mass)
     return resisted * (math.fsum(lasts) * (1 / swing + case.time.step) + 2 * len(lasts) / swing**2)
 
 
