@@ -29,6 +29,7 @@ from fem_reference.events.bar_march import Piece, pieces
 from fem_reference.events.bar_model import BarProblem, Units
 from fem_reference.events.decimals import HALF, TWO, ZERO, working
 from fem_reference.events.switches import Switch, TooManySwitchesError
+from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 60
@@ -76,7 +77,7 @@ class BarMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = self._checked(times)
+        t = instants(times, self.end)
         with working(self.digits):
             rows = np.array([self._row(Decimal(float(instant))) for instant in t]).reshape(len(t), 6).T
         return BarHistory(t, rows[0], rows[1], np.maximum(0.0, rows[2]), rows[3], rows[4], rows[5])
@@ -89,7 +90,7 @@ class BarMotion:
         ValueError
             If the instant is not from 0 to `end` or a point is not from 0 to the height.
         """
-        self._checked([time])
+        instants([time], self.end)
         y: Array = np.atleast_1d(np.asarray(points, dtype=float))
         if y.ndim != 1 or not np.all((y >= 0) & (y <= self.problem.height)):
             raise ValueError(f"points: must be heights from 0 to {self.problem.height!r}, got {points!r}")
@@ -114,12 +115,6 @@ class BarMotion:
     @cached_property
     def _starts(self) -> list[Decimal]:
         return [piece.start for piece in self.pieces]
-
-    def _checked(self, times: ArrayLike) -> Array:
-        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
-        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
-            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
-        return t
 
     def _row(self, time: Decimal) -> tuple[float, ...]:
         """Displacement, gap, pressure, mean velocity, impulse and momentum residual."""

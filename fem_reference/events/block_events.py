@@ -29,6 +29,7 @@ from fem_reference.events.block_rows import State
 from fem_reference.events.block_switching import Beginning, arrived, changes, settled
 from fem_reference.events.decimals import ZERO, working
 from fem_reference.events.switches import NoContactStateError, Switch, TooManySwitchesError
+from fem_reference.problem.instants import by_pieces, instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 50
@@ -89,14 +90,10 @@ class BlockMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
-        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
-            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
-        starts = np.array([piece.start[0] for piece in self.pieces])
-        index = np.searchsorted(starts, t, side="right") - 1
+        t = instants(times, self.end)
         x, rate, rest = np.empty((12, len(t))), np.empty((12, len(t))), np.empty((7, len(t)))
-        for i in np.unique(index):
-            here, piece = index == i, self.pieces[i]
+        for i, here in by_pieces(t, [piece.start[0] for piece in self.pieces]):
+            piece = self.pieces[i]
             x[:, here], rate[:, here] = piece.values(t[here])
             rest[:, here] = piece.contacts(t[here], x[:, here])
         return self._history(t, x, rate, rest)

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.special import ellipkinc
 
+from fem_reference.problem.instants import by_pieces, instants
 from fem_reference.problem.problem import Array
 
 ACCURACY = 1e-13
@@ -171,13 +172,10 @@ class RockingMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
-        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
-            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
-        index = np.searchsorted([swing.start for swing in self.swings], t, side="right") - 1
+        t = instants(times, self.end)
         found = np.empty((2, len(t)))
-        for i in np.unique(index):
-            found[:, index == i] = self.swings[i].values(t[index == i])
+        for i, here in by_pieces(t, [swing.start for swing in self.swings]):
+            found[:, here] = self.swings[i].values(t[here])
         return found[0], found[1]
 
 

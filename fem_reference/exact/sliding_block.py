@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from fem_reference.problem.instants import by_pieces, instants
 from fem_reference.problem.problem import Array
 
 NOISE = 1e-12
@@ -235,13 +236,10 @@ class SlidingMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t: Array = np.atleast_1d(np.asarray(times, dtype=float))
-        if t.ndim != 1 or not np.all((t >= 0) & (t <= self.end)):
-            raise ValueError(f"times: must be a list of instants from 0 to the end {self.end!r}, got {times!r}")
-        index = np.searchsorted([one.base.start for one in self.stretches], t, side="right") - 1
+        t = instants(times, self.end)
         found = np.empty((2, len(t)))
-        for i in np.unique(index):
-            found[:, index == i] = self.stretches[i].at(t[index == i])
+        for i, here in by_pieces(t, [one.base.start for one in self.stretches]):
+            found[:, here] = self.stretches[i].at(t[here])
         return found[0], found[1]
 
     @property

@@ -1,10 +1,10 @@
 """Slips that frictional contact codes are known for, each put in once: some check must notice it."""
 
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.steps import damped_again, notices, velocity_twice
 from oracles.frictional import KNOWN, cases, held, sliding, square
 
 import dda.contact.friction as friction
@@ -12,7 +12,6 @@ import dda.contact.glued as glued
 import dda.contact.rubbing_points as rubbing_points
 import dda.contact.rules as rules
 import dda.one_block.unilateral as unilateral
-import dda.one_block.unilateral_step as step
 from dda import (
     Scheme,
     Unilateral,
@@ -86,14 +85,6 @@ def points():
 
 
 CHECKS = (invariants, events, identity, cutting, points)
-
-
-def notices(check):
-    """Whether a check fails."""
-    with suppress(AssertionError):
-        check()
-        return False
-    return True
 
 
 def of_the_solve_before(monkeypatch):
@@ -190,25 +181,6 @@ def forgotten_coupling(monkeypatch):
     """T of a slipping contact is set, but N is found as if there were none."""
     sliding_contacts = friction.__dict__[friction._Sliding.__name__]
     monkeypatch.setattr(sliding_contacts, "drag", lambda self, A, rows: None)
-
-
-def damped_again(monkeypatch):
-    """Gg stands in a shorter step as in a whole one."""
-    real = step.replace
-    monkeypatch.setattr(step, "replace", lambda scheme, gg, **given: real(scheme, gg=scheme.gg, **given))
-
-
-def velocity_twice(monkeypatch):
-    """A step that is repeated begins with the velocity of the failed one."""
-    real = unilateral.advance
-
-    def faulty(law, length, state, limit, carried=None):
-        after, found = real(law, length, state, limit, carried)
-        if length.ratio == 1 and after is not None:
-            state.P[:] = after.P
-        return after, found
-
-    monkeypatch.setattr(unilateral, "advance", faulty)
 
 
 def gap_of_the_increment(monkeypatch):

@@ -1,10 +1,10 @@
 """Slips that contact codes are known for, each put in once: some check of the stepping must notice it."""
 
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.steps import damped_again, notices, velocity_twice
 from oracles import unilateral_mp
 from oracles.unilateral_checks import DT, checked, random_model, run, sums
 
@@ -121,14 +121,6 @@ def sub_blocks():
 CHECKS = (invariants, digits, stiff_digits, cutting, at_once, kept_energy, sub_blocks)
 
 
-def notices(check):
-    """Whether a check fails."""
-    with suppress(AssertionError):
-        check()
-        return False
-    return True
-
-
 def crossing_at_start(law, before, N):
     return 1.0, 0.0
 
@@ -149,25 +141,6 @@ def old_reference(monkeypatch):
 
 def dead_band(monkeypatch):
     monkeypatch.setattr(Unilateral, "stays_closed", lambda law, N: -law.stiffness * 1e-6 <= N)
-
-
-def damped_again(monkeypatch):
-    """Gg stands in a shorter step as in a whole one."""
-    real = step.replace
-    monkeypatch.setattr(step, "replace", lambda scheme, gg, **given: real(scheme, gg=scheme.gg, **given))
-
-
-def velocity_twice(monkeypatch):
-    """A step that is repeated begins with the velocity of the failed one."""
-    real = unilateral.advance
-
-    def faulty(law, length, state, limit, carried=None):
-        after, found = real(law, length, state, limit, carried)
-        if length.ratio == 1 and after is not None:
-            state.P[:] = after.P
-        return after, found
-
-    monkeypatch.setattr(unilateral, "advance", faulty)
 
 
 def kept_shear(monkeypatch):
