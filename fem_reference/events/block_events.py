@@ -45,7 +45,7 @@ class BlockHistory:
     velocity: Array  # their rates [m/s, 1/s], shape (6, times)
     gap: Array  # gap w at M and N [m], negative when pressed, shape (2, times)
     gap_velocity: Array  # rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)
-    normal_force: Array  # N = p max(0, -w) at M and N [N], upwards, shape (2, times)
+    normal_force: Array  # N = p max(0, -w) at M and N, of locked corners -p w [N], upwards, shape (2, times)
     shear_force: Array  # T of the closed corners [N], towards +x, shape (2, times)
     slide: Array  # slide s at M and N over the base [m], shape (2, times)
     slipped: Array  # movement of the shear reference r by slipping until then, at M and N [m], shape (2, times)
@@ -102,7 +102,7 @@ class BlockMotion:
         mass, elastic, load = self._matrices
         p, ps = self.problem.stiffness, self.problem.shear_stiffness
         closed = np.asarray(rest[:2] != OPEN, dtype=float)
-        N = closed * np.maximum(0.0, -p * x[6:8])
+        N = -p * x[6:8] if self.problem.locked else closed * np.maximum(0.0, -p * x[6:8])
         T = 0.0 - ps * x[8:10]
         return BlockHistory(
             time=t,
@@ -174,7 +174,9 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
 def _march(model: BlockModel, course: Course, end: Decimal) -> Iterator[tuple[Piece, list[Switch]]]:
     """The pieces one after another, each with the switches at its start."""
     pieces = Pieces(model)
-    state, found = settled(pieces, _first(model, course.base(ZERO))), list[Switch]()
+    state, found = _first(model, course.base(ZERO)), list[Switch]()
+    if not model.locked:
+        state = settled(pieces, state)
     while state.time < end:
         piece = pieces(state)
         yield piece, found
@@ -196,7 +198,8 @@ def _next(pieces: Pieces, piece: Piece, course: Course, end: Decimal) -> State:
     left = row - state.time
     s = left if piece.longest is None else min(left, piece.longest)
     beginning, switched = Beginning(pieces, state), False
-    for watched in (one for c in (0, 1) for one in piece.corner(c).watched()):
+    corners = () if pieces.model.locked else (0, 1)
+    for watched in (one for c in corners for one in piece.corner(c).watched()):
         lead = beginning.lead(watched)
         found = ZERO if lead.sign < 0 else None
         if lead.sign > 0 and lead.clear < s:
@@ -207,7 +210,9 @@ def _next(pieces: Pieces, piece: Piece, course: Course, end: Decimal) -> State:
     time = row if s == left else state.time + s
     base = course.base(time) if s == left else state.base.after(s)
     there = arrived(pieces.model, replace(state, time=time, displacement=x, velocity=rate, base=base))
-    return there if not switched and s < left else _settled(pieces, there, s / end)
+    if pieces.model.locked or (not switched and s < left):
+        return there
+    return _settled(pieces, there, s / end)
 
 
 def _settled(pieces: Pieces, state: State, share: Decimal) -> State:

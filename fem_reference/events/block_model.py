@@ -71,6 +71,7 @@ class BlockProblem:
     friction: float | None = None  # angle phi of friction [deg]; None: a closed corner never slips
     cohesion: float = 0.0  # shear strength without normal force over the whole base [Pa]
     base: Motion | None = None  # motion of the base; None: at rest
+    locked: bool = False  # whether the springs of the corners also pull and nothing opens or slips
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -85,6 +86,8 @@ class BlockProblem:
                 raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
         self._check_material()
         self._check_friction()
+        if self.locked and (self.friction is not None or self.gap or self.velocity):
+            raise ValueError("locked: must be without friction, gap and velocity, got one of them")
         if 2 * abs(self.eccentricity) >= self.width:
             rule = f"must be below half the width {self.width / 2:g}"
             raise ValueError(f"eccentricity: {rule}, got {self.eccentricity!r}")
@@ -169,6 +172,7 @@ class BlockModel:
     velocity: Vector  # velocities at t = 0 [m/s, 1/s]
     tan: Decimal | None  # tan(phi) [-]; None: a closed corner never slips
     C: Decimal  # cohesion of a corner [N]
+    locked: bool = False  # whether the corners never change their state
 
     @classmethod
     def of(cls, problem: BlockProblem) -> BlockModel:
@@ -189,6 +193,7 @@ class BlockModel:
             velocity=[ZERO, Decimal(problem.velocity), ZERO, ZERO, ZERO, ZERO],
             tan=None if problem.friction is None else Decimal(math.tan(math.radians(problem.friction))),
             C=a * Decimal(problem.cohesion) / 2,
+            locked=problem.locked,
         )
 
     def stiffness(self, states: States) -> Matrix:

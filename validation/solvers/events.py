@@ -1,4 +1,4 @@
-"""Adapters of the exact motions with contact that opens: the block of one strain, and the bar."""
+"""Adapters of the exact motions: the block of one strain, locked or on contact that opens, and the bar."""
 
 from __future__ import annotations
 
@@ -79,6 +79,7 @@ def block_of(scene: Scene) -> BlockProblem:
         friction=c.friction,
         cohesion=c.cohesion,
         base=base_of(scene),
+        locked=c.law == "locked",
     )
 
 
@@ -312,8 +313,6 @@ class BlockEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
-        if features.UNILATERAL not in features.of(scene):
-            return 'it requires contact.law = "unilateral"'
         if rectangle(scene) is None:
             return "the block is not an upright rectangle on its lower edge"
         return None if scene.time.discount == 1 else "the exact motion has no kinetic damping, and gg is below 1"
@@ -337,6 +336,8 @@ class BarEvents(BlockEvents):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for the scene."""
+        if features.UNILATERAL not in features.of(scene):
+            return 'it requires contact.law = "unilateral"'
         if scene.block.poisson != 0:
             return "the bar is exact at Poisson's ratio 0 only"
         return super().applicable(scene)

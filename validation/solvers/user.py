@@ -30,6 +30,7 @@ LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case beside the steps, an
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
+ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
 UNITS = {  # what a value in another unit is, over the value in SI
     "time": {1e3: "milliseconds", 1e6: "microseconds"},
     DISPLACEMENT: {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"},
@@ -72,6 +73,14 @@ class UserSolver(Solver):
         except (WorkerHangs, WorkerDied):  # as its first run will do, and say
             return PARTS
         return frozenset(answer.get("parts", PARTS))
+
+    def about(self) -> dict[str, str]:
+        """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
+        try:
+            answer = ask(self.command(), os.environ, {"about": list(ABOUT)}, base_limit())
+        except (WorkerHangs, WorkerDied):
+            return {}
+        return {name: words(str(text)) for name, text in dict(answer.get("about") or {}).items()}
 
 
 class Asked(Prepared):
@@ -136,9 +145,10 @@ def words(text: str) -> str:
 def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
     """Return the run of columns, or the outcome that names what is wrong with them."""
     steps = scene.time.steps
-    if DISPLACEMENT not in columns:
+    required = [DISPLACEMENT] if DISPLACEMENT in scene.run.columns else list(scene.run.columns)
+    if not any(name in columns for name in required):
         got = words(", ".join(columns)) or "nothing"
-        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {DISPLACEMENT}, got {got}",))
+        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {got}",))
     expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
     time = columns.pop("time", expected)
     columns = {name: values for name, values in columns.items() if name in (*UNITS, *scene.run.columns)}
@@ -160,7 +170,8 @@ def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
     if (told := _factor("time", history.time, expected, scene)) is not None:
         return told
-    reference = DDA().solve(scene.with_values({"time.allow_unstable": True})).history
+    dda = DDA()
+    reference = None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
             sound = reference.columns[name]

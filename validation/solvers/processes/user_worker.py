@@ -1,7 +1,8 @@
 """The process in which a user's solver runs: ``python -m validation.solvers.processes.user_worker module:attribute``.
 
 A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
-them, or "raised" with the error and "at" with its place. A request of "parts" is answered with those that it has.
+them, or "raised" with the error and "at" with its place. A request of "parts" is answered with those that it has, one
+of "about" with what the solver says of itself.
 """
 
 from __future__ import annotations
@@ -137,6 +138,9 @@ def main(name: str, paths: list[str]) -> None:
             kept.extend([] if kept else [load(name)])
             if "parts" in request:
                 return {"parts": [part for part in request["parts"] if hasattr(kept[0], part)]}
+            if "about" in request:
+                said = getattr(kept[0], "about", {})
+                return {"about": {name: str(said[name]) for name in request["about"] if name in said}}
             return run(kept[0], request)
         except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
             return {"raised": text_of(error), "at": place_of(error, Path(place))}

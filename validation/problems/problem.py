@@ -1,0 +1,72 @@
+"""A problem: a scene, the question that it asks, and the exact motion that answers it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from validation.problems.truth import Truth, truth_of
+from validation.scenes.scene import Scene, load_scene
+
+PREFIX = "field-"  # of the scenes of problems
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A question to a program.
+
+    Attributes
+    ----------
+    name
+        What tables and submissions call it.
+    asks
+        What a program has to get right, in a sentence.
+    scene
+        The scene; its steps are the instants at which the answer is judged, its columns are what is judged.
+    truth
+        The exact motion.
+    """
+
+    name: str
+    asks: str
+    scene: Scene
+    truth: Truth
+
+    @property
+    def title(self) -> str:
+        """Title of the scene."""
+        return self.scene.title or self.name
+
+
+ASKS = {
+    "locked": "An undamped vibration on springs that push and pull: its frequency, and that nothing damps it.",
+    "opening": "The same block on springs that do not pull: when it lifts off, when it lands, and what is left of it.",
+    "rebound": "A rigid block that falls on springs: how hard it lands and how high it bounces, twice.",
+    "sliding": "A block on a slope steeper than its angle of friction: how far it slides.",
+    "creep": "A block that friction could hold, suddenly loaded: how far it shifts while it rings on its springs.",
+    "rocking": "A block let go from a large tilt: when it comes down on its base, its rotation not being small.",
+    "column": "A wave through a column whose base lets it pass: its shape and its time of arrival.",
+}
+PROBLEMS = tuple(ASKS)
+
+
+def problem(name: str) -> Problem:
+    """Return a problem of the suite by name.
+
+    Raises
+    ------
+    KeyError
+        There is none of this name.
+    """
+    scene = load_scene(PREFIX + name)
+    return Problem(name, ASKS[name], scene, truth_of(scene))
+
+
+def problem_of(scene: Scene) -> Problem:
+    """Return the problem that any scene poses.
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep, or no exact motion is known for it.
+    """
+    return Problem(scene.name, f"The scene {scene.name}.", scene, truth_of(scene))

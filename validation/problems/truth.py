@@ -1,0 +1,118 @@
+"""The exact motion of a scene, by whichever exact solution has it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.history import Array, History
+from validation.runs.run import Outcome
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
+from validation.solvers.rigid.rocking import quarter_period, rocking
+
+ROCKING = "rigid rocking"
+
+
+@dataclass(frozen=True)
+class Truth:
+    """An exact solution of a scene, and up to when it is the scene's.
+
+    Attributes
+    ----------
+    name
+        Of the solver, or of the closed form.
+    until
+        Instant up to which answers are judged [s].
+    """
+
+    name: str
+    until: float
+
+
+def truth_of(scene: Scene) -> Truth:
+    """Return the exact solution that a scene has.
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep, or no exact motion is known for it.
+    """
+    if scene.sweep:
+        raise InputError(f"{scene.name}: sweep: must not be there, one problem has one scene; use --set key=value")
+    if features.ROTATION in features.of(scene):
+        return Truth(ROCKING, _comes_down(scene))
+    reasons = []
+    for name in [*by_role(Role.LIMIT), *by_role(Role.TRUTH)]:
+        reason = get_solver(name).refusal(scene)
+        if reason is None:
+            return Truth(name, scene.time.duration)
+        reasons.append(f"{name}: {reason}")
+    raise InputError(f"{scene.name}: no exact motion is known: {'; '.join(reasons)}")
+
+
+def exact(scene: Scene, truth: Truth) -> History:
+    """Return the exact motion of a scene at its steps up to the truth's end.
+
+    Raises
+    ------
+    InputError
+        It could not be computed.
+    """
+    if truth.name == ROCKING:
+        return _rotation(scene, truth)
+    run = get_solver(truth.name).solve(scene)
+    if run.outcome is not Outcome.COMPLETED or run.history is None:
+        raise InputError(f"{scene.name}: {truth.name}: {run.outcome.sentence} {'; '.join(run.notes)}")
+    return run.history
+
+
+def _comes_down(scene: Scene) -> float:
+    """Return when a block that is let go at rest from a tilt comes down on its base [s]; an impact is not judged.
+
+    Raises
+    ------
+    InputError
+        The scene is another one than that.
+    """
+    _refuse_other_rocking(scene)
+    width, height = _sizes(scene)
+    return quarter_period(width, height, abs(math.radians(scene.block.tilt)), scene.load.gravity)
+
+
+def _refuse_other_rocking(scene: Scene) -> None:
+    apart = [f.name for f in features.FEATURES if f.name in features.of(scene) and f.name not in OF_ROCKING]
+    if apart:
+        raise InputError(f"{scene.name}: no exact motion is known of a block that turns with {', '.join(apart)}")
+    if scene.block.tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
+        raise InputError(f"{scene.name}: a block that turns is known exactly where it is let go from a tilt, by weight")
+    if set(scene.run.columns) != {"rotation"}:
+        raise InputError(
+            f"{scene.name}: run.columns: must be rotation alone, which is known exactly, got "
+            f"{', '.join(scene.run.columns)}"
+        )
+
+
+OF_ROCKING = (features.WEIGHT, features.UNILATERAL, features.FRICTION, features.ROTATION)
+
+
+def _sizes(scene: Scene) -> tuple[float, float]:
+    points = np.asarray(scene.block.outline)
+    width, height = np.ptp(points, axis=0)
+    if len(points) != 4 or not math.isclose(scene.block.mass, scene.block.density * width * height):
+        raise InputError(f"{scene.name}: no exact motion is known of a block that turns and is no rectangle")
+    return float(width), float(height)
+
+
+def _rotation(scene: Scene, truth: Truth) -> History:
+    """Return the rotation since t = 0 of a rigid block [rad], counter-clockwise positive."""
+    t: Array = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    t = t[t <= truth.until]
+    tilt = math.radians(scene.block.tilt)
+    fallen = abs(tilt) - rocking(*_sizes(scene), abs(tilt), t, gravity=scene.load.gravity).rotation
+    return History(t, {"rotation": -math.copysign(1.0, tilt) * fallen})
