@@ -4,11 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DOCS := $(VENV)/.docs
+PEERS := $(VENV)/.peers
 export OMP_NUM_THREADS ?= 1
 # Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all gallery test test-all gates lint portable docs api bench clean
+.PHONY: report report-all field gallery test test-all gates lint portable docs api bench clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -19,6 +20,10 @@ report-all: $(READY)  ## every study and one PDF
 gallery: $(READY)  ## the results as a static site with calculators, in reports/gallery; runs the core study if there are none
 	@test -d reports/results/studies || $(BIN)/dda-validate run core
 	@$(BIN)/dda-validate gallery --out reports/gallery
+
+field: $(PEERS)  ## other people's programs on the problems, and their table; minutes. NOT RUN: what is not installed
+	@$(BIN)/dda-validate run field --results reports/field; status=$$?; \
+	$(BIN)/dda-validate report --results reports/field --out reports/field.pdf && exit $$status
 
 test: $(READY)  ## the tests and the accuracy gates, without the long ones
 	$(PYTEST) -n 2 --dist loadgroup -m "not long"
@@ -49,7 +54,7 @@ bench: $(READY)  ## speed, as ratios in one run against named rivals
 	$(BIN)/python reports/bench.py
 
 clean:
-	rm -rf $(VENV) site build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/gallery reports/*.pdf
+	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/*.pdf
 
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c "import ensurepip" 2>/dev/null || { echo "needs the venv module of Python: apt-get install python3-venv"; exit 1; }
@@ -59,4 +64,8 @@ $(READY): pyproject.toml constraints.txt
 
 $(DOCS): $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[docs]' --constraint constraints.txt
+	@touch $@
+
+$(PEERS): $(READY) examples/peers/pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable 'examples/peers[pypi]' --constraint constraints.txt
 	@touch $@

@@ -234,12 +234,12 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
-        raise InputError(_one_line(error, source)) from None
+        raise InputError(one_line(error, source)) from None
     except RecursionError:
         raise InputError(f"{source}: scene: must not be nested so deeply, got too many levels") from None
 
 
-def _one_line(error: ValidationError, source: str) -> str:
+def one_line(error: ValidationError, source: str) -> str:
     """Return the first defect of a pydantic report as ``source: field: rule, got value``."""
     first = error.errors(include_url=False)[0]
     field = ".".join(str(part) for part in first["loc"])

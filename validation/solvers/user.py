@@ -5,6 +5,7 @@ The solver runs in a process of its own, so that one that hangs, exits or crashe
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 from collections.abc import Mapping
@@ -31,9 +32,12 @@ LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case beside the steps, an
 ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
+LENGTHS = {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"}
 UNITS = {  # what a value in another unit is, over the value in SI
     "time": {1e3: "milliseconds", 1e6: "microseconds"},
-    DISPLACEMENT: {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"},
+    DISPLACEMENT: LENGTHS,
+    "horizontal_displacement": LENGTHS,
+    "rotation": {math.degrees(1): "degrees", 1e3: "mrad"},
     PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
 }
 NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
@@ -168,20 +172,20 @@ def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
 
 def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (told := _factor("time", history.time, expected, scene)) is not None:
+    if (told := factor("time", history.time, expected, scene)) is not None:
         return told
     dda = DDA()
     reference = None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
             sound = reference.columns[name]
-            if np.isfinite(sound).all() and (told := _factor(name, values, sound, scene)) is not None:
+            if np.isfinite(sound).all() and (told := factor(name, values, sound, scene)) is not None:
                 return told
     return None
 
 
-def _factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
-    """Say by which known factor a column differs from what is expected, if by one."""
+def factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
+    """Say by which known factor a column of `UNITS` differs from what is expected, if by one."""
     sizes = norm(values), norm(sound)
     if min(sizes) == 0 or not np.isfinite(sizes).all():
         return None
@@ -194,7 +198,7 @@ def _factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
             return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
     if alike < 0:
         return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
-    width = scene.block.base_length
+    width = 1.0 if scene.column is not None else scene.block.base_length
     if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:
         return f"wrong units: {name} is {width:g} times what is expected, the length of the base: a force?"
     return None

@@ -1,0 +1,193 @@
+"""Submissions: what is wrong is refused by field, in one line, before anything is judged or written."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.problems.data import PACK, SUBMISSION, united
+from validation.problems.pack import TEMPLATE, TIME, table_of
+from validation.problems.problem import Problem, problem, problem_of
+from validation.problems.submission import FILE, read_submission
+from validation.problems.truth import exact
+from validation.runs.history import History
+from validation.scenes.scene import load_scene
+
+GOOD = {
+    "format": SUBMISSION,
+    "pack": PACK,
+    "problem": "locked",
+    "program": "Some code",
+    "version": "1.0",
+    "settings": "average acceleration, 0.1 ms",
+    "who": "somebody",
+}
+Rows = list[list[str]]
+
+
+@pytest.fixture(scope="module")
+def one() -> Problem:
+    return problem("locked")
+
+
+@pytest.fixture(scope="module")
+def motion(one: Problem) -> History:
+    return exact(one.scene, one.truth)
+
+
+def submitted(place: Path, table: str, **fields: Any) -> Path:
+    """Write a submission and return its directory."""
+    place.mkdir(exist_ok=True)
+    stated = {key: value for key, value in (GOOD | fields).items() if value is not ...}
+    (place / FILE).write_text(json.dumps(stated))
+    (place / "answer.csv").write_text(table)
+    return place
+
+
+def rows_of(table: str) -> Rows:
+    return list(csv.reader(table.splitlines()))
+
+
+def text_of(rows: Rows) -> str:
+    return "\n".join(",".join(row) for row in rows)
+
+
+def refused(place: Path, own: Problem | None = None) -> str:
+    with pytest.raises(InputError) as caught:
+        read_submission(place, own)
+    said = str(caught.value)
+    assert "\n" not in said
+    return said
+
+
+def test_a_sound_submission_is_read(tmp_path: Path, one: Problem, motion: History) -> None:
+    table = table_of(motion, one.scene.run.columns)
+    found = read_submission(submitted(tmp_path, table))
+    assert found.problem.name == "locked" and found.data.program == "Some code"
+    for name, values in motion.columns.items():
+        np.testing.assert_array_equal(found.history.columns[name], values)
+    swapped = [[row[1], row[2], row[0]] for row in rows_of(table)]  # columns go by their names
+    found = read_submission(submitted(tmp_path, text_of(swapped)))
+    np.testing.assert_array_equal(found.history.displacement, motion.displacement)
+
+
+def test_what_a_program_cannot_report_is_left_out_by_name(tmp_path: Path, motion: History) -> None:
+    table = table_of(motion, ["displacement"])
+    assert "contact_pressure_Pa: is required" in refused(submitted(tmp_path, table))
+    found = read_submission(submitted(tmp_path, table, not_reported=["contact_pressure_Pa"]))
+    assert list(found.history.columns) == ["displacement"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"pack": "1.0"}, "pack: must be '2.0', the version of this pack, got '1.0'"),
+        ({"pack": 2.0}, "pack: must be '2.0', the version of this pack, got 2.0"),
+        ({"pack": ...}, "pack: is required, got nothing"),
+        ({"format": "other"}, "format: must be 'dda-validation submission', got 'other'"),
+        ({"problem": "lokced"}, "problem: must be among locked, opening,"),
+        ({"program": " "}, "program: "),
+        ({"version": 3}, "version: must be a valid string, got 3"),
+        ({"who": ...}, "who: is required, got nothing"),
+        ({"settings": TEMPLATE["settings"]}, "settings: must be filled in, got"),
+        ({"wo": "x"}, "wo: unknown key, got 'x'"),
+        ({"not_reported": ["pressure"]}, "not_reported: must be among displacement_m, contact_pressure_Pa,"),
+        ({"not_reported": ["displacement_m", "contact_pressure_Pa"]}, "not_reported: must leave a column to judge"),
+    ],
+)  # fmt: skip
+def test_a_wrong_field_is_named(
+    fields: dict[str, Any], said: str, tmp_path: Path, one: Problem, motion: History
+) -> None:
+    line = refused(submitted(tmp_path, table_of(motion, one.scene.run.columns), **fields))
+    assert f"{FILE}: " in line and said in line
+
+
+def in_millimetres(rows: Rows) -> Rows:
+    return [["time_s", "displacement_mm", "contact_pressure_Pa"], *rows[1:]]
+
+
+def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
+    def change(rows: Rows) -> Rows:
+        return [
+            rows[0],
+            *([repr(float(x) * factor) if i == column else x for i, x in enumerate(r)] for r in rows[1:]),
+        ]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (in_millimetres, "header: displacement_mm: must be in metres, as displacement_m, got 'displacement_mm'"),
+        (lambda r: [["time", *r[0][1:]], *r[1:]], "header: time: must be in seconds, as time_s"),
+        (lambda r: [[*r[0][:2], "contact_pressure"], *r[1:]], "must be in pascals, as contact_pressure_Pa"),
+        (lambda r: [[*r[0][:2], "speed"], *r[1:]], "header: speed: must be among time_s, displacement_m,"),
+        (lambda r: [row[:2] for row in r], "contact_pressure_Pa: is required, got time_s, displacement_m; not"),
+        (lambda r: [row[1:] for row in r], "header: time_s: is required, got displacement_m, contact_pressure_Pa"),
+        (lambda r: [[*row, row[1]] for row in r], "displacement_m: must stand once, got it 2 times"),
+        (lambda r: r[:-1], "time_s: must have 50 rows, 0.002 s apart, got 49"),
+        (lambda r: [r[0], ["0", "0", "0"], *r[1:]], "got 51; the state at t = 0 is left out"),
+        (lambda r: [r[0], *r[2:], r[-1]], "row 1: time_s: must be 0.002, got 0.004"),
+        (scaled(0, 1e3), "row 1: time_s: must be 0.002, got 2; milliseconds?"),
+        (lambda r: [*r[:3], [r[3][0], "nan", "0"], *r[4:]], "row 3: displacement_m: must be a finite number, got nan"),
+        (lambda r: [*r[:3], [r[3][0], "-", r[3][2]], *r[4:]], "row 3: displacement_m: must be a number, got '-'"),
+        (lambda r: [*r[:3], r[3][:2], *r[4:]], "row 3: must have 3 values, got 2"),
+        (lambda r: r[:1], "time_s: must have 50 rows"),
+        (lambda r: [], "must be a table of numbers under a header, got an empty file"),
+        (scaled(1, 1e3), "displacement_m: wrong units: it is 1000 times what is expected in SI, mm?"),
+        (scaled(2, 1e-6), "contact_pressure_Pa: wrong units: it is 1e-06 times what is expected in SI, MPa?"),
+        (scaled(1, -1.0), "displacement_m: wrong sign: it is the negative of what is expected"),
+    ],
+)  # fmt: skip
+def test_a_wrong_table_is_named(
+    change: Callable[[Rows], Rows], said: str, tmp_path: Path, one: Problem, motion: History
+) -> None:
+    table = text_of(change(rows_of(table_of(motion, one.scene.run.columns))))
+    line = refused(submitted(tmp_path, table))
+    assert "answer.csv: " in line and said in line
+
+
+def test_files_that_are_missing_or_no_such_files(tmp_path: Path, one: Problem, motion: History) -> None:
+    assert "must be a directory" in refused(tmp_path / "none")
+    assert f"{FILE}: is required, got no such file" in refused(tmp_path)
+    (tmp_path / FILE).write_text("[1]")
+    assert "must be an object, got list" in refused(tmp_path)
+    (tmp_path / FILE).write_text("{")
+    assert "must be JSON in UTF-8" in refused(tmp_path)
+    place = submitted(tmp_path, table_of(motion, one.scene.run.columns))
+    (place / "second.csv").write_text("")
+    assert f"must hold one CSV file beside {FILE}, got answer.csv, second.csv" in refused(place)
+    (place / "second.csv").unlink()
+    (place / "answer.csv").unlink()
+    assert "got none" in refused(place)
+
+
+def test_the_callers_own_problem(tmp_path: Path) -> None:
+    scene = load_scene("field-locked").with_values({"contact.stiffness": 2e9}).model_copy(update={"name": "mine"})
+    own = problem_of(scene)
+    place = submitted(tmp_path, table_of(exact(scene, own.truth), scene.run.columns), problem="mine")
+    assert read_submission(place, own).problem is own
+    assert "problem: must be among locked" in refused(place)
+    assert "problem: must be 'mine', the scene's name, got 'locked'" in refused(
+        submitted(tmp_path, "", problem="locked"), own
+    )
+
+
+def test_a_column_of_a_wave_names_its_height_and_unit(tmp_path: Path) -> None:
+    one = problem("column")
+    motion = exact(one.scene, one.truth)
+    table = table_of(motion, one.scene.run.columns)
+    assert rows_of(table)[0] == [TIME, united("displacement_1"), united("displacement_2")]
+    read_submission(submitted(tmp_path, table, problem="column"))
+    wrong = table.replace("displacement_2_m", "displacement_2_cm")
+    assert "displacement_2_cm: must be in metres, as displacement_2_m" in refused(
+        submitted(tmp_path, wrong, problem="column")
+    )

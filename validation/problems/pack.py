@@ -1,0 +1,150 @@
+"""The problem pack: every problem as JSON, its exact motion as CSV, and what a submission has to look like."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.problems.bands import bands
+from validation.problems.data import (
+    PACK,
+    SUBMISSION,
+    ColumnOfAnswer,
+    ProblemData,
+    SamplingData,
+    SubmissionData,
+    block_data,
+    column_data,
+    contact_data,
+    load_data,
+    meaning,
+    united,
+)
+from validation.problems.problem import PROBLEMS, Problem, problem
+from validation.problems.truth import exact
+from validation.runs.files import write_atomically
+from validation.runs.history import History
+
+PLACE = "problems"  # directory of a pack that holds this part
+MEASURE = "norm(answer - exact) / norm(exact), over the instants"
+TIME = "time_s"
+TEMPLATE = {  # what a submitter changes
+    "program": "name of the program",
+    "version": "its version",
+    "settings": "time step, integrator, contact model, damping: what another user would need to repeat it",
+    "who": "who ran it",
+    "not_reported": [],
+}
+
+README = """\
+# Problems for any program
+
+A part of the reference pack of dda-validation, version {pack}; nothing needs to be installed to answer a problem.
+
+| what | where |
+|---|---|
+| problems, SI units, which stand in the names | `NAME.json`, by `problem.schema.json` |
+| exact motions | `exact/NAME.csv` |
+| a submission to fill in | `submissions/NAME/submission.json`, by `submission.schema.json` |
+
+{table}
+
+## An answer
+
+1. Compute a problem with any program. Its time step is its own; the answer holds the instants of `sampling`: `step_s`,
+   2 `step_s`, ..., `count` of them, and not t = 0.
+2. Write the columns that `answer` names to one CSV file under a header such as `time_s,displacement_m`, beside the
+   `submission.json` of the problem, in a directory of its own. What the program cannot report goes into `not_reported`.
+3. `dda-validate judge DIRECTORY` checks the two files, judges the columns, and writes `judged.html` and `badge.svg`.
+
+Each column passes where norm(answer - exact) / norm(exact), Euclidean over the instants, lies in its band, edges
+included. The band is what one per cent of the problem's data changes; `reason` says which datum.
+
+Columns of a column's answer are at `heights_m`. A rocking block is judged until it comes down: what an impact takes
+depends on the contact model, and is not asked.
+"""
+
+
+def problem_data(one: Problem, until: float) -> ProblemData:
+    """Return a problem as plain data; `until` is the last instant that is judged [s]."""
+    scene = one.scene
+    found = bands(one)
+    judged = [
+        ColumnOfAnswer(
+            name=united(column),
+            meaning=meaning(column),
+            measure=MEASURE,
+            low=found[column].low,
+            high=found[column].high,
+            reason=found[column].reason,
+        )
+        for column in scene.run.columns
+    ]
+    on_base = scene.column is None
+    return ProblemData(
+        problem=one.name,
+        title=one.title,
+        asks=one.asks,
+        block=block_data(scene) if on_base else None,
+        contact=contact_data(scene) if on_base else None,
+        load=load_data(scene) if on_base else None,
+        geometry="large rotation" if scene.run.geometry == "updated" else "small",
+        column=column_data(scene),
+        sampling=SamplingData(step_s=scene.time.step, count=round(until / scene.time.step)),
+        answer=tuple(judged),
+        exact=f"exact/{one.name}.csv",
+    )
+
+
+def write_problems(directory: Path) -> int:
+    """Write the problems into `problems` of a pack's directory, and return how many there are.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+    place, rows = directory / PLACE, []
+    for name in PROBLEMS:
+        one = problem(name)
+        motion = exact(one.scene, one.truth)
+        data = problem_data(one, float(motion.time[-1]))
+        _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
+        _write(place / data.exact, table_of(motion, one.scene.run.columns))
+        blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
+        _write(place / "submissions" / name / "submission.json", _json(blank))
+        rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
+    _write(place / "problem.schema.json", _json(ProblemData.model_json_schema()))
+    _write(place / "submission.schema.json", _json(SubmissionData.model_json_schema()))
+    table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
+    _write(place / "README.md", README.format(pack=PACK, table=table))
+    return len(PROBLEMS)
+
+
+def table_of(motion: History, columns: Iterable[str]) -> str:
+    """Return a motion as CSV under the pack's names, with all digits."""
+    names = list(columns)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([TIME, *map(united, names)])
+    writer.writerows(np.column_stack([motion.time, *(motion.columns[name] for name in names)]).tolist())
+    return text.getvalue()
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path.parent}: cannot be made: {error.strerror}; choose another place") from None
+    write_atomically(path, lambda stream: stream.write(text.encode()))

@@ -1,0 +1,209 @@
+"""A submission: a directory with one table and `submission.json`, checked field by field."""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from validation.errors import InputError
+from validation.problems.data import PACK, SubmissionData, kind, unit, united
+from validation.problems.pack import TEMPLATE, TIME
+from validation.problems.problem import PROBLEMS, Problem, problem
+from validation.problems.truth import exact
+from validation.runs.history import Array, History
+from validation.runs.regular import regular
+from validation.scenes.scene import one_line
+from validation.solvers.user import UNITS, factor
+
+FILE = "submission.json"
+LARGEST_FILE = 100_000_000  # bytes
+NEAR = 1e-6  # of a step, by which a time may be off: six digits after the point of a step
+ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds"}
+EXPORT = "dda-validate export-pack DIR writes the problems"
+
+
+@dataclass(frozen=True, eq=False)
+class Submission:
+    """What was submitted, read and checked."""
+
+    data: SubmissionData
+    problem: Problem
+    history: History  # of the columns that are reported
+
+
+def read_submission(directory: Path, own: Problem | None = None) -> Submission:
+    """Read a submission to a problem of the pack, or to one of the caller's own.
+
+    Raises
+    ------
+    InputError
+        A file or a field is missing or wrong; the line names it.
+    """
+    if not directory.is_dir():
+        raise InputError(f"{directory}: must be a directory with {FILE} and one CSV file; {EXPORT}")
+    data = _data(directory / FILE)
+    asked = own or _problem(directory / FILE, data.problem)
+    if data.problem != asked.name:
+        raise InputError(f"{directory / FILE}: problem: must be {asked.name!r}, the scene's name, got {data.problem!r}")
+    columns = _reported(directory / FILE, data, asked.scene.run.columns)
+    table = _table(directory)
+    return Submission(data, asked, _history(table, asked, columns))
+
+
+def _data(path: Path) -> SubmissionData:
+    stated = _object(path)
+    if "pack" in stated and stated["pack"] != PACK:
+        raise InputError(f"{path}: pack: must be {PACK!r}, the version of this pack, got {stated['pack']!r}; {EXPORT}")
+    try:
+        data = SubmissionData.model_validate(stated)
+    except ValidationError as error:
+        raise InputError(one_line(error, str(path))) from None
+    for field in ("program", "version", "settings", "who"):
+        if getattr(data, field) == TEMPLATE[field]:
+            raise InputError(f"{path}: {field}: must be filled in, got {getattr(data, field)!r}")
+    return data
+
+
+def _object(path: Path) -> dict[str, Any]:
+    try:
+        regular(path, LARGEST_FILE)
+        found = json.loads(path.read_bytes().decode("utf-8-sig"))
+    except InputError:
+        raise
+    except FileNotFoundError:
+        raise InputError(f"{path}: is required, got no such file; {EXPORT} with one to fill in for each") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: must be JSON in UTF-8: {' '.join(str(error).split())}") from None
+    if not isinstance(found, dict):
+        raise InputError(f"{path}: must be an object, got {type(found).__name__}")
+    return found
+
+
+def _problem(path: Path, name: str) -> Problem:
+    if name in PROBLEMS:
+        return problem(name)
+    near = difflib.get_close_matches(name, PROBLEMS, n=1)
+    meant = f"; did you mean {near[0]}?" if near else ""
+    raise InputError(f"{path}: problem: must be among {', '.join(PROBLEMS)}, got {name!r}{meant}")
+
+
+def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[str]:
+    """Return the columns of the history that the table has to hold."""
+    names = [united(column) for column in columns]
+    for name in data.not_reported:
+        if name not in names:
+            raise InputError(f"{path}: not_reported: must be among {', '.join(names)}, got {name!r}")
+    kept = [column for column in columns if united(column) not in data.not_reported]
+    if not kept:
+        raise InputError(f"{path}: not_reported: must leave a column to judge, got all of {', '.join(names)}")
+    return kept
+
+
+# ---- the table ------------------------------------------------------------------------------------------------------
+
+
+def _table(directory: Path) -> Path:
+    found = sorted(path for path in directory.iterdir() if path.suffix.lower() == ".csv")
+    if len(found) != 1:
+        got = ", ".join(path.name for path in found) or "none"
+        raise InputError(f"{directory}: must hold one CSV file beside {FILE}, got {got}")
+    return found[0]
+
+
+def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
+    names, table = _read(path)
+    _check_header(path, names, asked, columns)
+    values = dict(zip(names, table.T, strict=True))
+    motion = exact(asked.scene, asked.truth)
+    _check_numbers(path, names, table)
+    _check_times(path, values[TIME], motion.time)
+    history = History(motion.time, {column: values[united(column)] for column in columns})
+    for column in columns:
+        plain = kind(column)[0]
+        if plain in UNITS and (told := factor(plain, history.columns[column], motion.columns[column], asked.scene)):
+            raise InputError(f"{path}: {united(column)}: {told.replace(plain, 'it', 1)}")
+    return history
+
+
+def _read(path: Path) -> tuple[list[str], Array]:
+    try:
+        regular(path, LARGEST_FILE)
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: must be a CSV table in UTF-8: {error}") from None
+    if not rows:
+        raise InputError(f"{path}: must be a table of numbers under a header, got an empty file")
+    names = [name.strip() for name in rows[0]]
+    numbers = [_numbers(path, names, number, row) for number, row in enumerate(rows[1:], start=1)]
+    return names, np.array(numbers).reshape(len(numbers), len(names))
+
+
+def _numbers(path: Path, names: Sequence[str], number: int, row: Sequence[str]) -> list[float]:
+    if len(row) != len(names):
+        raise InputError(f"{path}: row {number}: must have {len(names)} values, got {len(row)}")
+    found = []
+    for name, cell in zip(names, row, strict=True):
+        try:
+            found.append(float(cell))
+        except ValueError:
+            raise InputError(f"{path}: row {number}: {name}: must be a number, got {cell.strip()!r}") from None
+    return found
+
+
+def _check_header(path: Path, names: Sequence[str], asked: Problem, columns: Sequence[str]) -> None:
+    wanted = {TIME: "s"} | {united(column): unit(column) for column in columns}
+    for name in names:
+        if name not in wanted:
+            raise InputError(f"{path}: header: {name}: {_rule(name, wanted, asked)}, got {name!r}")
+        if names.count(name) > 1:
+            raise InputError(f"{path}: header: {name}: must stand once, got it {names.count(name)} times")
+    for name in wanted:
+        if name not in names:
+            left = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"
+            raise InputError(f"{path}: header: {name}: is required, got {', '.join(names)}{left}")
+
+
+def _rule(name: str, wanted: dict[str, str], asked: Problem) -> str:
+    """Return what is wrong with a name: its unit, or all of it."""
+    for known, its_unit in wanted.items():
+        plain = known.removesuffix(f"_{its_unit}")
+        if name == plain or (name.startswith(f"{plain}_") and name.removeprefix(f"{plain}_").isalpha()):
+            return f"must be in {ALL_UNITS[its_unit]}, as {known}"
+    if name in map(united, asked.scene.run.columns):
+        return f"must not stand in the table and in not_reported of {FILE}"
+    return f"must be among {', '.join(wanted)}"
+
+
+def _check_numbers(path: Path, names: Sequence[str], table: Array) -> None:
+    bad = np.argwhere(~np.isfinite(table))
+    if len(bad):
+        row, column = bad[0]
+        raise InputError(
+            f"{path}: row {row + 1}: {names[column]}: must be a finite number, got {float(table[row, column])}"
+        )
+
+
+def _check_times(path: Path, times: Array, wanted: Array) -> None:
+    step = float(wanted[0])
+    if len(times) != len(wanted):
+        zero = "; the state at t = 0 is left out" if len(times) == len(wanted) + 1 and times[0] == 0 else ""
+        raise InputError(f"{path}: {TIME}: must have {len(wanted)} rows, {step:g} s apart, got {len(times)}{zero}")
+    off = np.flatnonzero(np.abs(times - wanted) > NEAR * step)
+    if len(off):
+        n = int(off[0])
+        close = np.allclose(times, 1e3 * wanted, rtol=1e-6, atol=0)
+        hint = "; milliseconds?" if close else ""
+        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {float(wanted[n]):g}, got {float(times[n]):g}{hint}")
