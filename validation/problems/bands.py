@@ -1,0 +1,202 @@
+"""The band of an answer: what one per cent of the scene's data changes in the exact motion.
+
+Data of a block are not known to better than one per cent. An error of an answer that is smaller than what such a per
+cent does to the exact motion changes nothing for who uses the answer; a larger one does.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from validation.problems.problem import Problem
+from validation.problems.truth import exact, truth_of
+from validation.runs.history import Array, History
+from validation.scenes.scene import Scene, parse_scene
+
+UNKNOWN = 0.01  # relative error of a datum that nobody knows better
+# What one per cent of a datum moves further than this is not determined by the data any more: an answer of zeros, whose
+# error is 1, must not come near to it. The column is judged up to the instant at which that happens.
+LARGEST = 0.2
+LEAST = 4  # rows that are judged, at least
+Values = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A number of a scene that is not known to better than one per cent."""
+
+    name: str  # in words
+    changed: Callable[[Scene], Values]  # the keys that carry it, one per cent larger; empty where it is absent
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """The band [0, `high`] of the relative L2 error of a column.
+
+    Attributes
+    ----------
+    high
+        Upper edge [1].
+    datum
+        The datum of which one per cent changes the column most.
+    rows
+        Rows of the exact motion that are judged.
+    until
+        Instant of the last of them [s].
+    """
+
+    high: float
+    datum: str
+    rows: int
+    until: float
+
+    @property
+    def reason(self) -> str:
+        """Why the band ends there."""
+        return (
+            f"one per cent of {self.datum} changes the exact motion by {100 * self.high:.2g} %: data of a block are "
+            "not known to better than one per cent, an error below that changes nothing for its user"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Standard:
+    """What answers to a problem are held against: the exact motion, those of changed data, and the bands of columns.
+
+    A column whose exact motion is zero throughout has no band: no relative error of it exists.
+    """
+
+    exact: History
+    changed: Mapping[str, History]  # name of a datum to the exact motion with it one per cent larger
+    bands: Mapping[str, Band]  # column to band
+
+
+def _springs(scene: Scene) -> Values:
+    if scene.column is not None or math.isinf(scene.contact.stiffness):
+        return {}
+    found = {"contact.stiffness": scene.contact.stiffness * (1 + UNKNOWN)}
+    if scene.contact.shear_stiffness:
+        found["contact.shear_stiffness"] = scene.contact.shear_stiffness * (1 + UNKNOWN)
+    return found
+
+
+def _material(key: str) -> Callable[[Scene], Values]:
+    def changed(scene: Scene) -> Values:
+        if scene.column is None:
+            return {f"block.{key}": getattr(scene.block, key) * (1 + UNKNOWN)}
+        layers = scene.definition()["column"]["layer"]
+        return {"column.layer": [layer | {key: layer[key] * (1 + UNKNOWN)} for layer in layers]}
+
+    return changed
+
+
+def _width(scene: Scene) -> Values:
+    """Return a rectangle's width alone: its slenderness, by which it rocks."""
+    if scene.column is not None or scene.block.vertices is not None:
+        return {}
+    (_, _), (width, height) = scene.block.outline[0], scene.block.outline[2]
+    return {"block.width": width * (1 + UNKNOWN), "block.height": height}
+
+
+def _friction(scene: Scene) -> Values:
+    if scene.column is not None or not scene.contact.friction:
+        return {}
+    larger = math.atan((1 + UNKNOWN) * math.tan(math.radians(scene.contact.friction)))
+    return {"contact.friction": math.degrees(larger)}
+
+
+# Not among them: loads, which scale a linear motion by themselves; the velocity, gap, tilt and slope from which a scene
+# starts and its height, which are the question that it asks.
+DATA = (
+    Datum("the springs", _springs),
+    Datum("Young's modulus", _material("young")),
+    Datum("the density", _material("density")),
+    Datum("the width", _width),
+    Datum("tan(phi) of friction", _friction),
+)
+
+
+def changes(scene: Scene) -> dict[str, Values]:
+    """Return what one per cent of each datum of a scene is: datum to keys and values."""
+    found = {datum.name: datum.changed(scene) for datum in DATA}
+    return {name: values for name, values in found.items() if values}
+
+
+def changed_scenes(scene: Scene) -> dict[str, Scene]:
+    """Return the scene with each of its data one per cent larger."""
+    return {name: scene.with_values(values) for name, values in changes(scene).items()}
+
+
+def standard(problem: Problem) -> Standard:
+    """Return what answers to a problem are held against; computed once a scene.
+
+    Raises
+    ------
+    InputError
+        An exact motion could not be computed.
+    """
+    return _standard(problem.scene.model_dump_json(by_alias=True, exclude_unset=True))
+
+
+@functools.lru_cache(maxsize=32)
+def _standard(definition: str) -> Standard:
+    scene = _scene(definition)
+    own = _motion(scene)
+    return standard_of(own, {name: _motion(other) for name, other in changed_scenes(scene).items()})
+
+
+def _scene(definition: str) -> Scene:
+    import json
+
+    return parse_scene(json.loads(definition), "scene")
+
+
+def _motion(scene: Scene) -> History:
+    return exact(scene, truth_of(scene))
+
+
+def standard_of(own: History, changed: Mapping[str, History]) -> Standard:
+    """Return the standard of exact motions that are there already: the problem's and those of changed data."""
+    bands = {}
+    for name, column in own.columns.items():
+        found = band(own.time, column, {datum: other.columns[name] for datum, other in changed.items()})
+        if found is not None:
+            bands[name] = found
+    return Standard(own, changed, bands)
+
+
+def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | None:
+    """Return the band of a column; None where nothing of it can be judged.
+
+    e_d(n) = ||x_d - x|| / ||x|| over the first n rows, d a datum; the rows that are judged are the most for which no
+    e_d is larger than `LARGEST`, and the band ends at the largest e_d there.
+    """
+    rows = min([len(column), *(len(other) for other in changed.values())])
+    moved = {datum: moved_by(other[:rows], column[:rows]) for datum, other in changed.items()}
+    if not moved or not np.any(column[:rows]):
+        return None
+    most = np.max([*moved.values()], axis=0)
+    judged = _judged_rows(most)
+    if judged < LEAST or not most[judged - 1] > 0:
+        return None
+    datum = max(moved, key=lambda name: moved[name][judged - 1])
+    return Band(float(most[judged - 1]), datum, judged, float(time[judged - 1]))
+
+
+def moved_by(other: Array, column: Array) -> Array:
+    """Return ||other - column|| / ||column|| over the first n rows, for every n; 0 where both are zero so far."""
+    size = float(np.max(np.abs(column))) or 1.0
+    difference, own = (np.sqrt(np.cumsum(np.square(x / size))) for x in (other - column, column))
+    return np.asarray(np.divide(difference, own, out=np.where(difference > 0, np.inf, 0.0), where=own > 0))
+
+
+def _judged_rows(most: Array) -> int:
+    """Return the largest number of rows over which the data move the motion by no more than `LARGEST`."""
+    within: Sequence[int] = np.flatnonzero(most <= LARGEST).tolist()
+    return within[-1] + 1 if within else 0

@@ -1,0 +1,165 @@
+"""The judgement of an answer to a problem: the error of each column against the exact motion, in its band."""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.metrics.pairs import relative_l2
+from validation.problems.bands import Band, Standard, standard
+from validation.problems.problem import Problem
+from validation.problems.told import Told, told
+from validation.runs.history import Array, History
+
+SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
+
+
+class Word(enum.StrEnum):
+    """What is said of an answer or of one of its columns."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"
+    NOT_REPORTED = "not reported"
+    NOT_JUDGED = "not judged"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of an answer.
+
+    Attributes
+    ----------
+    name
+        Of the column.
+    word
+        PASS or FAIL, or why it is neither.
+    error
+        ||x - exact|| / ||exact|| over the judged rows [1]; infinite where the column is not finite, None if not judged.
+    band
+        Upper edge of the band, whose lower edge is 0 [1]; None where the column cannot be judged.
+    until
+        Instant up to which it is judged [s].
+    reason
+        Why the band ends there, or why the column is not judged.
+    """
+
+    name: str
+    word: Word
+    error: float | None
+    band: float | None
+    until: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The judgement of an answer; it fails where a column that it reports fails."""
+
+    problem: str
+    columns: tuple[Column, ...]
+    told: tuple[Told, ...] = ()
+
+    @property
+    def word(self) -> Word:
+        """PASS or FAIL; `NOT_JUDGED` where it reports no column that is judged."""
+        words = [column.word for column in self.columns]
+        return next((word for word in (Word.FAIL, Word.PASS) if word in words), Word.NOT_JUDGED)
+
+    @property
+    def verdict(self) -> str:
+        """The word, with the columns that it does not speak of."""
+        passed = [column.name for column in self.columns if column.word is Word.PASS]
+        silent = [f"{column.name} {column.word}" for column in self.columns if column.band is None or _absent(column)]
+        if not silent:
+            return str(self.word)
+        spoken = f"{self.word} on {', '.join(passed)}" if self.word is Word.PASS else str(self.word)
+        return "; ".join([spoken, *silent])
+
+    @property
+    def deciding(self) -> Column | None:
+        """The column whose error is largest beside its band, None where none is judged."""
+        judged = [column for column in self.columns if column.error is not None]
+        return max(judged, key=lambda column: _beside(column), default=None)
+
+
+def _absent(column: Column) -> bool:
+    return column.word is Word.NOT_REPORTED
+
+
+def _beside(column: Column) -> float:
+    """Return the error over the band."""
+    return (column.error or 0.0) / (column.band or math.inf)
+
+
+def judge(problem: Problem, history: History, against: Standard | None = None) -> Judgement:
+    """Judge an answer to a problem.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    history
+        The answer, at the steps of the problem's scene.
+    against
+        The exact motion and the bands, where they are at hand; by default computed, once a problem.
+
+    Raises
+    ------
+    InputError
+        The answer is not at the steps of the scene, or no exact motion could be computed.
+    """
+    held = against or standard(problem)
+    _check_instants(problem, history, held)
+    names = problem.scene.run.columns
+    columns = tuple(_judged(name, history.columns.get(name), held) for name in names)
+    return Judgement(problem.name, columns, told(problem, history, held.exact))
+
+
+def _check_instants(problem: Problem, history: History, held: Standard) -> None:
+    rows, step = len(held.exact.time), problem.scene.time.step
+    if len(history.time) < rows:
+        raise InputError(f"{problem.name}: time: must hold {rows} rows, got {len(history.time)}")
+    apart = np.abs(history.time[:rows] - held.exact.time)
+    if not np.all(apart <= SAME_INSTANT * step):
+        row = int(np.argmin(apart <= SAME_INSTANT * step))
+        wanted, got = held.exact.time[row], history.time[row]
+        raise InputError(f"{problem.name}: time: must be {wanted:.9g} s in row {row + 1}, got {got:.9g}")
+
+
+def _judged(name: str, values: Array | None, held: Standard) -> Column:
+    band = held.bands.get(name)
+    if band is None:
+        return Column(name, Word.NOT_JUDGED, None, None, 0.0, _without_band(name, held))
+    if values is None:
+        return Column(name, Word.NOT_REPORTED, None, band.high, band.until, band.reason)
+    error = error_of(values, held.exact.columns[name], band)
+    return Column(name, Word.PASS if error <= band.high else Word.FAIL, error, band.high, band.until, band.reason)
+
+
+def _without_band(name: str, held: Standard) -> str:
+    exact = held.exact.columns.get(name)
+    if exact is None:
+        return "no exact motion of this column is known"
+    if not np.any(exact):
+        return "it does not move in the exact motion, which leaves nothing to divide an error by"
+    return "one per cent of the scene's data changes it more than anything could be judged by, or not at all"
+
+
+def error_of(values: Array, exact: Array, band: Band) -> float:
+    """Return the relative L2 error over the judged rows; infinite where a value is not finite."""
+    seen, wanted = values[: band.rows], exact[: band.rows]
+    if not np.isfinite(seen).all():
+        return math.inf
+    with np.errstate(over="ignore"):
+        error = relative_l2(seen, wanted)
+    return error if isinstance(error, float) else math.inf
+
+
+def errors(judgement: Judgement) -> Mapping[str, float]:
+    """Return the errors of the judged columns."""
+    return {column.name: column.error for column in judgement.columns if column.error is not None}

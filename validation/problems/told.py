@@ -1,0 +1,135 @@
+"""Numbers of an answer that people understand, beside those of the exact motion; nothing is judged by them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.metrics.poles import poles
+from validation.metrics.values import largest
+from validation.problems.problem import Problem
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+MOST = 3  # numbers that are told of a problem
+TRACE = 1e-3  # of the largest pressure: what is less is an open contact
+ARRIVAL = 0.1  # of the largest displacement: what is more has arrived
+ROTATION, SIDEWAYS = "rotation", "horizontal_displacement"
+
+
+@dataclass(frozen=True)
+class Told:
+    """A number of an answer and of the exact motion; None where the answer or the motion has none."""
+
+    name: str
+    unit: str
+    value: float | None
+    exact: float | None
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number that a column shows."""
+
+    name: str
+    unit: str
+    column: str
+    of: Callable[[Array, Array], float | None]  # of time [s] and column
+
+
+def told(problem: Problem, history: History, exact: History) -> tuple[Told, ...]:
+    """Return at most `MOST` numbers of an answer, over the rows of the exact motion."""
+    rows, found = len(exact.time), []
+    for number in numbers(problem.scene):
+        if number.column in exact.columns:
+            seen = history.columns.get(number.column)
+            value = None if seen is None or not np.isfinite(seen[:rows]).all() else number.of(exact.time, seen[:rows])
+            found.append(Told(number.name, number.unit, value, number.of(exact.time, exact.columns[number.column])))
+    return tuple(found[:MOST])
+
+
+def numbers(scene: Scene) -> Iterator[Number]:
+    """Yield the numbers that a kind of scene is understood by, the first ones first."""
+    own = features.of(scene)
+    if scene.column is not None:
+        for name in scene.run.columns:
+            yield Number(f"arrival of {name}", "s", name, arrival)
+            yield Number(f"largest {name}", "m", name, lambda t, x: largest(x))
+    elif features.ROTATION in own:
+        yield Number("rotation at the last judged step", "rad", ROTATION, last)
+        yield Number("instant of landing", "s", ROTATION, _landing(scene))
+    elif features.FRICTION in own:
+        yield Number("slid in the end", "m", SIDEWAYS, last)
+        yield Number("displacement in the end", "m", DISPLACEMENT, last)
+    elif features.UNILATERAL in own:
+        yield Number("openings", "1", PRESSURE, openings)
+        if scene.block.velocity or scene.contact.gap:
+            yield Number("height of the first rebound", "m", DISPLACEMENT, rebound)
+        yield Number("largest contact pressure", "Pa", PRESSURE, lambda t, x: float(np.max(x)))
+    else:
+        yield Number("frequency", "Hz", DISPLACEMENT, lambda t, x: _pole(t, x)[0])
+        yield Number("damping ratio", "1", DISPLACEMENT, lambda t, x: _pole(t, x)[1])
+        yield Number("displacement in the end", "m", DISPLACEMENT, last)
+
+
+def last(time: Array, x: Array) -> float:
+    """Return the value at the last judged step."""
+    return float(x[-1])
+
+
+def openings(time: Array, x: Array) -> float:
+    """Return how often the contact is open at a step after a step at which it was closed."""
+    closed = x > TRACE * np.max(x, initial=0.0)
+    return float(np.sum(closed[:-1] & ~closed[1:]))
+
+
+def rebound(time: Array, x: Array) -> float | None:
+    """Return the rise from the lowest point of the first landing to the height of the bounce after it [m]."""
+    lowest = next((i for i in range(1, len(x) - 1) if x[i - 1] > x[i] <= x[i + 1]), None)
+    if lowest is None:
+        return None
+    highest = next((i for i in range(lowest + 1, len(x) - 1) if x[i - 1] < x[i] >= x[i + 1]), None)
+    return None if highest is None else float(x[highest] - x[lowest])
+
+
+def arrival(time: Array, x: Array) -> float | None:
+    """Return when a column first moves by a tenth of its largest value [s], between steps by a straight line."""
+    return _reached(time, np.abs(x), ARRIVAL * largest(x))
+
+
+def _landing(scene: Scene) -> Callable[[Array, Array], float | None]:
+    """Return the function that finds when the block has turned back by its tilt [s], the last steps drawn on."""
+    tilt = abs(math.radians(scene.block.tilt))
+
+    def landing(time: Array, x: Array) -> float | None:
+        turned = np.abs(x)
+        found = _reached(time, turned, tilt)
+        rate = turned[-1] - turned[-2]
+        if found is not None or rate <= 0:
+            return found
+        ahead = (tilt - turned[-1]) / rate  # in steps: near the landing the rate is nearly constant
+        return float(time[-1] + ahead * (time[-1] - time[-2])) if ahead <= MOST else None
+
+    return landing
+
+
+def _reached(time: Array, x: Array, level: float) -> float | None:
+    rows = np.flatnonzero(x >= level)
+    if level <= 0 or not len(rows):
+        return None
+    i = int(rows[0])
+    before, then = (x[i - 1], time[i - 1]) if i else (0.0, 0.0)
+    return float(then + (level - before) / (x[i] - before) * (time[i] - then)) if x[i] > before else float(time[i])
+
+
+def _pole(time: Array, x: Array) -> tuple[float | None, float | None]:
+    """Return frequency [Hz] and damping ratio [1] of the strongest oscillation, None where there is none."""
+    middle = float(np.mean(x))
+    if middle == 0 or len(time) < 2:
+        return None, None
+    found = poles(x / middle - 1, float(time[1] - time[0]))
+    return (found[0].frequency / (2 * math.pi), found[0].damping) if found else (None, None)
