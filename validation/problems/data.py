@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import Scene
 
@@ -145,7 +146,8 @@ class ColumnOfAnswer(Data):
 
     name: str
     meaning: str
-    measure: Literal["norm(answer - exact) / norm(exact), over the instants"]
+    measure: str
+    until_s: float
     low: float
     high: float
     reason: str
@@ -251,7 +253,16 @@ def column_data(scene: Scene) -> ColumnData | None:
 
 
 def _input_data(scene: Scene) -> InputData:
+    """Return the pulse of a scene.
+
+    Raises
+    ------
+    InputError
+        A record drives it, which plain data do not hold.
+    """
     drive = scene.input
+    if drive.shape is None:
+        raise InputError(f"{scene.name}: input.record: must be a pulse in a problem, got a record")
     return InputData(
         at=drive.at,
         shape=drive.shape,

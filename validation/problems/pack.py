@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
-from validation.problems.bands import bands
+from validation.problems.bands import Band, Standard, standard
 from validation.problems.data import (
     PACK,
     SUBMISSION,
@@ -28,12 +28,11 @@ from validation.problems.data import (
     united,
 )
 from validation.problems.problem import PROBLEMS, Problem, problem
-from validation.problems.truth import exact
 from validation.runs.files import write_atomically
 from validation.runs.history import History
 
 PLACE = "problems"  # directory of a pack that holds this part
-MEASURE = "norm(answer - exact) / norm(exact), over the instants"
+MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
 TEMPLATE = {  # what a submitter changes
     "program": "name of the program",
@@ -64,29 +63,18 @@ A part of the reference pack of dda-validation, version {pack}; nothing needs to
    `submission.json` of the problem, in a directory of its own. What the program cannot report goes into `not_reported`.
 3. `dda-validate judge DIRECTORY` checks the two files, judges the columns, and writes `judged.html` and `badge.svg`.
 
-Each column passes where norm(answer - exact) / norm(exact), Euclidean over the instants, lies in its band, edges
-included. The band is what one per cent of the problem's data changes; `reason` says which datum.
+Each column passes where norm(answer - exact) / norm(exact), Euclidean over the instants up to `until_s`, lies in its
+band, edges included. The band is what one per cent of the problem's data changes; `reason` says which datum.
 
 Columns of a column's answer are at `heights_m`. A rocking block is judged until it comes down: what an impact takes
 depends on the contact model, and is not asked.
 """
 
 
-def problem_data(one: Problem, until: float) -> ProblemData:
-    """Return a problem as plain data; `until` is the last instant that is judged [s]."""
+def problem_data(one: Problem, held: Standard) -> ProblemData:
+    """Return a problem as plain data."""
     scene = one.scene
-    found = bands(one)
-    judged = [
-        ColumnOfAnswer(
-            name=united(column),
-            meaning=meaning(column),
-            measure=MEASURE,
-            low=found[column].low,
-            high=found[column].high,
-            reason=found[column].reason,
-        )
-        for column in scene.run.columns
-    ]
+    judged = [_judged(column, held.bands[column]) for column in scene.run.columns]
     on_base = scene.column is None
     return ProblemData(
         problem=one.name,
@@ -97,9 +85,21 @@ def problem_data(one: Problem, until: float) -> ProblemData:
         load=load_data(scene) if on_base else None,
         geometry="large rotation" if scene.run.geometry == "updated" else "small",
         column=column_data(scene),
-        sampling=SamplingData(step_s=scene.time.step, count=round(until / scene.time.step)),
+        sampling=SamplingData(step_s=scene.time.step, count=len(held.exact.time)),
         answer=tuple(judged),
         exact=f"exact/{one.name}.csv",
+    )
+
+
+def _judged(column: str, band: Band) -> ColumnOfAnswer:
+    return ColumnOfAnswer(
+        name=united(column),
+        meaning=meaning(column),
+        measure=MEASURE,
+        until_s=band.until,
+        low=0.0,
+        high=band.high,
+        reason=band.reason,
     )
 
 
@@ -114,10 +114,10 @@ def write_problems(directory: Path) -> int:
     place, rows = directory / PLACE, []
     for name in PROBLEMS:
         one = problem(name)
-        motion = exact(one.scene, one.truth)
-        data = problem_data(one, float(motion.time[-1]))
+        held = standard(one)
+        data = problem_data(one, held)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / data.exact, table_of(motion, one.scene.run.columns))
+        _write(place / data.exact, table_of(held.exact, one.scene.run.columns))
         blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
         _write(place / "submissions" / name / "submission.json", _json(blank))
         rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")

@@ -14,10 +14,10 @@ import numpy as np
 from pydantic import ValidationError
 
 from validation.errors import InputError
+from validation.problems.bands import standard
 from validation.problems.data import PACK, SubmissionData, kind, unit, united
 from validation.problems.pack import TEMPLATE, TIME
 from validation.problems.problem import PROBLEMS, Problem, problem
-from validation.problems.truth import exact
 from validation.runs.history import Array, History
 from validation.runs.regular import regular
 from validation.scenes.scene import one_line
@@ -124,7 +124,7 @@ def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
     names, table = _read(path)
     _check_header(path, names, asked, columns)
     values = dict(zip(names, table.T, strict=True))
-    motion = exact(asked.scene, asked.truth)
+    motion = standard(asked).exact
     _check_numbers(path, names, table)
     _check_times(path, values[TIME], motion.time)
     history = History(motion.time, {column: values[united(column)] for column in columns})
