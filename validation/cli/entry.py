@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import typer
 
-from validation.cli import compare, contact, damping, gallery, report, run, show, verdicts, waves, work
+from validation.cli import compare, contact, damping, gallery, judge, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import prepare, silence
 from validation.cli.signals import caught, end
@@ -22,11 +22,24 @@ COMMANDS = (
     damping,
     contact,
     compare,
+    judge,
     verdicts,
     waves,
     work,
 )  # importing them declares their commands
-FIRST = ("list", "show", "run", "solve", "report", "figures", "gallery", "compare", "damping", "advise")  # of the help
+FIRST = (
+    "list",
+    "show",
+    "run",
+    "solve",
+    "report",
+    "figures",
+    "gallery",
+    "compare",
+    "judge",
+    "damping",
+    "advise",
+)  # of the help
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 

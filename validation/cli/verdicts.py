@@ -33,10 +33,12 @@ def diff(
 def export_pack(
     directory: Annotated[Path, typer.Argument(help="Directory to create.", metavar="DIR")],
 ) -> None:
-    """Write a reference pack: scenes, exact histories as CSV, bands and a README, for codes in any language.
+    """Write a reference pack for codes in any language: scenes, exact histories as CSV, bands, problems to answer.
 
     Example: [bold]dda-validate export-pack pack[/bold]
     """
+    from validation.cli.app import _progress
+    from validation.problems.pack import write_problems
     from validation.studies.contact.pack import write_contact_pack
     from validation.studies.contact.slipping_pack import write_slipping_pack
     from validation.studies.pack import write_pack
@@ -46,4 +48,6 @@ def export_pack(
     slipping = write_slipping_pack(directory)
     counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
     exact = f"of contact that opens {numbers} exact numbers, of contact that slips {slipping}, of waves {waves}"
-    typer.echo(f"wrote {directory}: {counts}; {exact}")
+    with _progress("export-pack") as progress:
+        problems = write_problems(directory, progress)
+    typer.echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")

@@ -77,8 +77,17 @@ def shown(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> lis
         if isinstance(block, FigureBlock):
             found.append(_figure(chapter.drawings[block.file], scenes, sheet))
         else:
-            found.append({"block": type(block).__name__} | _plain(vars(block)))
+            found.append(placed(block, Path(), sheet))
     return _without_empty_headings(found)
+
+
+def placed(block: Block, directory: Path, sheet: Sheet) -> dict[str, Any]:
+    """Return a block for the template, a figure with its drawing."""
+    if not isinstance(block, FigureBlock):
+        found: dict[str, Any] = {"block": type(block).__name__} | _plain(vars(block))
+        return found
+    svg = (directory / block.file).read_text(encoding="utf-8")
+    return _figure(Drawing(block.file, unescaped(block.caption), svg), (), sheet)
 
 
 def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:

@@ -25,7 +25,8 @@ MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULAT
 SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
 
 
-def _environment() -> jinja2.Environment:
+def environment() -> jinja2.Environment:
+    """Return what fills the templates."""
     found = jinja2.Environment(
         loader=jinja2.PackageLoader("validation.gallery", "templates"),
         autoescape=True,
@@ -50,7 +51,7 @@ class Pages:
     """The pages of one gallery."""
 
     def __init__(self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene]) -> None:
-        self._environment = _environment()
+        self._environment = environment()
         self._results, self._studies, self._scenes = results, studies, scenes
         self._most = scene_data.most_lines(scenes)
         self._samples = LEAST

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from validation.problems.problem import PROBLEMS, Problem, problem
 from validation.runs.files import write_atomically
 from validation.runs.history import History
 
+Progress = Callable[[int, int, str], None]
 PLACE = "problems"  # directory of a pack that holds this part
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
@@ -103,8 +104,15 @@ def _judged(column: str, band: Band) -> ColumnOfAnswer:
     )
 
 
-def write_problems(directory: Path) -> int:
+def write_problems(directory: Path, progress: Progress = lambda done, total, label: None) -> int:
     """Write the problems into `problems` of a pack's directory, and return how many there are.
+
+    Parameters
+    ----------
+    directory
+        Of the pack.
+    progress
+        Told before each problem: how many are done, of how many, and which is next.
 
     Raises
     ------
@@ -112,7 +120,8 @@ def write_problems(directory: Path) -> int:
         The directory cannot be made or written.
     """
     place, rows = directory / PLACE, []
-    for name in PROBLEMS:
+    for done, name in enumerate(PROBLEMS):
+        progress(done, len(PROBLEMS), name)
         one = problem(name)
         held = standard(one)
         data = problem_data(one, held)

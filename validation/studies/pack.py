@@ -41,6 +41,7 @@ Made by dda-validation (`dda-validate export-pack`). Nothing of it needs to be i
 | bands | `bands.csv`, and the same as `bands.json` |
 | contact that opens: exact motions, a restitution map | `contact`, with a README of its own |
 | contact that slips: exact motions with friction, rigid blocks that slide and rock | `friction`, the same |
+| problems for any program, as JSON, and how an answer to them is judged | `problems`, the same |
 
 One block of unit thickness stands on two locked corner springs (normal stiffness `contact.stiffness`, shear stiffness
 the same unless `shear_stiffness` is given) and is loaded from t = 0 on by `load.pressure`, downwards on its top edge.

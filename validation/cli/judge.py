@@ -1,0 +1,187 @@
+"""The command ``judge``: an answer to a problem, from any program."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, SetOption, _progress, app, one_case
+from validation.cli.damping import JsonOption
+
+if TYPE_CHECKING:
+    from validation.problems.bands import Standard
+    from validation.problems.problem import Problem
+    from validation.report.chapters.judged import Judged
+    from validation.runs.history import History
+    from validation.runs.run import Run
+
+
+@app.command()
+def judge(
+    target: Annotated[
+        str,
+        typer.Argument(
+            help="Directory with submission.json and one CSV file; with --solver a problem, scene or scene file.",
+            metavar="DIR|PROBLEM|SCENE",
+        ),
+    ],
+    solver: Annotated[
+        str | None, typer.Option(help="Run this solver and judge its answer, see `dda-validate list`.", metavar="NAME")
+    ] = None,
+    scene: Annotated[
+        str | None,
+        typer.Option(help="The submission answers this scene, not a problem of the pack.", metavar="SCENE"),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Directory for page and badge; by default that of the submission.", metavar="DIR"),
+    ] = None,
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Judge an answer to a problem against its exact motion, and write page and badge.
+
+    The problems and a submission to fill in come with dda-validate export-pack. A column passes where its error is
+    below what one per cent of the problem's data changes. Exit status: 0 it passes, 1 it does not, 2 bad input, 3 the
+    solver ended in a named failure.
+
+    Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
+    my_solver:solve[/bold]
+    """
+    with _progress("judge") as progress:
+        judged, program = _judged(target, solver, scene, assignments, progress)
+        place = out or (Path(target) if solver is None else None)
+        written = [] if place is None else _written(judged, program, place, progress)
+    if as_json:
+        typer.echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
+    else:
+        _print(judged, program, written)
+    if judged.judgement.word != "PASS":
+        raise typer.Exit(GATE_FAILED)
+
+
+def _judged(
+    target: str, solver: str | None, scene: str | None, assignments: list[str] | None, progress: Any
+) -> tuple[Judged, str]:
+    from validation.errors import InputError
+    from validation.problems.problem import problem_of
+    from validation.problems.submission import read_submission
+
+    if solver is not None:
+        if scene is not None:
+            raise InputError(f"--scene: goes with a submission, got it with --solver {solver}; name the scene first")
+        return _of_solver(target, solver, assignments, progress)
+    if assignments and scene is None:
+        raise InputError("--set: goes with --scene or --solver, got it with a problem of the pack")
+    own = None if scene is None else problem_of(one_case(scene, assignments))
+    progress(0, 3, "reading, and the exact motion")
+    found = read_submission(Path(target), own)
+    data = found.data
+    about = [("program", data.program), ("version", data.version), ("settings", data.settings), ("who", data.who)]
+    about += [("not reported", ", ".join(data.not_reported))] if data.not_reported else []
+    return _with_cause(found.problem, found.history, tuple(about), progress), f"{data.program} {data.version}"
+
+
+def _of_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[Judged, str]:
+    from validation.engine.measure import completed
+    from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
+    from validation.solvers.registry import get_solver
+    from validation.solvers.user import UserSolver
+
+    case = one_case(PREFIX + target if target in PROBLEMS else target, assignments)
+    asked: Problem = problem(target) if target in PROBLEMS and not assignments else problem_of(case)
+    chosen = get_solver(solver)
+    progress(0, 3, f"{case.name} {solver}")
+    history = _history(completed(chosen, case), case.name, solver)
+    said = chosen.about() if isinstance(chosen, UserSolver) else {}
+    return _with_cause(asked, history, (("solver", solver), *said.items()), progress), solver
+
+
+def _history(run: Run, case: str, solver: str) -> History:
+    """Return the history of a run, or end the command with what it ended in."""
+    from validation.errors import InputError
+    from validation.runs.run import Outcome
+
+    why = "; ".join(run.notes)
+    if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+        raise InputError(f"{case}: solver {solver} does not apply: {why}")
+    if run.outcome is Outcome.NOT_RUN:
+        raise InputError(f"NOT RUN: {why}")
+    if run.outcome is not Outcome.COMPLETED or run.history is None:
+        typer.echo(f"{case} {solver}: {run.outcome}: {run.outcome.sentence} {why}".rstrip())
+        raise typer.Exit(NUMERICAL_FAILURE)
+    return run.history
+
+
+def _with_cause(problem: Problem, history: History, about: tuple[tuple[str, str], ...], progress: Any) -> Judged:
+    from validation.problems.bands import standard
+    from validation.problems.cause import cause
+    from validation.problems.judge import Word
+    from validation.problems.judge import judge as judgement_of
+    from validation.report.chapters.judged import Judged
+
+    progress(1, 3, "the exact motion and the bands")
+    held: Standard = standard(problem)
+    found = judgement_of(problem, history, held)
+    progress(2, 3, "the cause")
+    why = cause(problem, history, held) if found.word is Word.FAIL else None
+    return Judged(problem, history, held, found, why, about)
+
+
+def _written(judged: Judged, program: str, place: Path, progress: Any) -> list[Path]:
+    from validation.errors import InputError
+    from validation.gallery.judged import write_judged
+
+    progress(3, 3, "page and badge")
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"--out: cannot be made: {place}: {error.strerror}; choose another place") from None
+    return write_judged(judged, program, place)
+
+
+def as_data(judged: Judged, program: str) -> dict[str, Any]:
+    """Return the judgement as plain data."""
+    from validation.problems.data import PACK, united
+
+    columns = [
+        {
+            "column": united(one.name),
+            "verdict": str(one.word),
+            "error": one.error if one.error is None or one.error < float("inf") else "inf",
+            "allowed": one.band,
+            "until_s": one.until,
+            "reason": one.reason,
+        }
+        for one in judged.judgement.columns
+    ]
+    why = judged.cause
+    return {
+        "pack": PACK,
+        "problem": judged.problem.name,
+        "program": program,
+        "verdict": str(judged.judgement.word),
+        "cause": None if why is None else {"sentence": why.sentence, "ids": list(why.ids), "values": why.values},
+        "columns": columns,
+        "about": dict(judged.about),
+    }
+
+
+def _print(judged: Judged, program: str, written: list[Path]) -> None:
+    """Print the verdict first, then what it rests on."""
+    from validation.problems.data import united
+    from validation.report.chapters.judged import headline, per_cent
+
+    typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
+    if judged.cause is not None:
+        typer.echo(f"cause: {judged.cause.sentence}")
+    typer.echo(f"\n  {'column':<26} {'verdict':<13} {'error':>12} {'allowed':>10}")
+    for one in judged.judgement.columns:
+        typer.echo(f"  {united(one.name):<26} {one.word:<13} {per_cent(one.error):>12} {per_cent(one.band):>10}")
+    for one in judged.judgement.columns:
+        typer.echo(f"  {united(one.name)}: {one.reason}")
+    for path in written:
+        typer.echo(f"wrote {path}")

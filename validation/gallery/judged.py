@@ -1,0 +1,63 @@
+"""The page and the badge of a judged answer: two files that need nothing else."""
+
+from __future__ import annotations
+
+import tempfile
+from importlib import metadata, resources
+from pathlib import Path
+
+from validation.gallery.chapters import placed
+from validation.gallery.pages import environment
+from validation.gallery.svg import Sheet
+from validation.problems.data import PACK
+from validation.problems.judge import Word
+from validation.report.chapters.judged import Judged, page, per_cent
+from validation.runs.files import write_atomically
+
+PAGE, BADGE = "judged.html", "badge.svg"
+COLORS = {Word.PASS: "#1c6b2f", Word.FAIL: "#a80f0f", Word.NOT_JUDGED: "#5a5a5a"}
+LETTER, MARGIN = 7, 12  # px of a badge's letter, amply, and beside a text
+
+
+def write_judged(judged: Judged, program: str, place: Path) -> list[Path]:
+    """Write page and badge into a directory that is there, and return their paths.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    written = []
+    for name, text in ((PAGE, html(judged, program)), (BADGE, badge(judged))):
+        path, data = place / name, text.encode()
+        write_atomically(path, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
+        written.append(path)
+    return written
+
+
+def html(judged: Judged, program: str) -> str:
+    """Return the page: verdict, cause, columns, curves."""
+    sheet = Sheet()
+    with tempfile.TemporaryDirectory() as name:
+        blocks = [placed(block, Path(name), sheet) for block in page(judged, Path(name))]
+    return (
+        environment()
+        .get_template("judged.html.j2")
+        .render(
+            title=f"{program} on the problem {judged.problem.name}",
+            blocks=blocks,
+            css=resources.files("validation.gallery").joinpath("static", "gallery.css").read_text("utf-8"),
+            version=metadata.version("dda-validation"),
+            pack=PACK,
+        )
+    )
+
+
+def badge(judged: Judged) -> str:
+    """Return the badge: the problem, the verdict, and the error that decides."""
+    found, label = judged.judgement, f"DDA field: {judged.problem.name}"
+    decides = found.deciding
+    said = f"{found.word} {per_cent(decides.error)}" if decides else str(found.word)
+    left, right = (LETTER * len(text) + MARGIN for text in (label, said))
+    template = environment().get_template("badge.svg.j2")
+    return template.render(label=label, said=said, left=left, right=right, color=COLORS[found.word])

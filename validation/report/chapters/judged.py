@@ -1,0 +1,108 @@
+"""The page of `judge`: the verdict on an answer, the curves, what the answer says of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from validation.problems.bands import Standard
+from validation.problems.cause import Cause
+from validation.problems.data import united
+from validation.problems.judge import Column, Judgement, Word
+from validation.problems.problem import Problem
+from validation.problems.told import Told
+from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
+from validation.report.blocks import Column as TableColumn
+from validation.report.chapters.text import DASH, plain, short
+from validation.report.figures import histories, motion
+from validation.report.figures.curves import Panel
+from validation.runs.history import History
+
+EXACT, ANSWER = "exact", "answer"
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """An answer with all that is said of it."""
+
+    problem: Problem
+    history: History
+    held: Standard
+    judgement: Judgement
+    cause: Cause | None  # of a failure
+    about: tuple[tuple[str, str], ...]  # what the answer says of itself: field and text
+
+
+def headline(judged: Judged) -> str:
+    """Return the verdict and what it rests on, in a sentence."""
+    found = judged.judgement
+    decides = found.deciding
+    if decides is None or decides.band is None:
+        return f"{found.verdict}: no column of it is judged."
+    off = f"{per_cent(decides.error)} off in {united(decides.name)}, where {per_cent(decides.band)} is allowed"
+    return f"{found.verdict}: it is at most {off}." if found.word is Word.PASS else f"{found.verdict}: it is {off}."
+
+
+def per_cent(share: float | None) -> str:
+    """Return an error in per cent."""
+    if share is None:
+        return DASH
+    return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
+
+
+def page(judged: Judged, directory: Path) -> list[Block]:
+    """Return the blocks of the page; its figures are written to a directory."""
+    found = judged.judgement
+    tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(found.word, "warn")
+    blocks: list[Block] = [Callout(headline(judged), tone)]  # type: ignore[arg-type]
+    if judged.cause is not None:
+        blocks.append(Paragraph(f"Cause: {judged.cause.sentence}."))
+    return [
+        *blocks,
+        Paragraph(f"The question: {judged.problem.asks} {judged.problem.title}."),
+        _columns(found.columns),
+        *figures(judged, directory),
+        *([_told(found.told)] if found.told else []),
+        _about(judged.about),
+    ]
+
+
+def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
+    """Draw every column that is judged, with the exact one."""
+    drawn = []
+    for name in judged.history.columns:
+        rows = len(judged.held.exact.time)
+        lines = {
+            EXACT: History(judged.held.exact.time, {name: judged.held.exact.columns[name]}),
+            ANSWER: History(judged.history.time[:rows], {name: judged.history.columns[name][:rows]}),
+        }
+        panel = Panel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
+        caption = f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
+        figure = motion.history_figure([panel], name, apart=True)
+        drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", caption))
+    return drawn
+
+
+def _columns(found: Sequence[Column]) -> Table:
+    titles = (
+        TableColumn("Column", "code"),
+        TableColumn("Verdict", "verdict"),
+        *columns("decimal", "Error [%]", "Allowed [%]", "Until [s]"),
+        TableColumn("Why so much is allowed", "fill"),
+    )
+    rows = []
+    for one in found:
+        error, band = (DASH if share is None else short(100 * share, 2) for share in (one.error, one.band))
+        rows.append((united(one.name), str(one.word), error, band, plain(one.until), one.reason))
+    return Table(titles, tuple(rows), "Relative L2 error of each column over the judged instants.")
+
+
+def _told(found: Sequence[Told]) -> Table:
+    titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
+    rows = [(one.name, *(DASH if v is None else plain(v) for v in (one.value, one.exact)), one.unit) for one in found]
+    return Table(titles, tuple(rows), "Numbers beside; nothing is judged by them.")
+
+
+def _about(said: Sequence[tuple[str, str]]) -> Table:
+    return Table((TableColumn("Of the answer", "code"), TableColumn("", "fill")), tuple(said))
