@@ -14,12 +14,12 @@ from validation.problems.problem import Problem
 from validation.problems.told import Told
 from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
 from validation.report.blocks import Column as TableColumn
-from validation.report.chapters.text import DASH, plain, short
+from validation.report.chapters.text import DASH, bounded, plain, short
 from validation.report.figures import histories, motion
-from validation.report.figures.curves import Panel
+from validation.report.figures.curves import EXACT, Panel
 from validation.runs.history import History
 
-EXACT, ANSWER = "exact", "answer"
+ANSWER = "answer"
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
 
 def _columns(found: Sequence[Column]) -> Table:
     titles = (
-        TableColumn("Column", "code"),
+        TableColumn("Column"),
         TableColumn("Verdict", "verdict"),
         *columns("decimal", "Error [%]", "Allowed [%]", "Until [s]"),
         TableColumn("Why so much is allowed", "fill"),
@@ -100,9 +100,13 @@ def _columns(found: Sequence[Column]) -> Table:
 
 def _told(found: Sequence[Told]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
-    rows = [(one.name, *(DASH if v is None else plain(v) for v in (one.value, one.exact)), one.unit) for one in found]
+    rows = [(one.name, _value(one.value), _value(one.exact), one.unit) for one in found]
     return Table(titles, tuple(rows), "Numbers beside; nothing is judged by them.")
 
 
+def _value(value: float | None) -> str:
+    return DASH if value is None else bounded(value, plain(value))
+
+
 def _about(said: Sequence[tuple[str, str]]) -> Table:
-    return Table((TableColumn("Of the answer", "code"), TableColumn("", "fill")), tuple(said))
+    return Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(said))

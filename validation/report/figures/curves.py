@@ -55,6 +55,7 @@ HOUSE_STYLE = {
     "path.simplify": True,
 }
 
+EXACT = "exact"  # name of the line of an exact motion, whichever solution it comes from
 COLUMNS = {
     "displacement": ("Displacement", "m"),
     "contact_pressure": ("Contact pressure", "Pa"),
@@ -70,6 +71,8 @@ _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5)
 
 def style_of(name: str) -> LineStyle:
     """Return the style of a solver; an unknown name gets one that depends on the name alone."""
+    if name == EXACT:
+        return LineStyle("#444444", (), 0.8, 1)
     known = get_solver(name).line if is_solver(name) else None
     if known is not None:
         return known

@@ -234,7 +234,8 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names
     ends: dict[str, float] = {}
     for lines in curves:
         ends |= {solver: float(np.clip(y[-1], low, high)) for solver, (_, y) in lines.items()}
-    _row_labels(row, len(panels), "|Δ| / static", ends, names)
+    static = any(panel.static.get(column) for panel in panels)
+    _row_labels(row, len(panels), "|Δ| / static" if static else "|Δ| / largest", ends, names)
 
 
 def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:

@@ -1,0 +1,127 @@
+"""``judge``: a stranger's two files, or a solver on any scene, become a verdict, a page and a badge."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from conftest import typed
+
+from validation.problems.bands import standard
+from validation.problems.data import PACK, SUBMISSION
+from validation.problems.pack import table_of
+from validation.problems.problem import problem
+from validation.runs.history import History
+
+STATED = {
+    "format": SUBMISSION,
+    "pack": PACK,
+    "problem": "locked",
+    "program": "Bob's <code> & co",
+    "version": "1.0",
+    "settings": "average acceleration, 0.1 ms",
+    "who": "somebody",
+}
+
+
+@pytest.fixture(scope="module")
+def exact() -> History:
+    return standard(problem("locked")).exact
+
+
+def submitted(place: Path, history: History, **fields: object) -> Path:
+    place.mkdir()
+    (place / "submission.json").write_text(json.dumps(STATED | fields))
+    columns = [name for name in history.columns if f"{name}_m" not in fields.get("not_reported", ())]
+    (place / "answer.csv").write_text(table_of(history, columns))
+    return place
+
+
+def scaled(history: History, factor: float) -> History:
+    return History(history.time, {name: factor * values for name, values in history.columns.items()})
+
+
+def test_a_right_answer_passes_with_page_and_badge(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", exact)
+    done = typed("judge", place)
+    assert done.returncode == 0, done.stderr
+    assert "Bob's <code> & co 1.0 on locked: PASS: it is at most below 1e-9 % off" in done.stdout
+    assert "cause:" not in done.stdout
+    assert sorted(path.name for path in place.iterdir()) == [
+        "answer.csv",
+        "badge.svg",
+        "judged.html",
+        "submission.json",
+    ]
+    badge = ElementTree.parse(place / "badge.svg").getroot()
+    assert badge.attrib["aria-label"] == "DDA field: locked: PASS below 1e-9 %"
+    page = (place / "judged.html").read_text(encoding="utf-8")
+    assert "Bob&#39;s &lt;code&gt; &amp; co 1.0 on the problem locked" in page
+    assert page.count("<svg") == 2 and "average acceleration, 0.1 ms" in page and "PASS" in page
+    assert not re.search(r'(src|href)="(?!data:|#)', page)  # it needs no other file
+    assert not re.search(r"×10⁻¹[3-9]", page)
+
+
+def test_a_wrong_answer_fails(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", scaled(exact, 1.12))
+    done = typed("judge", place, "--out", tmp_path / "pages")
+    assert done.returncode == 1
+    assert "FAIL: it is 12 % off in displacement_m, where 5.7 % is allowed" in done.stdout
+    assert "cause: " in done.stdout
+    assert sorted(path.name for path in (tmp_path / "pages").iterdir()) == ["badge.svg", "judged.html"]
+    assert "FAIL 12 %" in (tmp_path / "pages/badge.svg").read_text()
+    assert "FAIL: it is 12 %" in (tmp_path / "pages/judged.html").read_text(encoding="utf-8")
+    assert not (place / "badge.svg").exists()
+
+
+def test_plain_data(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", scaled(exact, 1.01))
+    found = json.loads(typed("judge", place, "--json").stdout)
+    assert (found["verdict"], found["problem"], found["pack"], found["cause"]) == ("PASS", "locked", PACK, None)
+    first = found["columns"][0]
+    assert first["column"] == "displacement_m" and first["error"] == pytest.approx(0.01, rel=1e-6)
+    assert first["allowed"] > first["error"] and first["until_s"] == pytest.approx(0.1)
+    assert found["about"]["program"] == STATED["program"]
+
+
+def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", exact, pack="1.0")
+    done = typed("judge", place)
+    assert done.returncode == 2 and "submission.json: pack: must be '2.0'" in done.stderr
+    assert len(list(place.iterdir())) == 2
+    for arguments, said in (
+        (("judge", tmp_path / "none"), "must be a directory with submission.json"),
+        (("judge", "locked", "--solver", "nonsense"), "solver: must be one of"),
+        (("judge", "locked", "--solver", "bar-events"), "does not apply: it requires contact.law"),
+        (("judge", "nonsense", "--solver", "dda"), "nonsense: no such scene file"),
+        (("judge", place, "--set", "time.step=1"), "--set: goes with --scene or --solver"),
+        (("judge", place, "--scene", "figures-3-4"), "one value must be picked for time.step"),
+        (("judge", "figure-8", "--solver", "dda", "--scene", "figure-8"), "--scene: goes with a submission"),
+    ):
+        done = typed(*arguments)
+        assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+def test_a_solver_is_judged_on_any_scene(tmp_path: Path) -> None:
+    """The step of 2 ms damps; one of 10 us and average acceleration does not."""
+    habit = typed("judge", "locked", "--solver", "dda")
+    assert habit.returncode == 1 and "dda on locked: FAIL" in habit.stdout and "wrote" not in habit.stdout
+    values = ("time.alpha=0.25", "time.delta=0.5", "time.step=1e-4", "time.steps=300", "time.start=consistent")
+    sets = [word for value in (*values, "contact.stiffness=3e8") for word in ("--set", value)]
+    fine = typed("judge", "field-locked", "--solver", "dda", *sets, "--out", tmp_path / "page")
+    assert fine.returncode == 0, fine.stdout + fine.stderr
+    assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "page" / "judged.html").exists()
+
+
+def test_the_callers_own_scene(tmp_path: Path, scene_file: Path) -> None:
+    scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
+    from validation.problems.problem import problem_of
+    from validation.scenes.scene import load_scene
+
+    own = problem_of(load_scene(scene_file))
+    place = submitted(tmp_path / "mine", standard(own).exact, problem=own.name)
+    done = typed("judge", place, "--scene", scene_file)
+    assert done.returncode == 0, done.stderr
