@@ -35,6 +35,7 @@ STUDIES = {
     "waves": "validation.studies.waves.study:study",
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
+    "field": "validation.studies.field.study:study",
 }
 T = TypeVar("T")
 

@@ -1,0 +1,135 @@
+"""The cells of the field: a program's answer to a problem, judged, with the cause of its failure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from validation.engine.finished import Derived, Finished
+from validation.gates.gate import settled
+from validation.problems.bands import Standard, standard, standard_of
+from validation.problems.cause import cause
+from validation.problems.judge import Judgement, Word, judge
+from validation.problems.problem import PREFIX, PROBLEMS
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.studies.field.programs import ELEMENTS, FINE, HABIT, installed
+from validation.studies.field.scenes import (
+    EXACT,
+    changed,
+    fine_name,
+    finer,
+    kept_exact,
+    problem_named,
+    scene_of,
+    with_elements,
+)
+
+JUDGED = "judged "  # before a program's name: the derived row that is its cell
+OF_MODEL = "another model: the block strains from point to point, where DDA's has one strain"
+BESIDE = "error over band"
+
+
+def cell_name(program: str) -> str:
+    """Return the name of the derived row of a program's cell."""
+    return JUDGED + program
+
+
+class Cells:
+    """The cells of one study; each is computed once for the finished cases that it is asked of."""
+
+    def __init__(self) -> None:
+        self._standards: dict[str, tuple[Finished, Standard]] = {}
+        self._found: dict[tuple[str, str], tuple[Finished, Mapping[str, Value]]] = {}
+
+    def derived(self) -> Iterator[Derived]:
+        """Yield a derived row for every case that is judged."""
+        for name in PROBLEMS:
+            for program in (HABIT, FINE, *((ELEMENTS,) if with_elements(scene_of(name)) else ()), *installed()):
+                yield self._row(name, program)
+
+    def _row(self, name: str, program: str) -> Derived:
+        def compute(finished: Finished) -> Mapping[str, Value]:
+            kept = self._found.get((name, program))
+            if kept is None or kept[0] is not finished:
+                kept = self._found[name, program] = finished, self._cell(name, program, finished)
+            return kept[1]
+
+        needs = [case_of(name, program)]
+        if kept_exact(scene_of(name)):
+            needs += [(PREFIX + name, EXACT), *((scene.name, EXACT) for scene in changed(name).values())]
+        return Derived(PREFIX + name, cell_name(program), tuple(needs), compute)
+
+    def _cell(self, name: str, program: str, finished: Finished) -> Mapping[str, Value]:
+        answer = finished.history(*case_of(name, program))
+        if answer is None:
+            return {}
+        seen, held, asked = sampled(name, program, answer), self._standard(name, finished), problem_named(name)
+        found = judge(asked, seen, held)
+        why = ""
+        if found.word is Word.FAIL:
+            why = OF_MODEL if program == ELEMENTS else cause(asked, seen, held).sentence
+        return metrics_of(found, why)
+
+    def _standard(self, name: str, finished: Finished) -> Standard:
+        kept = self._standards.get(name)
+        if kept is None or kept[0] is not finished:
+            kept = self._standards[name] = finished, standard_in(name, finished)
+        return kept[1]
+
+
+def case_of(name: str, program: str) -> tuple[str, str]:
+    """Return scene and solver of the case that a program's cell is computed from."""
+    return {FINE: (fine_name(name), HABIT), ELEMENTS: (fine_name(name), ELEMENTS)}.get(program, (PREFIX + name, program))
+
+
+def sampled(name: str, program: str, answer: History) -> History:
+    """Return an answer at the steps of the problem."""
+    if program not in (FINE, ELEMENTS):
+        return answer
+    every = finer(scene_of(name))
+    return History(answer.time[every - 1 :: every], {key: x[every - 1 :: every] for key, x in answer.columns.items()})
+
+
+def standard_in(name: str, finished: Finished) -> Standard:
+    """Return the standard of a problem from exact motions that the study has kept, or computed where they take no time.
+
+    Raises
+    ------
+    ValueError
+        A kept motion is lost.
+    """
+    asked = problem_named(name)
+    if not kept_exact(asked.scene):
+        return standard(asked)
+    own = finished.history(PREFIX + name, EXACT)
+    others = {datum: finished.history(scene.name, EXACT) for datum, scene in changed(name).items()}
+    found = {datum: history for datum, history in others.items() if history is not None}
+    if own is None or len(found) < len(others):
+        raise ValueError(f"{name}: an exact motion is lost")
+    return standard_of(own, found)
+
+
+def metrics_of(found: Judgement, why: str) -> dict[str, Value]:
+    """Return a judgement as the metrics of a row: the cell's own, then those of each column, then what is told."""
+    deciding = found.deciding
+    metrics: dict[str, Value] = {"verdict": str(found.word), "says": found.verdict, "cause": why}
+    if deciding is not None and deciding.band is not None and deciding.error is not None:
+        metrics |= {
+            "column": deciding.name,
+            "error": settled(deciding.error),
+            "band": settled(deciding.band),
+            BESIDE: settled(deciding.error / deciding.band),
+            "reason": deciding.reason,
+        }
+    for column in found.columns:
+        metrics[f"{column.name}: word"] = str(column.word)
+        metrics[f"{column.name}: error"] = None if column.error is None else settled(column.error)
+        metrics[f"{column.name}: band"] = None if column.band is None else settled(column.band)
+        metrics[f"{column.name}: until"] = settled(column.until)
+        metrics[f"{column.name}: reason"] = column.reason
+    for number in found.told:
+        for kind, value in (("value", number.value), ("exact", number.exact)):
+            metrics[f"told {kind}: {number.name} [{number.unit}]"] = None if value is None else settled(value)
+    return metrics
+
+

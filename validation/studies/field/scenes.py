@@ -1,0 +1,89 @@
+"""The scenes that the field runs: the problems, the same at fine steps, and those that the bands are computed from."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from validation.problems.bands import changed_scenes
+from validation.problems.problem import PREFIX, PROBLEMS, Problem, problem
+from validation.scenes import features
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.field.programs import ELEMENTS, HABIT, installed
+
+EXACT = "block-events"  # of the exact solutions the one that takes seconds, so that its motions are kept
+FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; a block that turns takes long
+MORE_BLOCKS = 4
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+
+
+def scene_of(name: str) -> Scene:
+    """Return the scene of a problem."""
+    return load_scene(PREFIX + name)
+
+
+@functools.cache
+def problem_named(name: str) -> Problem:
+    """Return a problem, once."""
+    return problem(name)
+
+
+def fine_name(name: str) -> str:
+    """Return the name of a problem's scene at fine steps."""
+    return f"{PREFIX}{name}-fine"
+
+
+def finer(scene: Scene) -> int:
+    """Return how many of the fine steps make one of the scene's."""
+    return FINER_TURNING if features.ROTATION in features.of(scene) else FINER
+
+
+def kept_exact(scene: Scene) -> bool:
+    """Whether the exact motions of a scene are cases of the study, which keeps them."""
+    return EXACT in scene.run.solvers
+
+
+def judged(name: str) -> Scene:
+    """Return the scene of a problem with everything that is judged on it."""
+    scene = scene_of(name)
+    exact = (EXACT,) if kept_exact(scene) else ()
+    return scene.with_values({"run.solvers": [HABIT, *exact, *installed()]})
+
+
+def fine(name: str) -> Scene:
+    """Return the scene of a problem with a scheme, a step and blocks that were chosen for accuracy."""
+    scene = scene_of(name)
+    times = finer(scene)
+    values: dict[str, Any] = AVERAGE | {
+        "time.step": scene.time.step / times,
+        "time.steps": scene.time.steps * times,
+        "run.solvers": [HABIT, *((ELEMENTS,) if with_elements(scene) else ())],
+    }
+    if scene.column is not None:
+        layers = scene.definition()["column"]["layer"]
+        values["column.layer"] = [layer | {"blocks": MORE_BLOCKS * layer.get("blocks", 1)} for layer in layers]
+    return scene.with_values(values).model_copy(update={"name": fine_name(name)})
+
+
+def with_elements(scene: Scene) -> bool:
+    """Whether finite elements take a problem in seconds."""
+    return not {features.FRICTION, features.ROTATION} & {*features.of(scene)}
+
+
+def changed(name: str) -> dict[str, Scene]:
+    """Return the scenes whose exact motions set the bands of a problem: datum to scene."""
+    found = {}
+    for datum, scene in changed_scenes(scene_of(name)).items():
+        title = f"{PREFIX}{name} with {datum} one per cent larger"
+        found[datum] = scene.model_copy(update={"name": title, "title": title}).with_values({"run.solvers": [EXACT]})
+    return found
+
+
+def scenes() -> list[Scene]:
+    """Return all scenes of the study."""
+    found = []
+    for name in PROBLEMS:
+        found += [judged(name), fine(name)]
+        if kept_exact(scene_of(name)):
+            found += changed(name).values()
+    return found

@@ -1,0 +1,221 @@
+"""The field as a table, read from a results directory; no solver is called.
+
+The study `field` keeps a derived row for each cell that a run completed, the rows of the runs, and in its data the
+programs and the problems. `read` puts them together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from validation.runs.results import Results
+from validation.runs.row import Row, Value
+from validation.runs.run import Outcome
+
+STUDY = "field"
+PASS, FAIL, NOT_RUN, NOT_APPLICABLE, NOT_JUDGED = "PASS", "FAIL", "NOT RUN", "not applicable", "not judged"
+VERDICTS = (PASS, FAIL, NOT_RUN, NOT_APPLICABLE, NOT_JUDGED)
+# A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
+WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
+MISSING = "is not installed"  # what an adapter says where its program is absent
+
+
+@dataclass(frozen=True)
+class ColumnCell:
+    """A column of a cell."""
+
+    name: str
+    word: str  # PASS, FAIL, "not reported" or "not judged"
+    error: float | None  # relative L2 [1]
+    band: float | None  # upper edge [1]
+    until: float  # s
+    reason: str  # why the band ends there
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number that people understand, of the program and of the exact motion."""
+
+    name: str
+    unit: str
+    value: float | None
+    exact: float | None
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A program's answer to a problem.
+
+    Attributes
+    ----------
+    problem, program
+        Row and column of the table.
+    verdict
+        One of `VERDICTS`.
+    says
+        The verdict in full: what it does not speak of is named.
+    cause
+        Of a FAIL, in one line: "not explained" where nothing is known for certain.
+    column
+        The column whose error is largest beside its band; `error` and `band` are its.
+    error, band
+        Relative L2 error, and the upper edge of its band [1].
+    seconds
+        Of the run; None where it did not complete.
+    reason
+        Why the band ends there; why there is no PASS or FAIL.
+    columns, numbers
+        Every column, and what is told beside.
+    key
+        Of the row of the run, for `Results.history`.
+    """
+
+    problem: str
+    program: str
+    verdict: str
+    says: str = ""
+    cause: str = ""
+    column: str = ""
+    error: float | None = None
+    band: float | None = None
+    seconds: float | None = None
+    reason: str = ""
+    columns: tuple[ColumnCell, ...] = ()
+    numbers: tuple[Number, ...] = ()
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class ProblemLine:
+    """A row of the table."""
+
+    name: str
+    scene: str  # name of the case
+    title: str
+    asks: str
+
+
+@dataclass(frozen=True)
+class ProgramLine:
+    """A column of the table; `about` is what the program says of itself (program, version, recipe, model, settings)."""
+
+    name: str
+    title: str
+    recipe: str
+    kind: str  # "suite", "chosen" (for accuracy), "default" (as it comes) or "user"
+    installed: bool
+    about: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The field: every problem has a cell for every program."""
+
+    problems: tuple[ProblemLine, ...]
+    programs: tuple[ProgramLine, ...]
+    cells: Mapping[tuple[str, str], Cell]  # by names of problem and program
+
+    def cell(self, problem: str, program: str) -> Cell:
+        """Return a cell.
+
+        Raises
+        ------
+        KeyError
+            There is no such problem or program.
+        """
+        return self.cells[problem, program]
+
+    def row(self, problem: str) -> tuple[Cell, ...]:
+        """Return the cells of a problem in the order of the programs."""
+        return tuple(self.cells[problem, program.name] for program in self.programs)
+
+
+def read(results: Results) -> Table | None:
+    """Return the field of a results directory, None where the study was not run.
+
+    Raises
+    ------
+    InputError
+        The results are damaged.
+    """
+    manifest = results.manifest(STUDY)
+    data = manifest.get("data", {})
+    if "programs" not in data:
+        return None
+    problems = tuple(ProblemLine(**line) for line in data["problems"])
+    programs = tuple(ProgramLine(**line) for line in data["programs"])
+    rows = results.rows()
+    keys = {(case["scene"], case["solver"]): case["key"] for case in manifest.get("cases", [])}
+    found = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+    cells = {}
+    for problem in problems:
+        for program in programs:
+            case, name = data["runs"].get(f"{problem.name} {program.name}", (("", ""), ""))
+            row = rows.get(keys.get(tuple(case), ""))
+            cells[problem.name, program.name] = _cell(problem, program, row, found.get((problem.scene, name), {}))
+    return Table(problems, programs, cells)
+
+
+def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: Mapping[str, Value]) -> Cell:
+    if not program.installed:
+        return Cell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=f"not installed: {program.recipe}")
+    if row is None:
+        why = "takes too long here" if program.kind == "suite" else "was not run"
+        return Cell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=why)
+    if row.outcome is not Outcome.COMPLETED or not metrics:
+        return _ended(problem, program, row)
+    texts = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "cause", "column", "reason")}
+    return Cell(
+        problem.name,
+        program.name,
+        **texts,
+        error=_number(metrics.get("error")),
+        band=_number(metrics.get("band")),
+        seconds=sum(row.seconds.values()) if row.seconds else None,
+        columns=_columns(metrics),
+        numbers=_numbers(metrics),
+        key=row.key,
+    )
+
+
+def _ended(problem: ProblemLine, program: ProgramLine, row: Row) -> Cell:
+    """Return the cell of a run that did not complete, or that could not be judged."""
+    note = row.notes[-1] if row.notes else row.outcome.sentence
+    if row.outcome in WRONG:
+        why = note if row.outcome is Outcome.WRONG_UNITS else f"{row.outcome.sentence} {note}".strip()
+        return Cell(problem.name, program.name, FAIL, FAIL, cause=why, reason=row.outcome.sentence, key=row.key)
+    absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
+    word = NOT_RUN if absent else NOT_APPLICABLE
+    return Cell(problem.name, program.name, word, word, reason=note, key=row.key)
+
+
+def _columns(metrics: Mapping[str, Value]) -> tuple[ColumnCell, ...]:
+    names = [key.removesuffix(": word") for key in metrics if key.endswith(": word")]
+    return tuple(
+        ColumnCell(
+            name,
+            str(metrics[f"{name}: word"]),
+            _number(metrics.get(f"{name}: error")),
+            _number(metrics.get(f"{name}: band")),
+            _number(metrics.get(f"{name}: until")) or 0.0,
+            str(metrics.get(f"{name}: reason") or ""),
+        )
+        for name in names
+    )
+
+
+def _numbers(metrics: Mapping[str, Value]) -> tuple[Number, ...]:
+    found = []
+    for key in metrics:
+        if key.startswith("told value: "):
+            name = key.removeprefix("told value: ")
+            said, _, unit = name.rpartition(" [")
+            exact = _number(metrics.get(f"told exact: {name}"))
+            found.append(Number(said, unit.removesuffix("]"), _number(metrics[key]), exact))
+    return tuple(found)
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
