@@ -27,6 +27,7 @@ CHAPTERS: dict[str, str] = {
     "toppling": "validation.report.chapters.opened.turning:toppling_chapter",
     "waves": "validation.report.chapters.waves:chapter",
     "response": "validation.report.chapters.vibrations.response:chapter",
+    "field": "validation.report.chapters.field:chapter",
 }
 
 

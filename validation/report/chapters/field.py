@@ -1,0 +1,160 @@
+"""The chapter of the study `field`: programs by problems on one page, why they fail and what they cannot express."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from validation.report.blocks import Block, Column, Heading, Paragraph, Table
+from validation.report.chapters.scene import opening
+from validation.report.chapters.text import DASH, short
+from validation.runs.records import Manifest
+from validation.runs.results import Results
+from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, Field, ProgramLine, read
+
+NONE = "n. a."
+SAID = (
+    "Each problem has an exact motion. An answer passes where its relative L2 error is below what one per cent of the "
+    "problem's data changes, which is the row of what is allowed. A program stands with parameters chosen for accuracy "
+    "and, below, as it comes. What it cannot express is not applicable and not bent until it fits."
+)
+NOTE = (
+    "Relative L2 error in per cent of the column that is worst beside its band; n. a. not applicable, the reason is "
+    "told below; a dash was not run. Time: of all answers together, with the start of the program, on this machine."
+)
+
+
+def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+    """Return the chapter: the table, the causes of failures, what is not applicable, the programs."""
+    found = read(results)
+    if found is None:
+        return [*opening(manifest), Paragraph("The study was not run by this version; run it again.")]
+    return [
+        *opening(manifest, results.verdicts(manifest["study"])),
+        Paragraph(counted(found)),
+        Paragraph(SAID),
+        by_problem(found),
+        *_part("Why answers fail", failures(found)),
+        *_part("What is not applicable", inapplicable(found)),
+        *_part("The programs", programs(found)),
+    ]
+
+
+def counted(found: Field) -> str:
+    """Return how many answers pass and fail, and how many failures have a cause, in a sentence."""
+    others = [cell for cell in found.cells.values() if _kind(found, cell) != "suite"]
+    words = [cell.verdict for cell in others]
+    failed = [cell for cell in others if cell.verdict == FAIL]
+    named = sum(not cell.cause.startswith("not explained") for cell in failed)
+    there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in (PASS, FAIL)}
+    if not there:
+        return "No other program is installed here: README of examples/peers has a recipe for each."
+    return (
+        f"{len(there)} programs answered {words.count(PASS) + words.count(FAIL)} times to {len(found.problems)} "
+        f"problems: {words.count(PASS)} answers pass, {words.count(FAIL)} fail, of which {named} with a cause that is "
+        "certain."
+    )
+
+
+def _kind(found: Field, cell: Cell) -> str:
+    return next(program.kind for program in found.programs if program.name == cell.program)
+
+
+def _part(title: str, table: Table) -> list[Block]:
+    return [Heading(title, 3), table] if table.rows else []
+
+
+def by_problem(found: Field) -> Table:
+    """Return the table of programs by problems."""
+    titles = (
+        Column("Program"),
+        *(Column(problem.name, "outcome") for problem in found.problems),
+        Column("Time [s]", "decimal"),
+    )
+    rows = [("allowed [%]", *(allowed(found, problem.name) for problem in found.problems), "")]
+    rows += [(program.title, *_outcomes(found, program), seconds(found, program)) for program in shown(found)]
+    away = [program.title for program in found.programs if program not in shown(found)]
+    notes = (NOTE, *([f"Not installed: {', '.join(away)}."] if away else []))
+    return Table(titles, tuple(rows), "Programs and problems.", notes)
+
+
+def shown(found: Field) -> list[ProgramLine]:
+    """Return the programs that were run."""
+    return [p for p in found.programs if any(cell.verdict != NOT_RUN for cell in _cells(found, p))]
+
+
+def _cells(found: Field, program: ProgramLine) -> list[Cell]:
+    return [found.cell(problem.name, program.name) for problem in found.problems]
+
+
+def _outcomes(found: Field, program: ProgramLine) -> Iterator[str]:
+    for cell in _cells(found, program):
+        if cell.verdict == NOT_RUN:
+            yield DASH
+        elif cell.verdict in (PASS, FAIL):
+            yield f"{cell.verdict} {error(cell)}".rstrip()
+        else:
+            yield NONE if cell.verdict == NOT_APPLICABLE else cell.verdict
+
+
+def error(cell: Cell) -> str:
+    """Return the error of a cell in per cent, nothing where a run told itself that it is wrong."""
+    if cell.error is None:
+        return ""
+    if cell.error > 10:
+        return "> 1000"
+    return "< 0.001" if cell.error < 1e-5 else short(100 * cell.error, 2)
+
+
+def allowed(found: Field, problem: str) -> str:
+    """Return the band of a problem in per cent: of the column that decides most often."""
+    bands = [cell.band for cell in found.row(problem) if cell.band is not None]
+    return short(100 * max(set(bands), key=bands.count), 2) if bands else DASH
+
+
+def seconds(found: Field, program: ProgramLine) -> str:
+    """Return what the answers of a program took together [s], to two digits."""
+    took = [cell.seconds for cell in _cells(found, program) if cell.seconds is not None]
+    return short(float(f"{sum(took):.2g}"), 2) if took else DASH
+
+
+def failures(found: Field) -> Table:
+    """Return the causes of failures, those of one program with one cause in a line."""
+    titles = (Column("Program"), Column("Problems"), Column("Cause", "fill"))
+    rows = []
+    for program in shown(found):
+        by_cause: dict[str, list[str]] = {}
+        for cell in _cells(found, program):
+            if cell.verdict == FAIL:
+                by_cause.setdefault(cell.cause, []).append(cell.problem)
+        rows += _lines(program, by_cause)
+    return Table(titles, tuple(rows))
+
+
+def inapplicable(found: Field) -> Table:
+    """Return why problems are not applicable, those of one program with one reason in a line."""
+    titles = (Column("Program"), Column("Problems"), Column("Reason", "fill"))
+    rows = []
+    for program in shown(found):
+        by_reason: dict[str, list[str]] = {}
+        for cell in _cells(found, program):
+            if cell.verdict == NOT_APPLICABLE:
+                reason = cell.reason.removeprefix("the solver says that it is not made for this scene: ")
+                by_reason.setdefault(reason, []).append(cell.problem)
+        rows += _lines(program, by_reason)
+    return Table(titles, tuple(rows))
+
+
+def _lines(program: ProgramLine, found: dict[str, list[str]]) -> list[tuple[str, ...]]:
+    lines = [(", ".join(problems), words) for words, problems in found.items()]
+    return [(program.title if n == 0 else "", *line) for n, line in enumerate(lines)]
+
+
+def programs(found: Field) -> Table:
+    """Return what each program says of itself."""
+    titles = (Column("Program"), Column("Version"), Column("Model", "fill"), Column("Settings", "fill"))
+    rows = []
+    for program in shown(found):
+        said = program.about
+        rows.append((program.title, said.get("version", ""), said.get("model", ""), said.get("settings", "")))
+    return Table(titles, tuple(rows))
