@@ -193,9 +193,9 @@ def test_numbers_of_the_examples_readme() -> None:
     thinned(
         [
             (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0), None),
-            (Program(dt=1e-3, p=1e9, gravity=9.81), [1, 2]),
-            (Program(dt=5e-4, p=1e10, gg=0.98, gravity=9.81, rho=2300.0), None),
-            (Program(dt=2e-4, p=5e8, steps=100, gravity=9.81), None),
+            (Program(dt=1e-3, p=1e9, g=9.81), [1, 2]),
+            (Program(dt=5e-4, p=1e10, gg=0.98, g=9.81, rho=2300.0), None),
+            (Program(dt=2e-4, p=5e8, steps=100, g=9.81), None),
         ],
         4,
     ),

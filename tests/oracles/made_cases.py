@@ -52,7 +52,7 @@ def made_history(step: float, *columns: Any) -> History:
 
 
 def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any) -> dict[str, Any]:
-    """Keep (scene, row, history) triples as a study named "made", and return its manifest."""
+    """Keep (scene, row, history) triples as a study, named "made" unless it is told otherwise; return its manifest."""
     entries = []
     for scene, row, history in cases:
         results.append(row, history)
@@ -66,8 +66,9 @@ def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any
             }
         )
     manifest = {"study": "made", "title": "Made", "purpose": "Why.", "cases": entries, "comparisons": list(comparisons)}
-    results.write_json("studies/made.json", manifest | parts)
-    return manifest | parts
+    manifest |= parts
+    results.write_json(f"studies/{manifest['study']}.json", manifest)
+    return manifest
 
 
 # ---- what a drawn axes shows --------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from faults import seams
-from faults.fault import Fault
+from faults.fault import Fault, scaled, times, told
 from faults.kill_matrix import check_kill_matrix
 from scipy.integrate import solve_ivp
 
@@ -29,15 +29,7 @@ Wrapper = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 def setting(**changes: Callable[[Any], Any]) -> Wrapper:
     """Return a wrapper that changes what stays the same from step to step."""
-
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def faulty(*given: Any) -> Any:
-            made = sound(*given)
-            return replace(made, **{name: change(getattr(made, name)) for name, change in changes.items()})
-
-        return faulty
-
-    return wrap
+    return told(lambda made: {name: change(getattr(made, name)) for name, change in changes.items()})
 
 
 def inertia(body: Any) -> Any:
@@ -48,11 +40,6 @@ def inertia(body: Any) -> Any:
 
 def rubbing(factor: float) -> Callable[[Any], Any]:
     return lambda law: law if law.friction is None else replace(law, friction=factor * law.friction)
-
-
-def tilted(sound: Callable[..., Any]) -> Callable[..., Any]:
-    """Start 1 % further up."""
-    return lambda model, *given: sound(replace(model, tilt=1.01 * model.tilt), *given)
 
 
 def quicker(share: float) -> Wrapper:
@@ -90,10 +77,6 @@ def doubled(sound: Callable[..., Any]) -> Callable[..., Any]:
     return faulty
 
 
-def moved(factor: float) -> Wrapper:
-    return lambda sound: lambda *given: factor * sound(*given)
-
-
 LIGHT = Fault("weight 1 % less", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: 0.99 * g))
 STEEP = Fault("slope 0.5 deg more", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: turned(math.radians(0.5)) @ g))
 HEAVY = Fault("moment of inertia 2 % more", DDA, seams.ROLLING_SETTING, setting(body=inertia))
@@ -101,7 +84,7 @@ SOFT = Fault(
     "springs a tenth", DDA, seams.ROLLING_SETTING, setting(law=lambda law: replace(law, stiffness=law.stiffness / 10))
 )
 QUICK = Fault("velocities 1 % more in every step", DDA, seams.ROLLING_ADVANCE, quicker(0.01))
-TILTED = Fault("tilt 1 % more", DDA, seams.ROLLING_START, tilted)
+TILTED = Fault("tilt 1 % more", DDA, seams.ROLLING_START, scaled(tilt=1.01))
 FAULTS = {
     "rocking": [
         LIGHT,
@@ -112,8 +95,8 @@ FAULTS = {
         TILTED,
         Fault("rotation reported twice its size", DDA, seams.ROLLING_OBSERVED, doubled),
         Fault("forces at the end of the step", DDA, seams.ROLLING_LATE, lambda sound: lambda delta: 1.0),
-        Fault("base moves 2 % more", DDA, seams.ROLLING_BASE, moved(1.02)),
-        Fault("base moves 30 % more", DDA, seams.ROLLING_BASE, moved(1.3)),
+        Fault("base moves 2 % more", DDA, seams.ROLLING_BASE, times(1.02)),
+        Fault("base moves 30 % more", DDA, seams.ROLLING_BASE, times(1.3)),
     ],
     "toppling": [
         LIGHT,
