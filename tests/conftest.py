@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from validation.runs.results import Results
+from validation.scenes.scene import Scene, load_scene
 
 SCENE = """\
 title = "A small scene"
@@ -128,6 +129,11 @@ def scene_file(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
 def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line as a user does."""
     return subprocess.run(
@@ -154,3 +160,10 @@ def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedPr
     status = stopped.value.code
     assert isinstance(status, int)
     return subprocess.CompletedProcess(words, status, said.getvalue(), complained.getvalue())
+
+
+def refused(*arguments: object, cwd: Path | None = None) -> str:
+    """Type what is refused as bad input, by one line and status 2, and return that line."""
+    done = typed(*arguments, cwd=cwd)
+    assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1, done.stderr
+    return done.stderr

@@ -24,15 +24,10 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome, Run
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import solver_names
 from validation.studies.catalogue import scene_study
-
-
-@pytest.fixture
-def scene(scene_file: Path) -> Scene:
-    return load_scene(scene_file)
 
 
 def study(scene: Scene, *, timed: bool = False) -> Study:

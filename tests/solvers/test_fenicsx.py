@@ -36,11 +36,6 @@ from validation.studies.second_fem_code import POLYGONS, SAME, TWO_CODES
 pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
 
 
-@pytest.fixture
-def scene(scene_file: Path) -> Scene:
-    return load_scene(scene_file)
-
-
 def error(scene: Scene, solver: str = "fenicsx") -> float:
     """Largest difference of the two codes over the maximum, of any column."""
     sound, other = solve(scene, "fem", full=True).history, solve(scene, solver).history
