@@ -59,7 +59,6 @@ def test_an_impact_rebounds_from_the_bar_as_from_the_block(scene_file: Path) -> 
 def test_both_ends_of_a_centred_block_switch_together() -> None:
     scene = load_scene("unlocked").expand()[1].with_values({"run.columns": ["gap_m", "gap_n", "normal_force_m"]})
     run = solve(scene, "block-events")
-    assert run.history is not None
     gap, force = run.history.columns["gap_m"], run.history.columns["normal_force_m"]
     assert np.array_equal(gap, run.history.columns["gap_n"])
     assert np.all(force >= 0) and np.all((gap > 0) == (force == 0))

@@ -44,7 +44,6 @@ def scene(**changes: object) -> Scene:
 def test_a_locked_variant_is_the_suites_own_dda(changes: dict[str, object]) -> None:
     s = scene(**changes)
     t, column = s.time, rectangle_of(s)
-    assert column is not None
     own = Variant(t.alpha, t.delta, t.discount, t.start)
     found = histories(column, [replace(own, gg=0.5), own], np.full(t.steps, t.step))
     exact = solve(s, "dda")

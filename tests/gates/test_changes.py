@@ -149,7 +149,6 @@ def test_another_code_of_the_same_model_is_inside_every_band(pack: Path) -> None
             continue
         run = solve(scene, "dda-textbook").history
         reference = read_csv(pack / "histories" / band["reference"])
-        assert run is not None
         until = band["until"] or np.inf
         value = pair(band["metric"], run.until(until), reference.until(until))
         assert isinstance(value, float) and band["low"] <= value <= band["high"], band

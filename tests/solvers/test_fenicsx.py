@@ -152,7 +152,6 @@ def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, objec
     case = scene.with_values(values | columns)
     runs = [get_solver(name).solve(case, full=True) for name in ("fenicsx", "fem")]
     own, other = (run.history for run in runs)
-    assert own is not None and other is not None
     static = [get_solver(name).static(case) for name in ("fenicsx", "fem")]
     moved = max(float(np.abs(other.columns[name]).max()) for name in ("displacement", "horizontal_displacement"))
     for name, values_of in other.columns.items():

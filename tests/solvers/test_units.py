@@ -28,7 +28,6 @@ VARIANTS = {  # the unit must be seen on any scene, and under a solver that is o
 def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str, Array]:
     """Return the sound history of a scene, some of its columns multiplied."""
     history = get_solver("dda").solve(scene).history
-    assert history is not None
     found = {"time": history.time, **history.columns}
     return {name: values * (times or {}).get(name, 1.0) for name, values in found.items()}
 

@@ -224,7 +224,6 @@ def test_the_record_of_the_base_is_the_pulse_of_the_study() -> None:
 
     for case in cases(rocking.PULSE):
         record = base_record(case)
-        assert record is not None
         inside = record.time <= rocking.DURATION + 1e-12
         assert np.allclose(record.x[inside], rocking.PUSH * record.time[inside] ** 2 / 2, atol=1e-12)
         end, last = rocking.DURATION, record.time[-1]

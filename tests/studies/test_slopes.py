@@ -71,7 +71,6 @@ def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path,
 
 def test_the_record_of_the_shaking_is_its_formula() -> None:
     record = base_record(next(cases(sliding.QUAKE)))
-    assert record is not None
     t = record.time
     parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
     swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
