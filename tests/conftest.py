@@ -37,6 +37,11 @@ elements = 4
 """
 
 
+OVERFLOW = [  # options with which the small scene leaves the range of doubles
+    word
+    for value in ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    for word in ("--set", value)
+]
 TOGETHER = (  # modules whose tests share what takes long to make
     "test_calibration",
     "test_changes",

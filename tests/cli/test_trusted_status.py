@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, refused, thinned, typed
+from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
 from validation.engine.measured import Judged, covers, wanting
 from validation.engine.run import run_study
@@ -289,9 +289,7 @@ def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_fi
 def test_fields_are_not_written_after_an_overflow(scene_file: Path, tmp_path: Path) -> None:
     out = tmp_path / "f.vtu"
     out.write_text("a good file")
-    sets = ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
-    words = [part for text in sets for part in ("--set", text)]
-    done = typed("solve", scene_file, "--solver", "fem", "--fields", out, *words)
+    done = typed("solve", scene_file, "--solver", "fem", "--fields", out, *OVERFLOW)
     assert done.returncode == 3 and "overflow" in done.stdout
     assert out.read_text() == "a good file"
     assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]

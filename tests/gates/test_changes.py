@@ -1,12 +1,12 @@
 """What other people's CI uses: summaries, baselines, differences, the reference pack."""
 
-import csv
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import SCENE, refused, typed
+from oracles.pages import table
 
 from validation import solve
 from validation.errors import InputError
@@ -116,8 +116,7 @@ def pack(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.long
 def test_a_pack_is_complete(pack: Path) -> None:
-    with (pack / "bands.csv").open(newline="") as stream:
-        bands = list(csv.DictReader(stream))
+    bands = table(pack / "bands.csv")
     assert bands and len(bands) == len(json.loads((pack / "bands.json").read_text()))
     for band in bands:
         assert (pack / "scenes" / f"{band['scene']}.toml").is_file()

@@ -66,12 +66,7 @@ FAULTS = [
         seams.DDA_HISTORIES,
         with_scheme(0, delta=lambda d: d + 1e-3),
     ),
-    Fault(
-        "fem: histories with another delta",
-        ("fem",),
-        seams.FEM_STEPPER,
-        with_scheme(3, delta=lambda d: d + 1e-3),
-    ),
+    Fault("fem: histories with another delta", ("fem",), seams.FEM_STEPPER, with_scheme(3, delta=lambda d: d + 1e-3)),
     Fault("fem: gg missing in the predictor", ("fem",), seams.FEM_PREDICTOR, no_discount(1)),
     Fault("fem: gg missing in the velocity", ("fem",), seams.FEM_VELOCITY, no_discount(2)),
     Fault("fem: delta 0.1 % high", ("fem",), seams.FEM_VELOCITY, with_scheme(2, delta=thousandth)),
@@ -85,12 +80,7 @@ FAULTS = [
     Fault("bar: gg missing in the trace", ("bar",), seams.BAR_TRACE, no_discount(1)),
     Fault("bar: gg missing in the roots", ("bar",), seams.BAR_SPECTRUM, no_discount(1)),
     Fault("bar: gg missing in the start", ("bar",), seams.BAR_FIRST_STEPS, no_discount(1)),
-    Fault(
-        "bar: delta missing in the roots",
-        ("bar",),
-        seams.BAR_PAIR,
-        with_scheme(1, delta=no_damping),
-    ),
+    Fault("bar: delta missing in the roots", ("bar",), seams.BAR_PAIR, with_scheme(1, delta=no_damping)),
     Fault("bar: other start", ("bar",), seams.BAR_FIRST_STEPS, with_scheme(1, start=swapped)),
     Fault("bar: delta 0.1 % high", ("bar",), seams.BAR_SPECTRUM, with_scheme(1, delta=thousandth)),
 ]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.pages import table
 
 from validation import load_scene, solve
 from validation.runs.files import read_csv
@@ -42,11 +42,6 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     names = ("numbers", "newmark", "rocking")
     assert count == sum(len(table(directory / f"friction/{name}.csv")) for name in names) > 150
     return directory / "friction"
-
-
-def table(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 @pytest.fixture(scope="module")
