@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from conftest import SCENE, refused, typed
 from faults import seams
+from oracles.made_cases import study
 
 from validation.engine import measure, origin
 from validation.engine.case import Case
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.gates.gate import Gate
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -29,11 +29,6 @@ from validation.solvers.contract import Solver
 
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 WIDE = GATE + 'band = [0.0, 1.0]\nreason = "wide"\n'
-
-
-def study(scene: Scene) -> Study:
-    gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
-    return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,))
 
 
 def ran(scene: Scene, results: Results) -> list[str]:

@@ -119,6 +119,9 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(study: Study, tmp_path: Pa
     check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
 
 
+PRECISELY: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}
+
+
 def rigid(block: Rectangle, k: Callable[[float], float], start: float, end: float, slope: float = 0.0) -> Any:
     """Return the motion of a rigid block about a corner by DOP853, with its events: flat, over the corner."""
 
@@ -133,17 +136,7 @@ def rigid(block: Rectangle, k: Callable[[float], float], start: float, end: floa
         return float(y[0] - block.alpha)
 
     flat.direction = -1
-    return solve_ivp(
-        rate,
-        (0, end),
-        [start, 0.0],
-        "DOP853",
-        events=(flat, over),
-        rtol=1e-12,
-        atol=1e-14,
-        max_step=0.01,
-        dense_output=True,
-    )
+    return solve_ivp(rate, (0, end), [start, 0.0], events=(flat, over), max_step=0.01, **PRECISELY)
 
 
 def test_quarter_periods_and_falls_are_those_of_the_differential_equation() -> None:
@@ -203,15 +196,11 @@ def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
     during = rigid(block, lambda t: k, 0.0, duration)
     angle, rate = during.y[:, -1]
     assert block.pulse_end(k, duration) == pytest.approx(angle, rel=1e-9)
-    after = solve_ivp(
-        lambda t, y: [y[1], -block.rate2 * math.sin(block.alpha - y[0])],
-        (0, 1.5),
-        [angle, rate],
-        "DOP853",
-        rtol=1e-12,
-        atol=1e-14,
-        dense_output=True,
-    )
+
+    def free(t: float, y: Any) -> list[float]:
+        return [y[1], -block.rate2 * math.sin(block.alpha - y[0])]
+
+    after = solve_ivp(free, (0, 1.5), [angle, rate], **PRECISELY)
     tilts = after.sol(np.linspace(0, 1.5, 20001))[0]
     if size < 1:
         assert block.pulse_peak(k, duration) == pytest.approx(np.max(tilts), rel=1e-7) and np.max(tilts) < block.alpha

@@ -289,10 +289,7 @@ class BlockEvents(Solver):
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
-
-    def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return BLOCK_COLUMNS
+    names: tuple[str, ...] | None = BLOCK_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
@@ -314,10 +311,7 @@ class BarEvents(BlockEvents):
     handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
-
-    def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return BAR_COLUMNS
+    names = BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for the scene."""
