@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from validation.runs.results import Results
+from validation.scenes.scene import Scene, load_scene
 
 SCENE = """\
 title = "A small scene"
@@ -36,6 +37,11 @@ elements = 4
 """
 
 
+OVERFLOW = [  # options with which the small scene leaves the range of doubles
+    word
+    for value in ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
+    for word in ("--set", value)
+]
 TOGETHER = (  # modules whose tests share what takes long to make
     "test_calibration",
     "test_changes",
@@ -130,6 +136,11 @@ def scene_file(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file)
+
+
 def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line as a user does."""
     return subprocess.run(
@@ -156,3 +167,10 @@ def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedPr
     status = stopped.value.code
     assert isinstance(status, int)
     return subprocess.CompletedProcess(words, status, said.getvalue(), complained.getvalue())
+
+
+def refused(*arguments: object, cwd: Path | None = None) -> str:
+    """Type what is refused as bad input, by one line and status 2, and return that line."""
+    done = typed(*arguments, cwd=cwd)
+    assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1, done.stderr
+    return done.stderr

@@ -62,6 +62,21 @@ class Block:
             raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
         return self.corners[index], self.corners[(index + 1) % n]
 
+    def check_edges(self, base: int, top: int) -> None:
+        """Check that base and top are two edges of the block.
+
+        Raises
+        ------
+        ValueError
+            If they are not.
+        """
+        n = len(self.corners)
+        for name, edge in (("base", base), ("top", top)):
+            if not 0 <= edge < n:
+                raise ValueError(f"{name}: must be an edge between 0 and {n - 1}, got {edge!r}")
+        if base == top:
+            raise ValueError(f"top: must differ from base, got {top!r}")
+
     def T(self, x: float, y: float) -> Array:
         """Return the 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""
         X, Y = x - self.section.centroid[0], y - self.section.centroid[1]

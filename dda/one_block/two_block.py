@@ -45,13 +45,7 @@ class TwoBlockModel:
 
     def __post_init__(self) -> None:
         """Check the load and the edges."""
-        n = len(self.block.corners)
-        for field in ("base", "top"):
-            value = getattr(self, field)
-            if not 0 <= value < n:
-                raise ValueError(f"{field}: must be an edge between 0 and {n - 1}, got {value!r}")
-        if self.base == self.top:
-            raise ValueError(f"top: must differ from base, got {self.top!r}")
+        self.block.check_edges(self.base, self.top)
         pressed_part(*self.block.edge(self.top), self.applied.eccentricity)
 
     @cached_property

@@ -73,12 +73,7 @@ class UnilateralModel:
 
     def __post_init__(self) -> None:
         """Check the numbers and the edges."""
-        n = len(self.block.corners)
-        for field in ("base", "top"):
-            if not 0 <= getattr(self, field) < n:
-                raise ValueError(f"{field}: must be an edge between 0 and {n - 1}, got {getattr(self, field)!r}")
-        if self.base == self.top:
-            raise ValueError(f"top: must differ from base, got {self.top!r}")
+        self.block.check_edges(self.base, self.top)
         if not math.isfinite(self.velocity):
             raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
         pressed_part(*self.block.edge(self.top), self.applied.eccentricity)

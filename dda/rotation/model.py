@@ -43,12 +43,7 @@ class RollingModel:
 
     def __post_init__(self) -> None:
         """Check the numbers and the edges."""
-        n = len(self.block.corners)
-        for name in ("base", "top"):
-            if not 0 <= getattr(self, name) < n:
-                raise ValueError(f"{name}: must be an edge between 0 and {n - 1}, got {getattr(self, name)!r}")
-        if self.base == self.top:
-            raise ValueError(f"top: must differ from base, got {self.top!r}")
+        self.block.check_edges(self.base, self.top)
         for name in ("tilt", "spin", "velocity"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")

@@ -132,11 +132,6 @@ class RollingResult(Result):
         return self._velocities[:, 1]
 
     @property
-    def horizontal_velocity(self) -> Array:
-        """Of the centroid, along +x [m/s]."""
-        return self._velocities[:, 0]
-
-    @property
     def spin(self) -> Array:
         """Rate of rotation [rad/s]."""
         return np.array([s.V[2] for s in self.states])

@@ -91,8 +91,3 @@ class Oscillation(Smooth):
         """Sum of the absolute values of the terms at s, the scale of their rounding."""
         c0, c1, c2 = self.polynomial
         return abs(c0) + abs(c1 * s) + abs(c2 * s * s) + sum((abs(A) + abs(B) for _, A, B in self.waves), ZERO)
-
-    def negative(self) -> Oscillation:
-        """The function with its sign changed."""
-        c0, c1, c2 = self.polynomial
-        return Oscillation((-c0, -c1, -c2), tuple((w, -A, -B) for w, A, B in self.waves))

@@ -104,7 +104,6 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
 def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, Any], error: float) -> None:
     scene = PAPER.with_values(scheme)
     found = contact.needed(scene, 3.757, error, 1e-4)
-    assert found.restitution is not None
     off = max(abs(found.restitution.low - 1), abs(found.restitution.high - 1))
     assert 0.3 * error < off < 1.1 * error
     there = scene.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})

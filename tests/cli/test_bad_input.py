@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, typed
+from conftest import SCENE, refused
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -125,9 +125,7 @@ def test_a_directory_and_a_missing_file_are_refused(tmp_path):
 @pytest.mark.parametrize("name", ["empty", "binary", "deep lists", "oversized"])
 def test_the_command_line_says_one_line_and_writes_nothing(name, tmp_path):
     (tmp_path / "x.toml").write_bytes(BROKEN[name])
-    done = typed("run", "x.toml", "--results", "r", cwd=tmp_path)
-    assert done.returncode == 2 and "Traceback" not in done.stderr
-    assert len(done.stderr.strip().splitlines()) == 1
+    refused("run", "x.toml", "--results", "r", cwd=tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["x.toml"]
 
 

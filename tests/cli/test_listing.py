@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from conftest import typed
+from conftest import refused, typed
 
 from validation.cli.printing.listing import in_columns
 from validation.metrics.catalogue import CATALOGUE, KIND, METRICS, Metric
@@ -85,9 +85,7 @@ def test_the_plain_list_names_all_four() -> None:
 
 
 def test_another_word_is_bad_input() -> None:
-    done = typed("list", "gates")
-    assert done.returncode == 2
-    assert done.stderr == "error: list: must be one of metrics, scenes, solvers, studies, got 'gates'\n"
+    assert refused("list", "gates") == "error: list: must be one of metrics, scenes, solvers, studies, got 'gates'\n"
 
 
 def row(metric: Metric) -> str:

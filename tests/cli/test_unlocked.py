@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, typed
+from conftest import SCENE, refused, typed
 
 from validation import load_scene, solve
 from validation.errors import InputError
@@ -17,9 +17,7 @@ ONE = ("--set", "contact.stiffness=1e9")
 
 def test_what_is_written_for_linear_scenes_refuses_it() -> None:
     for words in (["damping", "unlocked"], ["solve", "unlocked", "--solver", "dda-textbook"]):
-        done = typed(*words, *ONE)
-        assert done.returncode == 2, words
-        assert done.stderr.count("\n") == 1 and "unilateral contact" in done.stderr, done.stderr
+        assert "unilateral contact" in refused(*words, *ONE)
 
 
 def test_no_solver_prepares_a_scene_as_if_a_feature_were_absent() -> None:
@@ -61,7 +59,6 @@ def test_an_impact_rebounds_from_the_bar_as_from_the_block(scene_file: Path) -> 
 def test_both_ends_of_a_centred_block_switch_together() -> None:
     scene = load_scene("unlocked").expand()[1].with_values({"run.columns": ["gap_m", "gap_n", "normal_force_m"]})
     run = solve(scene, "block-events")
-    assert run.history is not None
     gap, force = run.history.columns["gap_m"], run.history.columns["normal_force_m"]
     assert np.array_equal(gap, run.history.columns["gap_n"])
     assert np.all(force >= 0) and np.all((gap > 0) == (force == 0))

@@ -8,6 +8,7 @@ import pytest
 from conftest import thinned
 from faults import seams
 from oracles import confusion
+from oracles.pages import page_with
 
 from validation.compare.causes import CAUSES
 from validation.compare.diagnosis import Answer
@@ -71,7 +72,7 @@ def test_a_departure_is_where_a_fault_is(judged) -> None:
 @pytest.mark.long
 def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
     page = confusion.PAGE.read_text()
-    found = confusion.page_with(confusion.matrix(fifty), page)
+    found = page_with(confusion.matrix(fifty), page, confusion.BEGIN, confusion.END)
     assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 

@@ -10,32 +10,12 @@ import pytest
 from conftest import typed
 from faults import seams
 from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
 
-from validation import load_scene
 from validation.compare.diagnosis import Answer, compare
 from validation.compare.reading import Foreign
-from validation.scenes.scene import Scene
 
 PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms
-
-
-def scene_of(p: Plain) -> Scene:
-    return load_scene("figures-3-4").with_values(
-        {
-            "time.step": p.dt,
-            "time.steps": p.steps,
-            "time.alpha": p.alpha,
-            "time.delta": p.delta,
-            "time.gg": p.gg,
-            "time.start": "consistent" if p.consistent else "zero",
-            "contact.stiffness": p.p,
-            "block.density": p.rho,
-            "block.young": p.E,
-            "block.poisson": p.mu,
-            "load.pressure": p.q,
-            "load.gravity": p.g,
-        }
-    )
 
 
 def judged(base: Plain = PLAIN, pressure: bool = True, **slip: Any) -> Answer:

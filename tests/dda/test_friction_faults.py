@@ -1,17 +1,19 @@
 """Slips that frictional contact codes are known for, each put in once: some check must notice it."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from faults.steps import damped_again, notices, velocity_twice
+from faults import steps
+from faults.steps import after, damped_again, marked, notices, stopped, velocity_twice
 from oracles.frictional import KNOWN, cases, held, sliding, square
+from oracles.unilateral_checks import apart
 
 import dda.contact.friction as friction
 import dda.contact.glued as glued
 import dda.contact.rubbing_points as rubbing_points
 import dda.contact.rules as rules
-import dda.one_block.unilateral as unilateral
 from dda import (
     Scheme,
     Unilateral,
@@ -21,7 +23,6 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.contact.iteration import NONE, Iteration
 from dda.contact.lagged import lagged
 from dda.contact.unilateral import OPEN, SLIP
 
@@ -39,9 +40,9 @@ def events():
     """Of second order: three times the steps, a ninth of the error, but for where a switch falls within its step."""
     for name, time in (("rubbing", 0.01), ("pulled", 0.03)):
         errors = []
-        for steps in (500, 1500):
-            scheme = Scheme(0.25, 0.5, 1.0, time / steps, "consistent")
-            result = solve_unilateral(KNOWN[name].model, scheme, steps, PLACE)
+        for count in (500, 1500):
+            scheme = Scheme(0.25, 0.5, 1.0, time / count, "consistent")
+            result = solve_unilateral(KNOWN[name].model, scheme, count, PLACE)
             errors.append(np.linalg.norm([result.columns[c][-1] for c in PLACE] - np.array(KNOWN[name].at[time])))
         assert errors[1] < errors[0] / 5
 
@@ -55,21 +56,10 @@ def identity():
 def cutting():
     """A step that is repeated begins where the failed one did: in free fall the velocity is that of the recursion."""
     flying = replace(MODEL, contact=replace(MODEL.contact, gap=1.0), gravity=0.0, velocity=-0.8)
-    real = unilateral.advance
-    for model, first, steps in ((MODEL, 20, 30), (flying, 1, 3)):
-        calls = []
-
-        def stubborn(law, length, state, limit, carried=None, calls=calls, first=first):
-            calls.append(([*map(list, state[:3])], state.corners))
-            after, found = real(law, length, state, limit, carried)
-            fails = first < len(calls) <= first + 2
-            return (None, Iteration(None, limit, NONE)) if fails else (after, found)
-
-        unilateral.advance = stubborn
-        try:
-            result = solve_unilateral(model, Scheme(0.5, 1.0, 0.9, 2e-4), steps, options=SINGLY)
-        finally:
-            unilateral.advance = real
+    for model, first, count in ((MODEL, 20, 30), (flying, 1, 3)):
+        scheme = Scheme(0.5, 1.0, 0.9, 2e-4)
+        run = partial(solve_unilateral, model, scheme, count, options=SINGLY)
+        result, calls = stopped(first, 2, run)
         assert result.step_cuts[first] == 2 and calls[first] == calls[first + 1] == calls[first + 2]
     assert result.velocity == pytest.approx([-0.8 * 0.9, -0.8 * 0.81, -0.8 * 0.729], rel=1e-14)
 
@@ -80,8 +70,7 @@ def points():
     model = KNOWN["rubbing"].model
     block = solve_unilateral(model, scheme, 150)
     one = solve_opening_system(opening_subdivided(model, 1, 1, 1e15), scheme, 150)
-    assert np.max(np.abs(one.shear - block.shear)) < 1e-9 * np.max(np.abs(block.shear))
-    assert np.max(np.abs(one.slip - block.slip)) < 1e-9 * np.max(block.slip)
+    assert apart(one.shear, block.shear) < 1e-9 and apart(one.slip, block.slip) < 1e-9
 
 
 CHECKS = (invariants, events, identity, cutting, points)
@@ -94,14 +83,12 @@ def of_the_solve_before(monkeypatch):
 
 def outside_the_test(monkeypatch):
     """The iteration ends where nothing opens or closes, whatever sticks and slips."""
-    real = friction.states_after
 
-    def faulty(law, tried):
-        agreed = real(law, tried)
+    def change(agreed, law, tried):
         same = all((now == OPEN) == (was == OPEN) for now, was in zip(agreed, tried.state, strict=True))
         return tried.state if same else agreed
 
-    monkeypatch.setattr(friction, "states_after", faulty)
+    after(monkeypatch, friction, "states_after", change)
 
 
 def any_direction(monkeypatch):
@@ -117,17 +104,15 @@ def any_direction(monkeypatch):
 
 def kept_reference(monkeypatch):
     """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
-    real = rules.rubbing
 
-    def faulty(law, before, free, limit):
-        found = real(law, before, free, limit)
+    def change(found, *given):
         if found.corners is None:
             return found
         c = found.corners
         stretch = tuple(s + way for s, way in zip(c.stretch, c.slipped, strict=True))
         return found._replace(corners=c._replace(stretch=stretch))
 
-    monkeypatch.setattr(rules, "rubbing", faulty)
+    after(monkeypatch, rules, "rubbing", change)
 
 
 def old_reference(monkeypatch):
@@ -152,18 +137,7 @@ def crossed_at_start(monkeypatch):
 
 
 def kept_shear(monkeypatch):
-    """A contact that opens goes on pulling along the base."""
-    real = rules.rubbing
-
-    def faulty(law, before, free, limit):
-        found = real(law, before, free, limit)
-        if found.corners is None:
-            return found
-        every = zip(found.corners.shear, found.corners.closed, before.shear, strict=True)
-        shear = tuple(T if now else 0.5 * old for T, now, old in every)
-        return found._replace(corners=found.corners._replace(shear=shear))
-
-    monkeypatch.setattr(rules, "rubbing", faulty)
+    steps.kept_shear(monkeypatch, rules, "rubbing")
 
 
 def pushed_along(monkeypatch):
@@ -184,14 +158,7 @@ def forgotten_coupling(monkeypatch):
 
 
 def gap_of_the_increment(monkeypatch):
-    """A force is the sum of p times increments: contact remembers tension."""
-    real = rules.rubbing
-
-    def faulty(law, before, free, limit):
-        start = [0.0 if shut else w for shut, w in zip(before.closed, before.gap, strict=True)]
-        return real(law, before, free._replace(gap=[w - w0 for w, w0 in zip(free.gap, start, strict=True)]), limit)
-
-    monkeypatch.setattr(rules, "rubbing", faulty)
+    steps.gap_of_the_increment(monkeypatch, rules, "rubbing")
 
 
 def points_without_coupling(monkeypatch):
@@ -227,11 +194,6 @@ FAULTS = {
     damped_again: [cutting],
     velocity_twice: [cutting],
 }
-
-
-def marked(items, short):
-    """Mark all but the named ones as long."""
-    return [pytest.param(item, marks=[pytest.mark.long] * (item not in short), id=item.__name__) for item in items]
 
 
 @pytest.mark.parametrize("check", marked(CHECKS, (identity, cutting)))

@@ -1,12 +1,14 @@
 """Slips that contact codes are known for, each put in once: some check of the stepping must notice it."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from faults.steps import damped_again, notices, velocity_twice
+from faults import steps
+from faults.steps import after, damped_again, marked, notices, stopped, velocity_twice
 from oracles import unilateral_mp
-from oracles.unilateral_checks import DT, checked, random_model, run, sums
+from oracles.unilateral_checks import DT, apart, checked, random_model, run, size, sums
 
 import dda.contact.conserving as conserving
 import dda.contact.glued as glued
@@ -62,19 +64,8 @@ def stiff_digits():
 
 def cutting():
     """The first trials fail: the step is repeated, shorter, from the state that was saved."""
-    real, calls = unilateral.advance, []
-
-    def stubborn(law, length, state, limit, carried=None):
-        calls.append(([*map(list, state[:3])], state.corners))
-        after, found = real(law, length, state, limit, carried)
-        return (None, iteration.Iteration(None, limit, iteration.NONE)) if len(calls) <= 2 else (after, found)
-
-    unilateral.advance = stubborn
-    try:
-        model = replace(random_model(1, glued=False), contact=Unilateral(1e9, gap=1.0), gravity=0.0, pressure=0.0)
-        result = run(replace(model, velocity=-0.8), gg=0.9, steps=3)
-    finally:
-        unilateral.advance = real
+    model = replace(random_model(1, glued=False), contact=Unilateral(1e9, gap=1.0), gravity=0.0, pressure=0.0)
+    result, calls = stopped(0, 2, partial(run, replace(model, velocity=-0.8), gg=0.9, steps=3))
     assert result.step_cuts.tolist() == [2, 0, 0]
     assert calls[0] == calls[1] == calls[2]
     assert result.velocity == pytest.approx([-0.8 * 0.9, -0.8 * 0.81, -0.8 * 0.729], rel=1e-14)
@@ -88,8 +79,7 @@ def at_once():
         singly = solve_unilateral(model, scheme, 300, options=UnilateralOptions(full=True))
         assert result.history.glides and np.count_nonzero(np.diff(result.closed)) > 0
         for name in ("normal_force_m", "gap_n", "shear_force_n", "velocity"):
-            one, other = getattr(result, name), getattr(singly, name)
-            assert np.max(np.abs(one - other)) <= 1e-9 * np.max(np.abs(other)), name
+            assert apart(getattr(result, name), getattr(singly, name)) <= 1e-9, name
 
 
 def kept_energy():
@@ -98,7 +88,7 @@ def kept_energy():
         options = UnilateralOptions(rule="energy-conserving", energies=True)
         result = solve_unilateral(random_model(seed, glued=False), Scheme(0.25, 0.5, 1.0, DT), 100, options=options)
         total, _ = sums(result)
-        assert np.max(np.abs(total - total[0])) < 1e-11 * np.max(np.abs(list(result.energies.values())))
+        assert np.max(np.abs(total - total[0])) < 1e-11 * size(result)
 
 
 def sub_blocks():
@@ -109,13 +99,12 @@ def sub_blocks():
         solve_opening_system(opening_subdivided(model, 1, 1, 1e15), scheme, 100),
     )
     for name in ("normal_force_m", "shear_force_n", "gap_n"):
-        a, b = getattr(block, name), getattr(one, name)
-        assert np.max(np.abs(a - b)) <= 1e-9 * np.max(np.abs(a)), name
+        assert apart(getattr(one, name), getattr(block, name)) <= 1e-9, name
     pressed = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.2)), Unilateral(1e9, 1e9), 5e6)
     springs, scheme = TwoBlockModel(pressed.block, Contact(1e9), 5e6), Scheme(0.5, 1.0, 1.0, 1e-2)
     opens = solve_opening_system(opening_subdivided(pressed, 2, 1, 1e12), scheme, 20).columns["displacement"]
     locked = solve_system(subdivided(springs, 2, 1, 1e12), scheme, 20).columns["displacement"]
-    assert np.max(np.abs(opens - locked)) <= 1e-9 * np.max(np.abs(locked))
+    assert apart(opens, locked) <= 1e-9
 
 
 CHECKS = (invariants, digits, stiff_digits, cutting, at_once, kept_energy, sub_blocks)
@@ -144,31 +133,11 @@ def dead_band(monkeypatch):
 
 
 def kept_shear(monkeypatch):
-    """A corner that opens goes on pulling along the base."""
-    real = step.find_states
-
-    def faulty(law, before, free, limit):
-        found = real(law, before, free, limit)
-        if found.corners is None:
-            return found
-        shear = tuple(
-            T if now else 0.5 * old
-            for T, now, old in zip(found.corners.shear, found.corners.closed, before.shear, strict=True)
-        )
-        return found._replace(corners=found.corners._replace(shear=shear))
-
-    monkeypatch.setattr(step, "find_states", faulty)
+    steps.kept_shear(monkeypatch, step, "find_states")
 
 
-def incremental_gap(monkeypatch):
-    """A force is the sum of p times increments: a corner that closes is pressed by the whole step's approach."""
-    real = step.find_states
-
-    def faulty(law, before, free, limit):
-        start = [0.0 if shut else w for shut, w in zip(before.closed, before.gap, strict=True)]
-        return real(law, before, free._replace(gap=[w - w0 for w, w0 in zip(free.gap, start, strict=True)]), limit)
-
-    monkeypatch.setattr(step, "find_states", faulty)
+def gap_of_the_increment(monkeypatch):
+    steps.gap_of_the_increment(monkeypatch, step, "find_states")
 
 
 def remembered_tension(monkeypatch):
@@ -188,17 +157,15 @@ def crossed_at_start(monkeypatch):
 
 def one_step_too_many(monkeypatch):
     """The step in which a contact switches is made as if it did not."""
-    real = unilateral.glide
 
-    def faulty(phase, v, closed, first, left):
-        found = real(phase, v, closed, first, left)
+    def change(found, phase, v, closed, first, left):
         if found is None or found[0].steps == left:
             return found
         part, end = found
         z, constant = phase.start(end)
         return part._replace(steps=part.steps + 1), phase.shown @ phase.after(z, 1) + constant
 
-    monkeypatch.setattr(unilateral, "glide", faulty)
+    after(monkeypatch, unilateral, "glide", change)
 
 
 def weightless_switch(monkeypatch):
@@ -220,13 +187,12 @@ def undamped_flight(monkeypatch):
 
 def old_equilibrium(monkeypatch):
     """Steps made at once tend to where they began, not to where the loads press."""
-    real = phases.Phase.start
 
-    def faulty(phase, v):
-        z, constant = real(phase, v)
+    def change(found, phase, v):
+        z, constant = found
         return z - phase.tended + np.eye(len(z))[-1], constant
 
-    monkeypatch.setattr(phases.Phase, "start", faulty)
+    after(monkeypatch, phases.Phase, "start", change)
 
 
 def trapezoid(monkeypatch):
@@ -255,13 +221,11 @@ def points_cross_at_start(monkeypatch):
 
 def points_keep_shear(monkeypatch):
     """A point that opens goes on pulling along the base."""
-    real = points.trial
 
-    def faulty(law, before, free, closed):
-        after = real(law, before, free, closed)
-        return replace(after, shear=np.where(closed, after.shear, before.shear / 2))
+    def change(found, law, before, free, closed):
+        return replace(found, shear=np.where(closed, found.shear, before.shear / 2))
 
-    monkeypatch.setattr(points, "trial", faulty)
+    after(monkeypatch, points, "trial", change)
 
 
 FAULTS = {
@@ -271,7 +235,7 @@ FAULTS = {
     damped_again: [cutting],
     velocity_twice: [cutting],
     kept_shear: [invariants, digits],
-    incremental_gap: [invariants, digits],
+    gap_of_the_increment: [invariants, digits],
     remembered_tension: [invariants],
     lost_weight: [invariants, digits],
     one_step_too_many: [at_once],
@@ -285,19 +249,15 @@ FAULTS = {
 }
 
 
-CHECKED = [pytest.param(check, marks=[pytest.mark.long] * (n > 3), id=check.__name__) for n, check in enumerate(CHECKS)]
-
-
-@pytest.mark.parametrize("check", CHECKED)
+@pytest.mark.parametrize("check", marked(CHECKS, CHECKS[:4]))
 def test_nothing_is_noticed_without_a_fault(check):
     assert not notices(check)
 
 
 SHORT = (crossed_at_start, dead_band, damped_again)  # one of each check
-MARKED = [pytest.param(fault, marks=[pytest.mark.long] * (fault not in SHORT)) for fault in FAULTS]
 
 
-@pytest.mark.parametrize("fault", MARKED, ids=lambda fault: fault.__name__)
+@pytest.mark.parametrize("fault", marked(FAULTS, SHORT))
 def test_a_known_slip_is_noticed(monkeypatch, fault):
     fault(monkeypatch)
     assert all(map(notices, FAULTS[fault]))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.unilateral_checks import random_model, sums
+from oracles.unilateral_checks import random_model, size, sums
 
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact.conserving import conserving
@@ -21,10 +21,6 @@ IMPLICIT = UnilateralOptions(rule="implicit", energies=True)
 
 def average(dt, gg=1.0, start="zero"):
     return Scheme(0.25, 0.5, gg, dt, start)
-
-
-def size(result):
-    return max(np.max(np.abs(values)) for values in result.energies.values())
 
 
 # ---- energy ----------------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SCENE
+from oracles.made_cases import study
 
 from validation.engine.case import Case
 from validation.engine.finished import Finished
@@ -24,20 +25,10 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome, Run
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import solver_names
 from validation.studies.catalogue import scene_study
-
-
-@pytest.fixture
-def scene(scene_file: Path) -> Scene:
-    return load_scene(scene_file)
-
-
-def study(scene: Scene, *, timed: bool = False) -> Study:
-    gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
-    return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,), timed=timed)
 
 
 def test_a_study_runs_once_and_resumes(scene: Scene, tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from faults import seams
 from oracles.made_cases import made_history, made_row
+from oracles.pages import table
 
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate
@@ -271,9 +271,9 @@ def test_each_band_of_a_pack_says_what_its_gate_says(packed: Path) -> None:
     ]
     assert [band["reason"] for band in bands[4:]] == ["one", "two", "three", "four"]
     assert [band["reference_kind"] for band in bands[-2:]] == ["exact", "own last value"]
-    with (packed / "bands.csv").open(newline="") as stream:
-        lines = list(csv.DictReader(stream))
-    assert lines == [{name: "" if value is None else str(value) for name, value in band.items()} for band in bands]
+    assert table(packed / "bands.csv") == [
+        {name: "" if value is None else str(value) for name, value in band.items()} for band in bands
+    ]
 
 
 # ---- provenance ---------------------------------------------------------------------------------------------------

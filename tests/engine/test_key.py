@@ -12,7 +12,7 @@ from conftest import SCENE
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.solvers.fenicsx import FEniCSx
 
 ROOT = Path(__file__).parents[2]
@@ -36,11 +36,6 @@ for room in sys.argv[3:]:
     print(room, *map(int, changed))
 """
 ROOMS = ("runs", "scenes", "metrics", "solvers", "engine")
-
-
-@pytest.fixture
-def scene(scene_file: Path) -> Scene:
-    return load_scene(scene_file)
 
 
 def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_path: Path) -> None:

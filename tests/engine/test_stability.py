@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE
 
 from validation import load_scene
 from validation.engine import stability
@@ -23,9 +22,8 @@ EXPLICIT, LINEAR = {"time.alpha": 0.0, "time.delta": 0.5}, {"time.alpha": 1 / 6,
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Scene:
-    (tmp_path / "small.toml").write_text(SCENE)
-    return load_scene(tmp_path / "small.toml").with_values({"time.allow_unstable": True})
+def scene(scene_file: Path) -> Scene:
+    return load_scene(scene_file).with_values({"time.allow_unstable": True})
 
 
 def row(scene: Scene, solver: str = "dda", measures: tuple[str, ...] = ("stability",)):

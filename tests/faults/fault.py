@@ -57,6 +57,26 @@ def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     return faulty
 
 
+def told(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:
+    """Change fields of what a function returns, a dataclass."""
+    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
+
+
+def of_first(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:
+    """Change fields of the first argument of a function, such as a model or a problem, a dataclass."""
+    return lambda sound: lambda first, *a, **k: sound(replace(first, **change(first)), *a, **k)
+
+
+def scaled(**factors: float) -> Callable[..., Callable[..., object]]:
+    """Multiply fields of the first argument of a function."""
+    return of_first(lambda first: {name: getattr(first, name) * factor for name, factor in factors.items()})
+
+
+def energy_changed(name: str, change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., Callable[..., object]]:
+    """Change one of the energies that a function returns, where they are kept."""
+    return told(lambda found: {"energies": found.energies and found.energies | {name: change(found.energies[name])}})
+
+
 def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
     """Change the stiffness of the contact springs of the DDA model."""
 
@@ -80,11 +100,6 @@ def thousandth(delta: float) -> float:
 
 def no_damping(delta: float) -> float:
     return 0.501 if delta == 0.5 else 0.5
-
-
-def stiff_problem(factor: float) -> Callable[..., Callable[..., object]]:
-    """Change the springs of a finite-element problem."""
-    return lambda sound: lambda problem: sound(replace(problem, stiffness=problem.stiffness * factor))
 
 
 def swapped(start: str) -> str:

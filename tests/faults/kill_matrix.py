@@ -37,6 +37,12 @@ def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
     return {gate.id for gate in gates if evaluate(gate, finished).status is Status.FAIL}
 
 
+def cases_of(study: Study, gates: Sequence[Gate]) -> list[Case]:
+    """Return the cases that gates need."""
+    needed = {need for gate in gates for need in study.needs(gate)}
+    return [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+
+
 def check_kill_matrix(
     study: Study,
     cases: Sequence[Case],

@@ -46,7 +46,7 @@ def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, ave
     moved, speed = friction.free_motion(case, friction.sliding_acceleration(case))
     offset = friction.penalty_offset(case)
     assert moved[-1] + offset == pytest.approx(way, abs=offset if average else 5e-7)
-    assert speed[-1] < friction.terminal_speed(case, friction.sliding_acceleration(case))
+    assert speed[-1] < friction.sliding_acceleration(case) * friction.time_constant(case)
 
 
 @pytest.mark.parametrize(
@@ -107,9 +107,9 @@ def test_a_rate_is_what_a_discount_takes_in_a_second() -> None:
         assert math.exp(-friction.drag_rate(case) * step) == pytest.approx(gg, rel=1e-12)
         assert friction.time_constant(case) == pytest.approx(step / (1 - gg), rel=1e-12)
     assert friction.drag_rate(scene()) == 0
-    assert friction.terminal_speed(scene(), 2.0) == math.inf
+    assert friction.time_constant(scene()) == math.inf
     many = friction.free_motion(scene(time__gg=0.9, time__steps=2000), 2.0)[1]
-    assert np.max(np.abs(many[1000:] / friction.terminal_speed(scene(time__gg=0.9), 2.0) - 1)) < 1e-12
+    assert np.max(np.abs(many[1000:] / (2.0 * friction.time_constant(scene(time__gg=0.9))) - 1)) < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ and writes the table to docs/compare.md.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -20,9 +19,11 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from oracles.pages import page_with
 from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
 
-from validation import load_scene, solve
+from validation import solve
 from validation.compare.diagnosis import compare
 from validation.compare.reading import Foreign
 from validation.scenes.scene import Scene
@@ -71,7 +72,7 @@ def made(seed: int) -> Made:
     given = Foreign(time, columns[0], columns[1] if rng.random() < 0.6 else None)
     if "time-shift" in causes:
         given = replace(given, time=time[:-1], displacement=columns[0][1:], pressure=None)
-    return Made(scene_of(base), given, causes, maker)
+    return Made(meshed(base), given, causes, maker)
 
 
 def _printed(rng: np.random.Generator, values: np.ndarray, noise: float, digits: int) -> np.ndarray:
@@ -175,31 +176,14 @@ def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str,
     return single[name], (name,)
 
 
-def scene_of(p: Plain) -> Scene:
-    """Return the scene of a plain run."""
-    return load_scene("figures-3-4").with_values(
-        {
-            "time.step": p.dt,
-            "time.steps": p.steps,
-            "time.alpha": p.alpha,
-            "time.delta": p.delta,
-            "time.gg": p.gg,
-            "time.start": "consistent" if p.consistent else "zero",
-            "contact.stiffness": p.p,
-            "block.density": p.rho,
-            "block.young": p.E,
-            "block.poisson": p.mu,
-            "load.pressure": p.q,
-            "load.gravity": p.g,
-            "fem.elements": 12,
-            "fem.degree": 1,
-        }
-    )
+def meshed(p: Plain) -> Scene:
+    """Return the scene of a run, with a mesh of its own."""
+    return scene_of(p).with_values({"fem.elements": 12, "fem.degree": 1})
 
 
 def elements(p: Plain) -> tuple[np.ndarray, np.ndarray]:
     """Return a history of the finite elements."""
-    found = solve(scene_of(p), "fem")
+    found = solve(meshed(p), "fem")
     return found.displacement, found.contact_pressure
 
 
@@ -295,12 +279,6 @@ def share(found: list[Judged]) -> float:
     return said.count("right") / max(len(said), 1)
 
 
-def page_with(text: str, page: str) -> str:
-    """Return the page with the table in its place."""
-    pattern = re.escape(BEGIN) + ".*?" + re.escape(END)
-    return re.sub(pattern, lambda _: f"{BEGIN}\n{text}\n{END}", page, flags=re.DOTALL)
-
-
 def judge(count: int, processes: int = 1, first: int = 0) -> list[Judged]:
     """Judge so many histories."""
     if processes == 1:
@@ -312,4 +290,4 @@ def judge(count: int, processes: int = 1, first: int = 0) -> list[Judged]:
 if __name__ == "__main__":
     wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     results = judge(wanted, int(sys.argv[2]) if len(sys.argv) > 2 else 2)
-    PAGE.write_text(page_with(table(results), PAGE.read_text()))
+    PAGE.write_text(page_with(table(results), PAGE.read_text(), BEGIN, END))

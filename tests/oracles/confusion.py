@@ -7,15 +7,15 @@ tests/oracles/confusion.py`` writes the matrix to docs/compare.md.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from oracles.pages import page_with
+from oracles.program_scenes import scene_of
 from oracles.shi_dda import History, Program, run
 
-from validation import load_scene
 from validation.compare.causes import CAUSES
 from validation.compare.diagnosis import Answer, compare
 from validation.compare.reading import Foreign
@@ -46,22 +46,6 @@ class Known:
         noisy = history.displacement + self.noise * size * rng.standard_normal(len(history.time))
         given = self.change(Foreign(history.time, np.array([float(f"{u:.6e}") for u in noisy])))
         return compare(scene_of(self.scene), given), history
-
-
-def scene_of(p: Program):
-    return load_scene("figures-3-4").with_values(
-        {
-            "time.step": p.dt,
-            "time.steps": p.steps,
-            "time.alpha": p.alpha,
-            "time.delta": p.delta,
-            "time.gg": p.gg,
-            "time.start": "consistent" if p.consistent else "zero",
-            "contact.stiffness": p.p,
-            "block.density": p.rho,
-            "load.pressure": p.q,
-        }
-    )
 
 
 def scaled(factor: float) -> Callable[[Foreign], Foreign]:
@@ -162,11 +146,5 @@ def matrix(judged: list[tuple[Known, Answer, History]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def page_with(table: str, page: str) -> str:
-    return re.sub(
-        re.escape(BEGIN) + ".*?" + re.escape(END), lambda _: f"{BEGIN}\n{table}\n{END}", page, flags=re.DOTALL
-    )
-
-
 if __name__ == "__main__":
-    PAGE.write_text(page_with(matrix(judge()), PAGE.read_text()))
+    PAGE.write_text(page_with(matrix(judge()), PAGE.read_text(), BEGIN, END))

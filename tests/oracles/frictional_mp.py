@@ -3,12 +3,12 @@
 from itertools import product
 
 from mpmath import mp, mpf
-from oracles.unilateral_mp import DIGITS, Oracle
+from oracles import unilateral_mp
 
 OPEN, STICK = 0, 1  # and 2, -2 for slip
 
 
-class Rubbing(Oracle):
+class Rubbing(unilateral_mp.Oracle):
     """The displacement form: T of a slipping corner makes the matrix of the step unsymmetric."""
 
     def __init__(self, model, scheme):
@@ -26,26 +26,14 @@ class Rubbing(Oracle):
         found = [trial for trial in map(self._tried, product((OPEN, STICK, 2, -2), repeat=2)) if trial]
         assert len(found) == 1, "the oracle needs exactly one contact state"
         D1, N, T, self.r, self.closed = found[0]
-        push = mp.zeros(6, 1)
-        for c in (0, 1):
-            push += N[c] * self.normal[c].T + T[c] * self.shear[c].T
-        A1 = self.M**-1 * (self.F - self.K0 * D1 + push)
-        self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
-        self.D, self.A = D1, A1
+        self._moved(D1, N, T)
         return [D1[0], D1[1], D1[2]], N, T
 
     def _tried(self, states):
-        shares = [mpf(1) if was else mpf(1) / 2 for was in self.closed]
-        for _ in range(400):
-            D1 = self._rubbed(states, shares)
-            gaps = [self.g0 + (row * D1)[0] for row in self.normal]
-            new = self._shares(gaps)
-            if max(abs(x - y) for x, y in zip(new, shares, strict=True)) < mpf(10) ** (10 - DIGITS):
-                return self._agreed(D1, gaps, states, shares)
-            shares = new
-        return None
+        found = self._repeated(states)
+        return found and self._agreed(*found)
 
-    def _rubbed(self, states, shares):
+    def _solve(self, states, shares):
         h = self.alpha * self.dt**2
         star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
         S, b = self.M + h * self.K0, self.M * star + h * self.F
@@ -83,6 +71,4 @@ class Rubbing(Oracle):
 
 def history(model, scheme, steps):
     """Return (u, v, r) [m, m, 1], the normal forces and the shear forces [N] of every step."""
-    with mp.workdps(DIGITS):
-        oracle = Rubbing(model, scheme)
-        return [oracle.step() for _ in range(steps)]
+    return unilateral_mp.history(model, scheme, steps, Rubbing)

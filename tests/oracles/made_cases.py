@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
+from validation.engine.study import Study
+from validation.gates.gate import Gate
 from validation.report.chapters.data import Case, Group
 from validation.runs.history import History
 from validation.runs.results import Results, Row
@@ -20,6 +22,12 @@ def made_row(solver: str, metrics: Mapping[str, Any] | None = None, scene: str =
     """Return a row that completed, unless it is told otherwise."""
     outcome = more.pop("outcome", Outcome.COMPLETED)
     return Row(f"{scene} {solver}", "study", scene, solver, outcome, metrics or {}, **more)
+
+
+def study(scene: Scene, *, timed: bool = False) -> Study:
+    """Return a study of one scene by dda and bar with one gate, which passes on the small scene."""
+    gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
+    return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,), timed=timed)
 
 
 def made_case(
@@ -52,7 +60,7 @@ def made_history(step: float, *columns: Any) -> History:
 
 
 def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any) -> dict[str, Any]:
-    """Keep (scene, row, history) triples as a study named "made", and return its manifest."""
+    """Keep (scene, row, history) triples as a study, named "made" unless it is told otherwise; return its manifest."""
     entries = []
     for scene, row, history in cases:
         results.append(row, history)
@@ -66,8 +74,9 @@ def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any
             }
         )
     manifest = {"study": "made", "title": "Made", "purpose": "Why.", "cases": entries, "comparisons": list(comparisons)}
-    results.write_json("studies/made.json", manifest | parts)
-    return manifest | parts
+    manifest |= parts
+    results.write_json(f"studies/{manifest['study']}.json", manifest)
+    return manifest
 
 
 # ---- what a drawn axes shows --------------------------------------------------------------------------------------

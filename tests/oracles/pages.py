@@ -1,8 +1,22 @@
-"""Code blocks of the documentation: how they are found, and which gates a page's pytest command runs in a test."""
+"""Pages and files: code blocks of the documentation, gates that its pytest command runs in a test, tables."""
 
+import csv
 import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```(\w+)(?: (?:file=|title=\")([^\s\"]+)\"?)?\n(.*?)^```$", re.M | re.S)
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
+
+
+def page_with(table: str, page: str, begin: str, end: str) -> str:
+    """Return a page with a table in its place between two marks."""
+    return re.sub(
+        re.escape(begin) + ".*?" + re.escape(end), lambda _: f"{begin}\n{table}\n{end}", page, flags=re.DOTALL
+    )
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV table by the names of its columns."""
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))

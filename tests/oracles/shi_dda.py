@@ -31,7 +31,7 @@ class Program:
     alpha: float = 0.5
     delta: float = 1.0
     gg: float = 1.0
-    gravity: float = 0.0
+    g: float = 0.0
     base_young: float = 50e9
     base_rho: float = 2700.0
     fixed: float = 1e12  # N/m, spring of each of the base's points
@@ -151,8 +151,8 @@ def _assembled(P, block, base, held_T, moved):
     K[:6, :6], F[:6] = block.elastic()
     K[6:, 6:], F[6:] = base.elastic()
     F[:6] += block.T(block.vertices[2:].mean(axis=0)).T @ [0, -P.q * P.side]
-    F[1] -= block.rho * block.S * P.gravity
-    F[7] -= base.rho * base.S * P.gravity
+    F[1] -= block.rho * block.S * P.g
+    F[7] -= base.rho * base.S * P.g
     for T, m in zip(held_T, moved, strict=True):
         K[6:, 6:] += P.fixed * T.T @ T
         F[6:] -= P.fixed * T.T @ m

@@ -72,29 +72,36 @@ class Oracle:
         found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
         assert len(found) == 1, "the oracle needs exactly one contact state"
         D1, N, T, self.r, self.closed = found[0]
+        self._moved(D1, N, T)
+        return D1[1], N, T
+
+    def _moved(self, D1, N, T):
+        """Take over the end of a step: acceleration from the forces, velocity from the accelerations."""
         push = mp.zeros(6, 1)
         for c in (0, 1):
             push += N[c] * self.normal[c].T + T[c] * self.shear[c].T
         A1 = self.M**-1 * (self.F - self.K0 * D1 + push)
         self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
         self.D, self.A = D1, A1
-        return D1[1], N, T
 
     def _trial(self, closed):
         """Return the step with these corners closed if its gaps agree with that."""
+        found = self._repeated(closed)
+        if found is None or any((w < 0) != shut for w, shut in zip(found[1], closed, strict=True)):
+            return None
+        return self._accepted(*found)
+
+    def _repeated(self, states):
+        """Return displacements, gaps, states and shares when these agree with each other, None where they never do."""
         shares = [mpf(1) if was else mpf(1) / 2 for was in self.closed]
         for _ in range(400):
-            D1 = self._solve(closed, shares)
+            D1 = self._solve(states, shares)
             gaps = [self.g0 + (row * D1)[0] for row in self.normal]
             new = self._shares(gaps)
             if max(abs(x - y) for x, y in zip(new, shares, strict=True)) < mpf(10) ** (10 - DIGITS):
-                break
+                return D1, gaps, states, shares
             shares = new
-        else:
-            return None
-        if any((w < 0) != shut for w, shut in zip(gaps, closed, strict=True)):
-            return None
-        return self._accepted(D1, gaps, closed, shares)
+        return None
 
     def _shares(self, gaps):
         """Return the share 1 - theta of the step's slide behind the crossing; 1 of a corner that was closed."""
@@ -129,10 +136,10 @@ class Oracle:
         return D1, N, T, r, closed
 
 
-def history(model, scheme, steps):
+def history(model, scheme, steps, kind=Oracle):
     """Return v [m], the normal forces and the shear forces [N] of every step."""
     with mp.workdps(DIGITS):
-        oracle = Oracle(model, scheme)
+        oracle = kind(model, scheme)
         return [oracle.step() for _ in range(steps)]
 
 

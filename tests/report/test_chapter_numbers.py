@@ -16,21 +16,12 @@ from validation.report.chapters.limits import stability as chapters_stability
 from validation.report.chapters.limits import stiff_contact as chapters_contact
 from validation.report.chapters.limits.stability import Cell
 from validation.report.chapters.paper import PaperFigure
-from validation.report.figures import histories as figures
 from validation.report.figures.curves import style_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
 GREY = "#bbbbbb"
-
-
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
-    """Catch the figures that a chapter writes, by the names of their files."""
-    caught: dict[str, Figure] = {}
-    monkeypatch.setattr(figures, "save", lambda figure, path: caught.setdefault(path.name, figure))
-    return caught
 
 
 # ---- the paper's figures ------------------------------------------------------------------------------------------

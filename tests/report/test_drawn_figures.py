@@ -9,23 +9,8 @@ import pytest
 from matplotlib.colors import to_hex
 from oracles.made_cases import line_in, lines_of, made_history, names_at, places_of, rules_of
 
-from validation.report.figures import (
-    cost as figures_cost,
-)
-from validation.report.figures import curves, motion
-from validation.report.figures import (
-    histories as figures,
-)
-from validation.report.figures import ledger as figures_ledger
-from validation.report.figures import (
-    paper as figures_paper,
-)
-from validation.report.figures import (
-    stability as figures_stability,
-)
-from validation.report.figures import (
-    work as figures_work,
-)
+from validation.report.figures import cost, curves, ledger, motion, paper, stability, work
+from validation.report.figures.histories import Line, line_figure
 from validation.runs.results import Row
 from validation.scenes.scene import load_scene
 from validation.studies.work.points import Point
@@ -89,8 +74,8 @@ def test_the_difference_is_measured_from_the_reference_over_the_static_value() -
 
 def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
     n = np.array([4.0, 8.0, 16.0])
-    lines = [figures.Line("fem", n, np.array([3.0, 2.0, 1.0]), ": falls"), figures.Line("bar", n, 1 + n / 8)]
-    (axes,) = figures.line_figure(lines, "n", "v", {"dda": 2.0}).axes
+    lines = [Line("fem", n, np.array([3.0, 2.0, 1.0]), ": falls"), Line("bar", n, 1 + n / 8)]
+    (axes,) = line_figure(lines, "n", "v", {"dda": 2.0}).axes
     assert names_at(axes) == {
         "fem: falls": (pytest.approx(1.0), color("fem")),
         "bar": (pytest.approx(3.0), color("bar")),
@@ -100,15 +85,13 @@ def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
     parts = {"code": (1e-13, 2e-11), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
-    figure = figures_ledger.ledger_figure(
-        [figures_ledger.LedgerLine("one", {}), figures_ledger.LedgerLine("two", parts)]
-    )
+    figure = ledger.ledger_figure([ledger.LedgerLine("one", {}), ledger.LedgerLine("two", parts)])
     assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 0), ("two", 1)]
-    rounding = np.sqrt(figures_ledger.EDGE * figures_ledger.ROUNDING)  # a strip without places of its own
+    rounding = np.sqrt(ledger.EDGE * ledger.ROUNDING)  # a strip without places of its own
     for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
         assert axes.get_title(loc="left") == part
         shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
-        filled = shown[to_hex(figures_ledger.ROUNDED if part == "code" else figures_ledger.DOT)]
+        filled = shown[to_hex(ledger.ROUNDED if part == "code" else ledger.DOT)]
         hollow = shown.get("#ffffff")
         assert filled.get_xdata()[0] == (rounding if part == "code" else displacement)
         assert round(filled.get_ydata()[0]) == 1  # the second line of the ledger
@@ -121,7 +104,7 @@ def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_co
 def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last() -> None:
     steps = np.arange(1, 101)
     lines = {"dda": steps / 50.0, "bar": 2.0 - steps / 25.0}  # at step 50: 1 and 0; at 100: 2 and -2
-    (axes,) = figures_paper.steps_figure([figures_paper.StepPanel("", lines, 0.5, 30.0)], "v", 50).axes
+    (axes,) = paper.steps_figure([paper.StepPanel("", lines, 0.5, 30.0)], "v", 50).axes
     assert names_at(axes) == {"dda": (pytest.approx(1.0), color("dda")), "bar": (pytest.approx(0.0), color("bar"))}
     ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
     assert all(float(label.get_text()) == tick for tick, label in ticks)
@@ -137,12 +120,12 @@ def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
     true, printed = np.linspace(1.0, 0.9, 30), np.where(omega > 4, 0.2, np.linspace(1.0, 0.9, 30))
     data = {"omega": omega, "schemes": {name: {"radius": true - k / 10, "printed": printed - k / 10}
             for k, name in enumerate(("constant (1/2, 1)", "b", "c", "d"))}}  # fmt: skip
-    (axes,) = figures_paper.radius_figure(data, [(2.0, 0.5), (20.0, 0.7)]).axes
+    (axes,) = paper.radius_figure(data, [(2.0, 0.5), (20.0, 0.7)]).axes
     ends = names_at(axes)
-    assert [ends[name][1] for name in "bcd"] == list(figures_paper.SCHEME_COLORS[1:])
+    assert [ends[name][1] for name in "bcd"] == list(paper.SCHEME_COLORS[1:])
     assert ends["constant (1/2, 1)"][0] == pytest.approx(0.9, abs=0.05)
     assert ends["constant: √(1+h), as printed"][0] == pytest.approx(0.2, abs=0.05)
-    first = to_hex(figures_paper.SCHEME_COLORS[0])
+    first = to_hex(paper.SCHEME_COLORS[0])
     curves_drawn = {line.get_linestyle(): line for line in axes.lines if to_hex(line.get_color()) == first
                     and line.get_transform() == axes.transData}  # fmt: skip
     assert np.array_equal(curves_drawn["-"].get_ydata(), true)
@@ -173,9 +156,9 @@ def budget_of(**parts: float) -> dict[str, Any]:
 
 def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() -> None:
     budget = budget_of(total=0.05, algorithmic=0.012, kinetic=0.0015)
-    (axes,) = figures_paper.budget_figure([figures_paper.BudgetPanel("", budget)]).axes
+    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
     wanted = {"first axial": 5.0, "contact": 20.0, "algorithmic part": 1.2, "kinetic part": 0.15}
-    orange, violet = color("dda"), to_hex(figures_paper.CONTACT_COLOR)
+    orange, violet = color("dda"), to_hex(paper.CONTACT_COLOR)
     colors = dict.fromkeys(wanted, orange) | {"contact": violet}
     assert names_at(axes) == {name: (pytest.approx(value, rel=1e-6), colors[name]) for name, value in wanted.items()}
     drawn = {(own, round(float(y[0]), 9)) for own, x, y in lines_of(axes) if x.size == 20}
@@ -184,7 +167,7 @@ def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() ->
 
 def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
     budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    (axes,) = figures_paper.budget_figure([figures_paper.BudgetPanel("", budget)]).axes
+    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
     assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
     triangles = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "^"]
     assert triangles == [1e-3, 2e-3]
@@ -199,10 +182,10 @@ def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
 
 def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_note() -> None:
     lines = [
-        figures.Line("squares", np.array([1.0, 10.0]), np.array([0.5, 0.1]), "1 2"),
-        figures.Line("triangles", np.array([20.0, 2.0]), np.array([0.01, 0.4]), "8 3"),
+        Line("squares", np.array([1.0, 10.0]), np.array([0.5, 0.1]), "1 2"),
+        Line("triangles", np.array([20.0, 2.0]), np.array([0.01, 0.4]), "8 3"),
     ]
-    (axes,) = figures_work.work_figure(lines, "s", "error").axes
+    (axes,) = work.work_figure(lines, "s", "error").axes
     found = names_at(axes)
     assert found["squares"] == (pytest.approx(0.1), color("squares"))
     assert found["triangles"] == (pytest.approx(0.01), color("triangles"))
@@ -212,7 +195,7 @@ def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_no
 
 def test_two_columns_are_drawn_as_x_and_y_and_named_at_the_largest_x() -> None:
     series = {"s dda": [(100.0, 2.0), (1.0, 50.0)], "s bar": [(2.0, 1.0), (30.0, 9.0)]}
-    (axes,) = figures_cost.columns_figure(("work", "error"), series).axes
+    (axes,) = cost.columns_figure(("work", "error"), series).axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("work", "error")
     assert names_at(axes) == {
         "s dda": (pytest.approx(2.0), color("s dda")),
@@ -236,7 +219,7 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
         point("dda", 1e-2, 0.1, {bar: 0.04, whole: 0.5}),
         point("bar", 1e-3, 0.05, {bar: 1e-11, whole: 0.2}),
     ]
-    figure = figures_cost.work_figure(found)
+    figure = cost.work_figure(found)
     titles = [axes.get_title(loc="left").split("the ")[-1].rstrip(")") for axes in figure.axes]
     labels = [axes.get_xlabel() for axes in figure.axes]
     assert titles == ["bar", "continuum"] * 2 and labels == ["Seconds"] * 2 + ["Unknowns × steps"] * 2
@@ -259,7 +242,7 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
 
 def test_a_map_shows_whole_correct_digits_and_leaves_blank_what_no_run_answers() -> None:
     error = np.array([[1e-16, 0.9e-5], [np.nan, 2.0]])
-    figure = figures_stability.digit_maps([figures_stability.DigitMap("v", error)], ["a", "b"], ["c", "d"], "x", "y")
+    figure = stability.digit_maps([stability.DigitMap("v", error)], ["a", "b"], ["c", "d"], "x", "y")
     (axes,) = figure.axes
     assert {text.get_position(): text.get_text() for text in axes.texts} == {(0, 0): "16", (1, 0): "5", (1, 1): "0"}
     assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
@@ -269,11 +252,11 @@ def test_a_map_shows_whole_correct_digits_and_leaves_blank_what_no_run_answers()
 def test_a_hollow_mark_at_the_top_has_not_settled() -> None:
     ratios = np.array([1.0, 10.0, 100.0])
     lines = [
-        figures_stability.Settling("one", ratios, np.array([20.0, np.nan, 40.0])),
-        figures_stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
+        stability.Settling("one", ratios, np.array([20.0, np.nan, 40.0])),
+        stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
     ]
-    (axes,) = figures_stability.settling_figure(lines, 1000.0).axes
-    first, second, *_ = figures_stability.COLORS
+    (axes,) = stability.settling_figure(lines, 1000.0).axes
+    first, second, *_ = stability.COLORS
     assert names_at(axes) == {"one": (pytest.approx(40.0), first), "two": (pytest.approx(100.0), second)}
     hollow = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines
               if to_hex(line.get_markerfacecolor()) == "#ffffff" and len(line.get_xdata())]  # fmt: skip

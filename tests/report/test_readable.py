@@ -74,7 +74,6 @@ def made(studies: list[str], finished_cases: Path, directory: Path) -> PdfReader
 def reported() -> list[str]:
     """Return the studies that `make report` runs."""
     line = re.search(r"run (core [\w -]+);", (ROOT / "Makefile").read_text(encoding="utf-8"))
-    assert line is not None
     return line[1].split()
 
 

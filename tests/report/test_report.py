@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.made_cases import between, kept_study, made_row
 
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
@@ -39,7 +40,6 @@ from validation.report.front.pages import front_pages
 from validation.report.typesetting import typeset
 from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene, parse_scene
 
@@ -80,70 +80,47 @@ def synthetic(scene, solver):
     return history, metrics
 
 
+PROVENANCE = {
+    "python": "3.11.0",
+    "packages": {"numpy": "2.4.0", "scipy": "1.17.0"},
+    "commit": "0123abc",
+    "processor": "a processor",
+    "cores": 2,
+    "seeds": [],
+    "date": "2024-01-01",
+}
+
+
 def l2(a, b):
     return float(np.linalg.norm(a - b) / np.linalg.norm(b))
 
 
 def comparison(case, solver, reference, histories):
     a, b = histories[solver], histories[reference]
-    metrics = {
-        "displacement.l2": l2(a.displacement, b.displacement),
-        "pressure.l2": l2(a.contact_pressure, b.contact_pressure),
+    errors = {
+        "displacement_l2": l2(a.displacement, b.displacement),
+        "pressure_l2": l2(a.contact_pressure, b.contact_pressure),
     }
-    return {"scene": case, "solver": solver, "reference": reference, "window": float(a.time[-1]), "metrics": metrics}
+    return between(case, solver, reference, **errors) | {"window": float(a.time[-1])}
 
 
 def write_study(results, study, scenes, gates=(), title="The paper's scenes"):
     """Fill a results directory as the engine does, with synthetic data; dda-textbook is absent from figure-8."""
-    entries, comparisons = [], []
+    cases, comparisons = [], []
     for case in [case for scene in scenes for case in scene.expand()]:
         histories = {}
         for solver in case.run.solvers:
-            key = f"{study}-{len(entries)}"
-            entries.append(
-                {"scene": case.name, "title": case.title, "solver": solver, "key": key, "definition": case.definition()}
-            )
             if solver == "dda-textbook" and case.name.startswith("figure-8"):
-                results.append(
-                    Row(key, study, case.name, solver, Outcome.NOT_APPLICABLE, {}, notes=("alpha must be above 0",)),
-                    None,
-                )
+                left_out = {"outcome": Outcome.NOT_APPLICABLE, "notes": ("alpha must be above 0",)}
+                cases.append((case, made_row(solver, {}, case.name, **left_out), None))
                 continue
             histories[solver], metrics = synthetic(case, solver)
-            results.append(
-                Row(
-                    key,
-                    study,
-                    case.name,
-                    solver,
-                    Outcome.COMPLETED,
-                    metrics,
-                    {"unknowns": 6, "steps": case.time.steps},
-                    {"setup": 0.001, "stepping": 0.01},
-                ),
-                histories[solver],
-            )
+            spent = {"work": {"unknowns": 6, "steps": case.time.steps}, "seconds": {"setup": 0.001, "stepping": 0.01}}
+            cases.append((case, made_row(solver, metrics, case.name, **spent), histories[solver]))
         order = [s for s in ("dda", "dda-textbook", "fem", "bar", "continuum") if s in histories]
         comparisons += [comparison(case.name, a, b, histories) for i, a in enumerate(order) for b in order[i + 1 :]]
-    results.write_json(
-        f"studies/{study}.json",
-        {
-            "study": study,
-            "title": title,
-            "purpose": "Does the code say what the model says?",
-            "cases": entries,
-            "comparisons": comparisons,
-            "provenance": {
-                "python": "3.11.0",
-                "packages": {"numpy": "2.4.0", "scipy": "1.17.0"},
-                "commit": "0123abc",
-                "processor": "a processor",
-                "cores": 2,
-                "seeds": [],
-                "date": "2024-01-01",
-            },
-        },
-    )
+    said = {"study": study, "title": title, "purpose": "Does the code say what the model says?"}
+    kept_study(results, cases, comparisons, **said, provenance=PROVENANCE)
     results.write_verdicts(study, [verdict.record(study) for verdict in gates])
     return results
 
@@ -463,15 +440,9 @@ def test_the_longest_window_of_a_pair_counts_in_either_order(results):
 
 def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_path):
     scene = load_scene("figures-3-4").with_values({"time.step": 0.01})
-    directory = Results(tmp_path)
-    entries = []
-    for solver, outcome in (("dda", Outcome.OVERFLOW), ("bar", Outcome.REFUSED)):
-        directory.append(Row(solver, "mine", scene.name, solver, outcome, {}, notes=("step 7", "too long")), None)
-        entries.append(
-            {"scene": scene.name, "title": "", "solver": solver, "key": solver, "definition": scene.definition()}
-        )
-    manifest = {"study": "mine", "cases": entries, "comparisons": []}
-    directory.write_json("studies/mine.json", manifest)
+    directory, ends = Results(tmp_path), (("dda", Outcome.OVERFLOW), ("bar", Outcome.REFUSED))
+    rows = [made_row(name, {}, scene.name, outcome=end, notes=("step 7", "too long")) for name, end in ends]
+    manifest = kept_study(directory, [(scene, row, None) for row in rows], study="mine")
     page = chapters.scene_chapter(directory, manifest, tmp_path)
     front = front_of(directory, ["mine"], tmp_path)
     assert not [b for b in (*page, *front) if isinstance(b, FigureBlock)]

@@ -27,21 +27,12 @@ from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
-from validation.report.figures import histories as figures
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
-
-
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
-    """Catch the figures that a chapter writes, by the names of their files."""
-    caught: dict[str, Figure] = {}
-    monkeypatch.setattr(figures, "save", lambda figure, path: caught.setdefault(path.name, figure))
-    return caught
 
 
 def stepped(step: float) -> Any:

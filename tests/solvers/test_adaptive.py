@@ -36,7 +36,6 @@ CASES = [
 
 def columns(scene: Scene, solver: str) -> dict[str, np.ndarray]:
     history = solve(scene, solver).history
-    assert history is not None
     return history.columns
 
 

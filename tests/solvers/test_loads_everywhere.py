@@ -48,7 +48,6 @@ def scene(scene_file) -> Scene:  # type: ignore[no-untyped-def]
 
 def columns_of(solver: str, scene: Scene) -> dict[str, Array]:
     history = get_solver(solver).solve(scene).history
-    assert history is not None
     return dict(history.columns)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults import seams
+from oracles import plain_newmark
 from oracles.bars import OTHER, PAPER
 from oracles.elements import make
 from scipy.linalg import block_diag, eigh
@@ -34,14 +35,8 @@ def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
 
 
 def upright(n: int, p: float) -> tuple[Array, Array, Array]:
-    """Return M, K and R of n linear elements on the spring 2 p; n = 1 is (v, ey) of the DDA block as well."""
-    h = A / n
-    mass, stiffness = np.zeros((2, n + 1, n + 1))
-    for i in range(n):
-        mass[i : i + 2, i : i + 2] += RHO * A * h / 6 * np.array([[2, 1], [1, 2]])
-        stiffness[i : i + 2, i : i + 2] += E * A / h * np.array([[1, -1], [-1, 1]])
-    stiffness[0, 0] += 2 * p
-    return mass, stiffness, np.ones(n + 1)
+    """Return M, K and R of a bar of n linear elements."""
+    return *plain_newmark.upright(n, p), np.ones(n + 1)
 
 
 def sideways(p: float) -> tuple[Array, Array, Array]:

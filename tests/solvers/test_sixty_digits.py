@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from conftest import SCENE
 from mpmath import mp, mpf
 from oracles import mp_reference
 
-from validation import load_scene, solve
+from validation import solve
 from validation.errors import InputError
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 from validation.solvers.sixty_digits import bar as precise_bar
 from validation.solvers.sixty_digits import block as precise_block
@@ -17,12 +15,6 @@ from validation.solvers.sixty_digits import matrices as precise_matrices
 
 COLUMNS = ("displacement", "contact_pressure")
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
-
-
-@pytest.fixture
-def scene(tmp_path) -> Scene:
-    (tmp_path / "small.toml").write_text(SCENE)
-    return load_scene(tmp_path / "small.toml")
 
 
 SCHEMES = [(0.5, 1.0, 1.0, "zero"), (0.3025, 0.6, 0.9, "consistent"), (0.0, 0.5, 1.0, "zero")]

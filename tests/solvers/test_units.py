@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from validation.runs.history import Array
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 from validation.solvers.user import UNITS, _judged
 
@@ -30,14 +28,8 @@ VARIANTS = {  # the unit must be seen on any scene, and under a solver that is o
 def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str, Array]:
     """Return the sound history of a scene, some of its columns multiplied."""
     history = get_solver("dda").solve(scene).history
-    assert history is not None
     found = {"time": history.time, **history.columns}
     return {name: values * (times or {}).get(name, 1.0) for name, values in found.items()}
-
-
-@pytest.fixture
-def scene(scene_file: Path) -> Scene:
-    return load_scene(scene_file)
 
 
 def test_every_unit_of_the_table_is_tested() -> None:

@@ -55,7 +55,6 @@ def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: d
     M, K, F, rows = matrices(get_solver(solver).prepare(scene))
     expected = rows @ plain(rule_of(scene), M, K, F, scene.time.steps, scene.time.start == "consistent")
     history = solve(scene, solver).history
-    assert history is not None
     for column, values_ in zip(COLUMNS, expected, strict=True):
         assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))
 
@@ -64,10 +63,8 @@ def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: d
 def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
     scene = BLOCK.with_values(values)
     bar, errors = solve(scene, "bar").history, []
-    assert bar is not None
     for elements in (8, 16):
         found = solve(scene.with_values({"fem.elements": elements}), "fem").history
-        assert found is not None
         errors.append([np.max(np.abs(found.columns[c] - bar.columns[c])) for c in COLUMNS])
     assert np.all(np.log2(np.divide(*errors)) > 3.8)
 
@@ -78,7 +75,6 @@ def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
     for step in (4e-4, 2e-4, 1e-4):
         scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.06 / step)} | values)
         bar, exact = (solve(scene, solver).history for solver in ("bar", "continuum"))
-        assert bar is not None and exact is not None
         errors.append([np.max(np.abs(bar.columns[c] - exact.columns[c])) for c in COLUMNS])
     assert np.all(np.log2(np.divide(errors[0], errors[2])) > 2.8)  # of two halvings, each of order two or nearly so
 
@@ -87,7 +83,6 @@ def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
     long = {"time.step": 1e-3, "time.steps": 60, "damping.stiffness": 0.0}
     viscous_ = solve(BLOCK.with_values(long | {"damping.mass": 25.0}), "continuum").history
     kinetic = solve(BLOCK.with_values(long | {"damping.mass": 0.0, "time.gg_rate": 25.0}), "continuum").history
-    assert viscous_ is not None and kinetic is not None
     for column in COLUMNS:
         assert np.allclose(viscous_.columns[column], kinetic.columns[column], rtol=1e-11, atol=1e-9)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.pages import table
 
 from validation import load_scene, solve
 from validation.runs.files import read_csv
@@ -25,11 +25,6 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     count = write_contact_pack(directory)
     assert count == len(table(directory / "contact/numbers.csv")) > 200
     return directory / "contact"
-
-
-def table(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 @pytest.fixture(scope="module")

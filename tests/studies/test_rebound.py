@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,29 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 from faults import seams
-from faults.fault import Fault
-from faults.kill_matrix import check_kill_matrix
+from faults.fault import Fault, energy_changed, told
+from faults.kill_matrix import cases_of, check_kill_matrix
 
 from validation.studies.bands import cases
 from validation.studies.contact import rebound
 from validation.studies.own_solver.gates import applying
-
-Change = Callable[[Any], dict[str, Any]]
-
-
-def told(change: Change) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Change what is found, field by field."""
-    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
-
-
-def added(name: str, energy: float) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Add to one of the energies, where they are kept [J]."""
-
-    def change(found: Any) -> dict[str, Any]:
-        kept = found.energies
-        return {"energies": kept and kept | {name: kept[name] + energy}}
-
-    return told(change)
 
 
 def fewer(sound: Callable[..., Any]) -> Callable[..., Any]:
@@ -54,7 +36,7 @@ FAULTS = [
     Fault("one more solve counted", DDA, seams.DDA_OPENED, told(lambda r: {"step_solves": r.step_solves + 2})),
     Fault("a rebound a millionth too fast", DDA, seams.DDA_OPENED,
           told(lambda r: {"velocity": r.velocity + 1e-6 * np.maximum(r.velocity, 0.0)})),
-    Fault("a few joules too many", DDA, seams.DDA_OPENED, added("kinetic", 9e4)),
+    Fault("a few joules too many", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: e + 9e4)),
     Fault("a switch lost", ("block-events",), seams.EVENTS_BLOCK, fewer),
     Fault("map a thousandth high", ("map",), seams.RESTITUTION_STATISTICS,
           told(lambda s: {name: getattr(s, name) + 1e-3 for name in ("mean", "low", "high", "mean_square")})),
@@ -65,9 +47,7 @@ FAULTS = [
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     gates = [gate for gate in rebound.gates() if gate.scene != rebound.MAP]
     faults = [fault for fault in FAULTS if fault.solvers != ("map",)]
-    needed = {need for gate in gates for need in rebound.STUDY.needs(gate)}
-    own = [case for case in rebound.STUDY.cases() if (case.scene.name, case.solver) in needed]
-    check_kill_matrix(rebound.STUDY, own, gates, faults, tmp_path, finished_cases)
+    check_kill_matrix(rebound.STUDY, cases_of(rebound.STUDY, gates), gates, faults, tmp_path, finished_cases)
 
 
 def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 from faults import seams
-from faults.fault import Fault
-from faults.kill_matrix import check_kill_matrix
+from faults.fault import Fault, energy_changed, of_first, scaled, told
+from faults.kill_matrix import cases_of, check_kill_matrix
 from oracles.sliding_dda import Slider, run
 
 from validation import solve
@@ -31,14 +31,9 @@ from validation.studies.slopes import creep, sliding
 Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-def of_model(change: Callable[[Any], dict[str, Any]]) -> Wrap:
-    """Change what the block of DDA stands on."""
-    return lambda sound: lambda model, *a, **k: sound(replace(model, **change(model)), *a, **k)
-
-
 def of_law(**changes: Callable[[Any], Any]) -> Wrap:
     """Change fields of the contact law, each a function of the law."""
-    return of_model(
+    return of_first(
         lambda model: {"contact": replace(model.contact, **{k: f(model.contact) for k, f in changes.items()})}
     )
 
@@ -46,19 +41,6 @@ def of_law(**changes: Callable[[Any], Any]) -> Wrap:
 def of_scheme(change: Callable[[Any], dict[str, Any]]) -> Wrap:
     """Change the scheme."""
     return lambda sound: lambda model, scheme, *a, **k: sound(model, replace(scheme, **change(scheme)), *a, **k)
-
-
-def told(change: Callable[[Any], dict[str, Any]]) -> Wrap:
-    """Change what is found."""
-    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
-
-
-def energies(name: str, factor: float) -> Wrap:
-    def change(found: Any) -> dict[str, Any]:
-        kept = found.energies
-        return {"energies": kept and kept | {name: factor * kept[name]}}
-
-    return told(change)
 
 
 DDA = ("dda",)
@@ -70,15 +52,14 @@ FAULTS = [
     Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0, cohesion=lambda law: 0.0)),
     Fault("no cohesion", DDA, seams.DDA_OPENED, of_law(cohesion=lambda law: 0.0)),
     Fault("friction lagged", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "lagged")),
-    Fault("the slope turned", DDA, seams.DDA_OPENED, of_model(lambda model: {"slope": -model.slope})),
-    Fault("the slope in the weight only", DDA, seams.DDA_OPENED, of_model(lambda model: {"slope": 0.0})),
-    Fault("gravity a millionth high", DDA, seams.DDA_OPENED,
-          of_model(lambda model: {"gravity": (1 + 1e-6) * model.gravity})),
+    Fault("the slope turned", DDA, seams.DDA_OPENED, scaled(slope=-1.0)),
+    Fault("the slope in the weight only", DDA, seams.DDA_OPENED, scaled(slope=0.0)),
+    Fault("gravity a millionth high", DDA, seams.DDA_OPENED, scaled(gravity=1 + 1e-6)),
     Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
     Fault("gg twice", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": scheme.gg**2})),
     Fault("gg left out", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": 1.0})),
-    Fault("work of friction a hundredth high", DDA, seams.DDA_OPENED, energies("friction", 1.01)),
-    Fault("kinetic energy doubled", DDA, seams.DDA_OPENED, energies("kinetic", 2.0)),
+    Fault("work of friction a hundredth high", DDA, seams.DDA_OPENED, energy_changed("friction", lambda e: 1.01 * e)),
+    Fault("kinetic energy doubled", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: 2.0 * e)),
     Fault("slip counted on", DDA, seams.DDA_OPENED, told(lambda found: {"slip": found.slip + found.time * 1e-6})),
 ]  # fmt: skip
 
@@ -90,7 +71,6 @@ def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path,
 
 def test_the_record_of_the_shaking_is_its_formula() -> None:
     record = base_record(next(cases(sliding.QUAKE)))
-    assert record is not None
     t = record.time
     parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
     swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
@@ -101,9 +81,7 @@ def test_the_record_of_the_shaking_is_its_formula() -> None:
 
 def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:
     """Run the cases of some scenes of the study of creep and judge gates on them."""
-    study = creep.STUDY
-    needed = {need for gate in gates for need in study.needs(gate)}
-    own = [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+    study, own = creep.STUDY, cases_of(creep.STUDY, gates)
     assert {case.scene.name.partition("[")[0] for case in own} <= names
     results = Results(directory)
     finished = finish(own, study, results)
@@ -138,11 +116,8 @@ def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
 
 @pytest.mark.long
 def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
-        return lambda problem, *a, **k: sound(replace(problem, gravity=1.2 * problem.gravity), *a, **k)
-
     exact = list(creep.exact_gates())
-    faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, heavy)]
+    faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
     own = [case for case in creep.STUDY.cases() if case.scene.name.startswith(creep.EXACT)]
     check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
 
@@ -161,12 +136,11 @@ def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
 
 SPRINGS = [
     Fault("shear reference kept while open", DDA, seams.DDA_REFERENCES, kept_reference),
-    Fault("gravity a hundredth high", DDA, seams.DDA_OPENED,
-          of_model(lambda model: {"gravity": 1.01 * model.gravity})),
+    Fault("gravity a hundredth high", DDA, seams.DDA_OPENED, scaled(gravity=1.01)),
     Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
     Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
     Fault("no friction in the exact motion", ("block-events",), seams.EVENTS_BLOCK,
-          lambda sound: lambda problem, *a, **k: sound(replace(problem, friction=0.0), *a, **k)),
+          of_first(lambda problem: {"friction": 0.0})),
 ]  # fmt: skip
 
 

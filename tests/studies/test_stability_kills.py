@@ -96,12 +96,7 @@ def of_degree(degree):
 
 
 LIMIT_FAULTS = [
-    Fault(
-        "dda: delta 1e-6 high",
-        ("dda",),
-        seams.DDA_VELOCITY,
-        with_scheme(0, delta=lambda d: d + 1e-6),
-    ),
+    Fault("dda: delta 1e-6 high", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=lambda d: d + 1e-6)),
     Fault("fem: always linear", ("fem",), seams.FEM_BASIS, of_degree(1)),
     Fault("fem: always quadratic", ("fem",), seams.FEM_BASIS, of_degree(2)),
 ]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault, late, thousandth, times, with_scheme
-from faults.kill_matrix import check_kill_matrix
+from faults.kill_matrix import cases_of, check_kill_matrix
 
 from validation.studies.waves.study import study
 
@@ -59,9 +59,7 @@ def check(words: tuple[str, ...], faults: list[Fault], tmp: Path, finished: Path
     """Check the kill matrix of the gates on some scenes."""
     waves = study()
     gates = [g for g in waves.gates() if not words or any(word in g.scene for word in words)]
-    needed = {need for gate in gates for need in waves.needs(gate)}
-    cases = [case for case in waves.cases() if (case.scene.name, case.solver) in needed]
-    check_kill_matrix(waves, cases, gates, faults, tmp, finished)
+    check_kill_matrix(waves, cases_of(waves, gates), gates, faults, tmp, finished)
 
 
 @pytest.mark.long

@@ -1,6 +1,5 @@
 """Error against run time: points, fronts, the record, the commands, and the kill matrix of the study's gates."""
 
-import csv
 import json
 import tomllib
 from dataclasses import replace
@@ -12,6 +11,7 @@ from conftest import beside
 from faults import seams
 from faults.fault import Fault, swapped, with_scheme
 from faults.kill_matrix import check_kill_matrix
+from oracles.pages import table
 from typer.testing import CliRunner
 
 from validation.cli.app import app
@@ -87,8 +87,7 @@ def test_front_and_cheapest(results):
 def test_rows_and_any_pair_of_columns(results, tmp_path):
     where = ["--results", str(results.directory)]
     assert CliRunner().invoke(app, ["rows", "work-precision", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
-    with (tmp_path / "a.csv").open() as stream:
-        lines = list(csv.DictReader(stream))
+    lines = table(tmp_path / "a.csv")
     assert len(lines) == len(COARSE.cases())
     assert {"seconds.setup", "work.solves", "continuum:displacement.l2", "estimate"} <= set(lines[0])
     pair = ["--x", "work.solves", "--y", "bar:pressure.max", "--out", str(tmp_path / "a.svg")]

@@ -138,11 +138,6 @@ def time_constant(scene: Scene) -> float:
     return scene.time.step / lost if lost else math.inf
 
 
-def terminal_speed(scene: Scene, acceleration: float) -> float:
-    """Speed a dt / (1 - gg) that a body under a constant acceleration does not exceed with a discount [m/s]."""
-    return acceleration * time_constant(scene)
-
-
 def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
     """Return displacement and velocity at each step of a free body in the scene's scheme, from rest [m], [m/s].
 

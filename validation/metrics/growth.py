@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import enum
 import math
 
 import numpy as np
@@ -11,7 +10,7 @@ from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.history import Array, History
 from validation.runs.row import Value
-from validation.runs.run import Outcome
+from validation.runs.run import Outcome, Told
 
 WINDOW = 4000  # steps at either end of a run in which the amplitudes of its modes are fitted
 ROUNDING = 1e-9  # |radius - 1| within which a mode neither grows nor decays: a double root doubles the lost digits
@@ -20,26 +19,13 @@ AGREED = 1e-2  # relative difference between growth seen and predicted: several 
 GROWN = (Outcome.UNSTABLE, Outcome.OVERFLOW, Outcome.MISPREDICTED)
 
 
-class Stability(enum.StrEnum):
+class Stability(Told):
     """What the largest eigenvalue of a step makes of a run; `sentence` says it in words."""
 
-    STABLE = "stable"
-    MARGINAL = "marginal"
-    UNSTABLE = "unstable as predicted"
-    OVERFLOW = "overflow"
-
-    @property
-    def sentence(self) -> str:
-        """One sentence for a table or a report."""
-        return _SENTENCES[self]
-
-
-_SENTENCES = {
-    Stability.STABLE: "Every mode decays: the spectral radius is below one.",
-    Stability.MARGINAL: "No mode grows and at least one does not decay: the spectral radius is one.",
-    Stability.UNSTABLE: "The spectral radius exceeds one and the numbers grow as it says.",
-    Stability.OVERFLOW: "The spectral radius exceeds one and the numbers left the range of double precision.",
-}
+    STABLE = "stable", "Every mode decays: the spectral radius is below one."
+    MARGINAL = "marginal", "No mode grows and at least one does not decay: the spectral radius is one."
+    UNSTABLE = "unstable as predicted", "The spectral radius exceeds one and the numbers grow as it says."
+    OVERFLOW = "overflow", "The spectral radius exceeds one and the numbers left the range of double precision."
 
 
 def diagnosed(m: Measurable, key: str) -> Value:

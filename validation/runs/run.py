@@ -5,50 +5,53 @@ from __future__ import annotations
 import enum
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Self
 
 from validation.runs.history import Array, History
 
 
-class Outcome(enum.StrEnum):
+class Told(enum.StrEnum):
+    """A word with its `sentence` for a table or a report."""
+
+    _value_: str
+    sentence: str
+
+    def __new__(cls, word: str, sentence: str = "") -> Self:
+        """Make the word, by which it is found and written; who looks one up gives no sentence."""
+        member = str.__new__(cls, word)
+        member._value_, member.sentence = word, sentence
+        return member
+
+
+class Outcome(Told):
     """How a run ended; `sentence` says it in words."""
 
-    COMPLETED = "completed"
-    OVERFLOW = "overflow"
-    UNSTABLE = "unstable as predicted"
-    MISPREDICTED = "unstable, not as predicted"
-    NOT_A_NUMBER = "not a number"
-    WRONG_SHAPE = "wrong shape"
-    WRONG_UNITS = "wrong units"
-    NO_CONTACT_STATE = "no consistent contact state"
-    SEVERAL_CONTACT_STATES = "several consistent contact states"
-    RAISED = "raised"
-    TIMEOUT = "timeout"
-    REFUSED = "refused"
-    NOT_APPLICABLE = "not applicable"
-    NOT_RUN = "not run"
-
-    @property
-    def sentence(self) -> str:
-        """One sentence for a table or a report."""
-        return _SENTENCES[self]
-
-
-_SENTENCES = {
-    Outcome.COMPLETED: "The run reached its last step with finite numbers.",
-    Outcome.OVERFLOW: "The numbers left the range of double precision.",
-    Outcome.UNSTABLE: "The step lies beyond the limit of the scheme and the numbers grew as predicted.",
-    Outcome.MISPREDICTED: "The step lies beyond the limit of the scheme and the numbers grew at another rate.",
-    Outcome.NOT_A_NUMBER: "The history holds values that are not numbers.",
-    Outcome.WRONG_SHAPE: "The history does not hold one value for each step of the scene.",
-    Outcome.WRONG_UNITS: "The history is in other units or has another sign.",
-    Outcome.NO_CONTACT_STATE: "No state of the contacts fits the step, not even a hundredth of it; use a smaller step.",
-    Outcome.SEVERAL_CONTACT_STATES: "Several states of the contacts fit a hundredth of the step; use a smaller step.",
-    Outcome.RAISED: "The solver raised an error.",
-    Outcome.TIMEOUT: "The solver did not finish within its time limit.",
-    Outcome.REFUSED: "The scene asks for what the solver must refuse.",
-    Outcome.NOT_APPLICABLE: "The solver does not apply to this scene.",
-    Outcome.NOT_RUN: "A part that the solver needs is not installed.",
-}
+    COMPLETED = "completed", "The run reached its last step with finite numbers."
+    OVERFLOW = "overflow", "The numbers left the range of double precision."
+    UNSTABLE = (
+        "unstable as predicted",
+        "The step lies beyond the limit of the scheme and the numbers grew as predicted.",
+    )
+    MISPREDICTED = (
+        "unstable, not as predicted",
+        "The step lies beyond the limit of the scheme and the numbers grew at another rate.",
+    )
+    NOT_A_NUMBER = "not a number", "The history holds values that are not numbers."
+    WRONG_SHAPE = "wrong shape", "The history does not hold one value for each step of the scene."
+    WRONG_UNITS = "wrong units", "The history is in other units or has another sign."
+    NO_CONTACT_STATE = (
+        "no consistent contact state",
+        "No state of the contacts fits the step, not even a hundredth of it; use a smaller step.",
+    )
+    SEVERAL_CONTACT_STATES = (
+        "several consistent contact states",
+        "Several states of the contacts fit a hundredth of the step; use a smaller step.",
+    )
+    RAISED = "raised", "The solver raised an error."
+    TIMEOUT = "timeout", "The solver did not finish within its time limit."
+    REFUSED = "refused", "The scene asks for what the solver must refuse."
+    NOT_APPLICABLE = "not applicable", "The solver does not apply to this scene."
+    NOT_RUN = "not run", "A part that the solver needs is not installed."
 
 
 @dataclass(frozen=True)

@@ -107,16 +107,14 @@ class OpeningBar(Prepared):
         """Return what the contact did; the bar reports no energies."""
         found, step = self.found, self.scheme.step
         force = found.contact_pressure * self.bar.width
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=found.time,
             force=force,
             impulse=opened.summed(force, step, self.scheme.delta),
             penetration=np.maximum(0.0, -found.gap),
             gap=np.maximum(0.0, found.gap),
             open_share=1 - found.closed,
-            start_velocity=self.scene.block.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=found.velocity,
             rebounds=opened.rebounds(np.array([found.gap]), step),
         )

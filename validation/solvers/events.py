@@ -54,27 +54,27 @@ def rectangle(scene: Scene) -> tuple[float, float] | None:
     return (x1 - x0, y2 - y0) if upright else None
 
 
+def data_of(scene: Scene) -> dict[str, float]:
+    """Return what block and bar of a scene have in common: size, material, loads, gap and velocity."""
+    width, height = rectangle(scene) or (0.0, 0.0)
+    b, c, q = scene.block, scene.contact, scene.load
+    size = {"width": width, "height": height, "gap": c.gap, "velocity": b.velocity}
+    return size | {"density": b.density, "young": b.young, "pressure": q.pressure, "gravity": q.gravity}
+
+
 def block_of(scene: Scene) -> BlockProblem:
     """Return the block of a scene."""
     from fem_reference.events.block_model import BlockProblem
 
-    width, height = rectangle(scene) or (0.0, 0.0)
     b, c, q = scene.block, scene.contact, scene.load
     return BlockProblem(
-        width=width,
-        height=height,
-        density=b.density,
-        young=b.young,
+        **data_of(scene),
         stiffness=c.stiffness,
-        pressure=q.pressure,
         shear_stiffness=c.shear,
         poisson=b.poisson,
         hypothesis=b.hypothesis,
         eccentricity=q.eccentricity,
         traction=q.traction,
-        gravity=q.gravity,
-        gap=c.gap,
-        velocity=b.velocity,
         slope=q.slope,
         friction=c.friction,
         cohesion=c.cohesion,
@@ -97,19 +97,7 @@ def bar_of(scene: Scene) -> BarProblem:
     """Return the bar of a scene."""
     from fem_reference.events.bar_model import BarProblem
 
-    width, height = rectangle(scene) or (0.0, 0.0)
-    b, c, q = scene.block, scene.contact, scene.load
-    return BarProblem(
-        width=width,
-        height=height,
-        density=b.density,
-        young=b.young,
-        base_stiffness=2 * c.stiffness,
-        pressure=q.pressure,
-        gravity=q.gravity,
-        gap=c.gap,
-        velocity=b.velocity,
-    )
+    return BarProblem(**data_of(scene), base_stiffness=2 * scene.contact.stiffness)
 
 
 class Motion(Prepared):
@@ -223,16 +211,14 @@ class BlockMotion(Motion):
         found = self.motion.at(t)
         velocity, start = found.velocity[1], self.scene.block.velocity
         spans = [(first, last, i) for i, corner in enumerate("MN") for first, last in self.spans(corner)]
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=t,
             force=found.normal_force.sum(axis=0),
             impulse=self.scene.block.mass * (velocity - start) + push * t,
             penetration=np.maximum(0.0, -found.gap).max(axis=0),
             gap=np.maximum(0.0, found.gap).max(axis=0),
             open_share=1 - found.closed.mean(axis=0),
-            start_velocity=start,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=velocity,
             rebounds=landings(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
             energies=self._energies(found),
@@ -278,16 +264,14 @@ class BarMotion(Motion):
             raise NotReported(f"{self.name}: the scene was not run")
         t, width = self.finely("base"), self.motion.problem.width
         found = self.motion.at(t)
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=t,
             force=found.contact_pressure * width,
             impulse=found.impulse * width,
             penetration=np.maximum(0.0, -found.gap),
             gap=np.maximum(0.0, found.gap),
             open_share=np.asarray(found.gap > 0, dtype=np.float64),
-            start_velocity=self.scene.block.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=found.mean_velocity,
             rebounds=landings(itertools.starmap(self._rebound, self.spans("base"))),
         )
@@ -306,10 +290,7 @@ class BlockEvents(Solver):
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
-
-    def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return BLOCK_COLUMNS
+    names: tuple[str, ...] | None = BLOCK_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
@@ -329,10 +310,7 @@ class BarEvents(BlockEvents):
     handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
-
-    def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return BAR_COLUMNS
+    names = BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for the scene."""

@@ -219,7 +219,8 @@ class OpeningMesh(Prepared):
         found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
         seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = seen["contact_pressure"] * self.scene.block.base_length
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=found.time,
             force=force,
             impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
@@ -227,9 +228,6 @@ class OpeningMesh(Prepared):
             gap=seen["largest_gap"],
             slip=None if self.contact.friction is None else seen["largest_slide"],
             open_share=seen["open_share"],
-            start_velocity=self.scene.block.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=seen["velocity"],
             energies={name: seen[column] for name, column in energies},
             solves=seen["solves"],

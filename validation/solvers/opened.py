@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from validation.runs.contact import Rebound, rebounds_of_steps
+from validation.runs.contact import ContactRecord, Rebound, rebounds_of_steps
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -36,6 +37,12 @@ def given_energy(scene: Scene) -> float:
     height = float(np.ptp([y for _, y in b.outline]))
     soft = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
     return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * soft + held
+
+
+def record(scene: Scene, **parts: Any) -> ContactRecord:
+    """Return what a contact did, with the scene's own velocity and energies at the start."""
+    speed, energy, given = scene.block.velocity, start_energy(scene), given_energy(scene)
+    return ContactRecord(start_velocity=speed, start_energy=energy, given=given, **parts)
 
 
 def summed(force: Array, step: float, late: float) -> Array:

@@ -7,7 +7,7 @@ import io
 import itertools
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.files import write_atomically, write_csv
+from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
@@ -93,18 +94,57 @@ def write_pack(directory: Path) -> Written:
     study = get_study(STUDY)
     cases = {case.scene.name: case.scene for case in study.cases() if case.solver == JUDGED}
     gates = [g for g in study.gates() if g.pair[0] == JUDGED and not set(g.pair) & set(ALSO_DDA)]
-    for part in ("scenes", "histories"):
-        make_directory(directory / part)
+    part = Part(directory)
     for scene in cases.values():
-        write_text(directory / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+        part.add_scene(scene)
     wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
     for name, solver in wanted:
-        write_csv(_history(cases[name], solver), directory / "histories" / history_file(name, solver))
+        part.add_history(name, solver, history_of(cases[name], solver))
     bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
-    write_text(directory / "bands.csv", _as_csv(bands))
-    write_text(directory / "bands.json", json.dumps(bands, indent=1) + "\n")
-    write_text(directory / "README.md", README)
+    part.add_table("bands", bands)
+    part.add_text("bands.json", json.dumps(bands, indent=1) + "\n")
+    part.add_text("README.md", README)
     return Written(len(cases), len(wanted), len(bands))
+
+
+class Part:
+    """A part of a pack in a directory of its own: scenes, histories, tables and texts.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or written.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = directory
+        for name in ("scenes", "histories"):
+            try:
+                (directory / name).mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise InputError(
+                    f"{directory / name}: cannot be made: {error.strerror}; choose another place"
+                ) from None
+
+    def add_scene(self, scene: Scene) -> None:
+        """Write a single case as a scene file."""
+        self.add_text(f"scenes/{slug(scene.name)}.toml", as_toml(scene))
+
+    def add_history(self, name: str, solver: str, history: History) -> None:
+        """Write the history of a case."""
+        write_csv(history, self.directory / "histories" / history_file(name, solver))
+
+    def add_table(self, name: str, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Write rows of the same columns as CSV, with all digits of their floats."""
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+        self.add_text(f"{name}.csv", text.getvalue())
+
+    def add_text(self, name: str, text: str) -> None:
+        """Write a text file whole or not at all."""
+        write_atomically(self.directory / name, lambda stream: stream.write(text.encode()))
 
 
 def slug(name: str) -> str:
@@ -156,35 +196,15 @@ def _value(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _history(scene: Scene, solver: str) -> Any:
-    run: Run = completed(get_solver(solver), scene)
-    if run.outcome is not Outcome.COMPLETED or run.history is None:
-        raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
-    return run.history
-
-
-def _as_csv(rows: Iterable[dict[str, Any]]) -> str:
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, FIELDS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)  # a float is written with all its digits
-    return text.getvalue()
-
-
-def make_directory(path: Path) -> None:
-    """Make a directory and those above it.
+def history_of(scene: Scene, solver: str) -> History:
+    """Return the history of a run that completes.
 
     Raises
     ------
     InputError
-        It cannot be made.
+        It does not.
     """
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be made: {error.strerror}; choose another place") from None
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text file whole or not at all."""
-    write_atomically(path, lambda stream: stream.write(text.encode()))
+    run: Run = completed(get_solver(solver), scene)
+    if run.outcome is not Outcome.COMPLETED or run.history is None:
+        raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
+    return run.history

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -88,6 +88,11 @@ def groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[Gro
     verdicts = results.verdicts(manifest.get("study"))
     history_of = results.history if drawn else lambda _: None
     return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
+
+
+def verdicts_of(found: Iterable[Group]) -> list[VerdictRecord]:
+    """Return the verdicts of scenes."""
+    return [verdict for group in found for verdict in group.verdicts]
 
 
 def _group(

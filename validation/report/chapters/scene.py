@@ -42,14 +42,20 @@ _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study: its question, then a section for each scene."""
     found = groups(results, manifest)
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    if manifest.get("purpose"):
-        blocks.append(Paragraph(manifest["purpose"]))
+    blocks = opening(manifest)
     for group in found:
         shown = _columns(group)[:1] if len(found) > FEW else None
         blocks += scene_section(group, directory, shown, apart=len(found) == 1)
     blocks += ledger_blocks(found, manifest["study"], directory) if len(found) > 1 else []
     return [*blocks, *budget_blocks(found[0], directory)] if len(found) == 1 else blocks
+
+
+def opening(manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", said: str = "") -> list[Block]:
+    """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `said` and what the gates say."""
+    counted = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
+    text = " ".join(filter(None, (manifest.get("purpose"), said, counted)))
+    paragraphs = (Paragraph(lead, "lead"), Paragraph(text))
+    return [Heading(manifest.get("title") or manifest["study"]), *(each for each in paragraphs if each.text)]
 
 
 def scene_section(

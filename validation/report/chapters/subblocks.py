@@ -9,6 +9,7 @@ import numpy as np
 
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
 from validation.report.figures.histories import Line
@@ -39,8 +40,7 @@ TURNING = (
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: conclusions over all scenes."""
     found = {group.name: group for group in groups(results, manifest)}
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    blocks = opening(manifest)
     blocks += [Paragraph(PRACTICE, "lead"), Heading("Error against run time", 2)]
     blocks += _time_figures(found, directory)
     blocks += [Paragraph(LOCKED), *_tables(found, _patterns, ("subblocks-axial", "subblocks-rocking"))]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.waves import COLORS as BY_SCHEME
@@ -30,12 +30,8 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     """Return the chapter: waves in blocks, joints and base, the site."""
     found = {group.name: group for group in groups(results, manifest)}
     rows: Rows = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
-    verdicts = [verdict for group in found.values() for verdict in group.verdicts]
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
     measured = travels(found, rows)
-    if said := lead(measured):
-        blocks.append(Paragraph(said, "lead"))
-    blocks.append(Paragraph(f"{manifest.get('purpose', '')} {gate_count(verdicts).capitalize()}."))
+    blocks = opening(manifest, verdicts_of(found.values()), lead(measured))
     if measured:
         drawn = [_curve(data) for data in manifest.get("data", {}).get("curves", [])]
         caption = (

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
-from validation.report.chapters.scene import gate_count
+from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.cost import work_figure
@@ -21,7 +21,7 @@ ASKED = (0.1, 0.01, 0.001)
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter."""
     verdicts = results.verdicts(manifest["study"])
-    blocks: list[Block] = [Heading(manifest["title"]), Paragraph(manifest["purpose"])]
+    blocks = opening(manifest)
     for prefix, title in SCHEMES.items():
         blocks += scheme_blocks(points(results, manifest, prefix), prefix, title, directory)
     blocks += [Heading("Orders of convergence", 2), Paragraph(f"{gate_count(verdicts).capitalize()}.")]

@@ -33,9 +33,7 @@ def restitution_figure(curves: Sequence[Curve], marks: Mapping[float, str]) -> F
     with house_style():
         figure, (row,) = axes_grid([(45.0, 0.0)], len(curves), Margins(13.0, 3.0, 6.0, 10.0))
         for axes, curve, color in zip(row, curves, COLORS, strict=False):
-            axes.set_xscale("log")
-            axes.set_xlim(float(curve.omega[0]), float(curve.omega[-1]))
-            axes.set_ylim(0.0, top)
+            axes.set(xscale="log", xlim=(float(curve.omega[0]), float(curve.omega[-1])), ylim=(0.0, top))
             axes.fill_between(curve.omega, curve.low, curve.high, color=color, alpha=0.2, lw=0)
             axes.plot(curve.omega, curve.mean, color=color, lw=1.1)
             for x, e in curve.impacts:
@@ -45,8 +43,7 @@ def restitution_figure(curves: Sequence[Curve], marks: Mapping[float, str]) -> F
                 axes.axvline(x, color="#999999", lw=0.5)
                 axes.text(x * 1.08, top * 0.97, text, color="#666666", va="top", ha="left")
             axes.axhline(1.0, color="#999999", lw=0.5)
-            axes.set_title(curve.name)
-            axes.set_xlabel(r"$\Omega = \omega_c\,dt$")
+            axes.set(title=curve.name, xlabel=r"$\Omega = \omega_c\,dt$")
         share_left(row, len(curves), "Restitution e")
     return figure
 

@@ -52,8 +52,7 @@ def _differs(found: Sequence[Point], quantity: str) -> bool:
 
 
 def _panel(axes: Axes, found: Sequence[Point], quantity: str, cost: str, reference: str) -> None:
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     shown: dict[str, list[tuple[float, float]]] = {}
     for point in found:
         x, y = COSTS[cost](point), point.errors.get((quantity, reference), 0.0)

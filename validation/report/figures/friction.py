@@ -53,8 +53,7 @@ def panels_figure(panels: Sequence[Panel]) -> Figure:
 
 def _draw(axes: Axes, panel: Panel) -> None:
     if panel.logarithmic:
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        axes.set(xscale="log", yscale="log")
     for trace in panel.traces:
         style = "o" if trace.dotted else "-"
         (line,) = axes.plot(trace.x, trace.y, style, color=trace.color, lw=1.1, ms=3.2, mew=0.6, label=trace.name)
@@ -67,8 +66,6 @@ def _draw(axes: Axes, panel: Panel) -> None:
         axes.yaxis.set_minor_formatter(NullFormatter())
     elif panel.traces:
         axes.set_xlim(0.0, float(np.max([np.max(trace.x) for trace in panel.traces])))
-    axes.set_title(panel.title)
-    axes.set_xlabel(panel.x_label)
-    axes.set_ylabel(panel.y_label)
+    axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     if panel.traces:
         axes.legend(loc=panel.legend, frameon=False, fontsize=6, handlelength=1.6)

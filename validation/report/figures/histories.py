@@ -86,10 +86,8 @@ def one_axes(
     """Return a figure with one pair of axes of a height [mm], labelled in x and y."""
     figure, ((axes,),) = axes_grid([(height, 0.0)], 1, margins)
     if logarithmic:
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-    axes.set_xlabel(labels[0])
-    axes.set_ylabel(labels[1])
+        axes.set(xscale="log", yscale="log")
+    axes.set(xlabel=labels[0], ylabel=labels[1])
     return figure, axes
 
 

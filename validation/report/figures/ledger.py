@@ -52,9 +52,7 @@ def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
 
 
 def _ledger_axes(axes: Axes, pairs: Sequence[tuple[float | None, float | None]], high: float) -> None:
-    axes.set_xscale("log")
-    axes.set_xlim(EDGE, high)
-    axes.set_ylim(len(pairs) - 0.4, -0.6)
+    axes.set(xscale="log", xlim=(EDGE, high), ylim=(len(pairs) - 0.4, -0.6))
     axes.axvspan(EDGE, ROUNDING, color="#f0f0f0", zorder=0)
     axes.hlines(range(len(pairs)), EDGE, high, color="#dddddd", lw=HAIR, zorder=0)
     for y, pair in enumerate(pairs):

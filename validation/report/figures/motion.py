@@ -224,8 +224,7 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names
     low, high = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
     low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** min(2, math.ceil(math.log10(high) + 0.05))
     for axes, panel, lines in zip(row, panels, curves, strict=False):
-        axes.set_yscale("log")
-        axes.set_ylim(min(low, high / 10), high)
+        axes.set(yscale="log", ylim=(min(low, high / 10), high))
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
         axes.yaxis.set_minor_locator(NullLocator())
         for solver, (x, y) in lines.items():

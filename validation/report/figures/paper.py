@@ -50,9 +50,7 @@ def steps_figure(panels: Sequence[StepPanel], label: str, last: int) -> Figure:
     with house_style():
         figure, (row,) = axes_grid([(36.0, 0.0)], len(panels), Margins(right=22.0, bottom=9.5))
         for axes, panel in zip(row, panels, strict=True):
-            axes.set_title(panel.title)
-            axes.set_xlim(0, last)
-            axes.set_ylim(low, high)
+            axes.set(title=panel.title, xlim=(0, last), ylim=(low, high))
             for name, values in panel.lines.items():
                 x, y = thin(np.arange(1.0, min(last, values.size) + 1), values[:last])
                 draw_line(axes, name, x, y)
@@ -110,9 +108,7 @@ def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]
     omega = np.array(data["omega"])
     with house_style():
         figure, axes = one_axes(58.0, Margins(13.0, 56.0, 4.0, 9.5), ("ω dt", "Spectral radius |λ|"))
-        axes.set_xscale("log")
-        axes.set_xlim(omega[0], omega[-1])
-        axes.set_ylim(0, 1.06)
+        axes.set(xscale="log", xlim=(omega[0], omega[-1]), ylim=(0, 1.06))
         ends: dict[str, float] = {}
         colors: dict[str, str] = {}
         for (name, curve), color in zip(data["schemes"].items(), SCHEME_COLORS, strict=True):
@@ -182,10 +178,7 @@ def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
 
 def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
     dt = np.array(panel.budget["dt"])
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(dt[0], dt[-1])
-    axes.set_ylim(100 * LEAST_RATIO, 1e3)
+    axes.set(xscale="log", yscale="log", xlim=(dt[0], dt[-1]), ylim=(100 * LEAST_RATIO, 1e3))
     axes.set_title(panel.title, pad=9.0)
     axes.axhspan(100, 1e3, color="#f0f0f0", zorder=0)
     if panel.budget["limits"].get("overdamped below"):

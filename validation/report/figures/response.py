@@ -41,12 +41,11 @@ def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metr
         figure, (sizes, phases) = axes_grid([(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5, BETWEEN))
         for above, below, column in zip(sizes, phases, (DISPLACEMENT, PRESSURE), strict=True):
             ends = _draw(above, below, curves, column, per_metre)
+            ends_at = min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves)
             for axes in (above, below):
-                axes.set_xscale("log" if logarithmic else "linear")
-                axes.set_xlim(min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))
+                axes.set(xscale="log" if logarithmic else "linear", xlim=ends_at)
             above.tick_params(labelbottom=False)
-            below.set_xlabel("frequency [Hz]")
-            below.set_ylim(-3.4, 3.4)
+            below.set(xlabel="frequency [Hz]", ylim=(-3.4, 3.4))
             below.set_yticks([-np.pi, 0, np.pi], ["−π", "0", "π"])
         colors = {curve.name: style_of(curve.solver).color for curve in curves}
         phases[0].set_ylabel("phase [rad]")
@@ -58,8 +57,7 @@ def ratio_figure(frequency: Array, lines: Mapping[str, Array]) -> Figure:
     """Draw damping ratios over frequency, the first line solid and the others dashed."""
     with house_style():
         figure, axes = one_axes(46.0, Margins(14.0, 46.0, 3.0, 9.5), ("frequency [Hz]", "damping ratio [%]"))
-        axes.set_xscale("log")
-        axes.set_xlim(frequency[0], frequency[-1])
+        axes.set(xscale="log", xlim=(frequency[0], frequency[-1]))
         colors = dict(zip(lines, itertools.cycle(COLORS), strict=False))
         for i, (name, values) in enumerate(lines.items()):
             axes.plot(frequency, 100 * values, color=colors[name], lw=1.0, ls=(0, DASHED) if i else "-")

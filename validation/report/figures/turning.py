@@ -52,8 +52,6 @@ def panels(shown: Sequence[Panel]) -> Figure:
                 axes.axhline(panel.level, color="#999999", lw=0.5)
             if panel.instant is not None:
                 axes.axvline(panel.instant, color="#999999", lw=0.5)
-            axes.set_title(panel.title)
-            axes.set_xlabel(panel.across)
-            axes.set_ylabel(panel.up)
+            axes.set(title=panel.title, xlabel=panel.across, ylabel=panel.up)
             label_ends(axes, ends, colors=colors)
     return figure

@@ -61,11 +61,9 @@ def _name(line: Travel) -> str:
 
 def _blocks_axis(axes: Axes) -> None:
     """Set the axis of blocks a wavelength."""
-    axes.set_xscale("log")
-    axes.set_xlim(7, 115)
+    axes.set(xscale="log", xlim=(7, 115), xlabel="blocks a wavelength")
     axes.set_xticks(TICKS, [str(tick) for tick in TICKS])
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("blocks a wavelength")
 
 
 @dataclass(frozen=True)
@@ -86,8 +84,7 @@ def site_figure(rows: Sequence[tuple[str, str, Sequence[Trace]]]) -> Figure:
         figure, grid = axes_grid(bands, 1, Margins(13.0, 36.0, 6.0, 9.0))
         for (axes,), (title, unit, traces) in zip(grid, rows, strict=True):
             factor, unit = engineering(max(float(np.abs(trace.values).max()) for trace in traces), unit)
-            axes.set_title(f"{title} [{unit}]")
-            axes.set_xlim(0.0, float(traces[0].time[-1]))
+            axes.set(title=f"{title} [{unit}]", xlim=(0.0, float(traces[0].time[-1])))
             for trace in traces:
                 axes.plot(trace.time, factor * trace.values, color=trace.color, lw=trace.width)
             for number, trace in enumerate(traces):

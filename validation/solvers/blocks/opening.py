@@ -81,16 +81,14 @@ class OpeningBlock(Prepared):
         if self.result is None:
             raise NotReported("dda: the scene was not run")
         r, gaps, force = self.result, self.result.gap, self.result.normal.sum(axis=0)
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=r.time,
             force=force,
             impulse=self._impulse(r, force),
             penetration=np.maximum(0.0, -gaps).max(axis=0),
             gap=np.maximum(0.0, gaps).max(axis=0),
             open_share=1 - np.mean(r.closed, axis=0),
-            start_velocity=self.model.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=r.velocity,
             rebounds=opened.rebounds(gaps, self.scheme.step),
             energies=r.energies or {},

@@ -82,16 +82,14 @@ class RollingBlock(Prepared):
         """Return what the contact did in the history that was run."""
         r = self._made()
         force = r.normal.sum(axis=0)
-        return ContactRecord(
+        return opened.record(
+            self.scene,
             time=r.time,
             force=force,
             impulse=r.impulse,
             penetration=np.maximum(0.0, -r.gap).max(axis=0),
             gap=np.maximum(0.0, r.gap[r.base]).max(axis=0),
             open_share=1 - np.mean(r.closed, axis=0),
-            start_velocity=self.scene.block.velocity,
-            start_energy=opened.start_energy(self.scene),
-            given=opened.given_energy(self.scene),
             velocity=r.velocity,
             rebounds=opened.rebounds(r.gap, self.scheme.step),
             energies=r.energies,

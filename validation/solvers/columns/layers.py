@@ -74,10 +74,7 @@ class ExactLayers(Solver):
     sources: tuple[str, ...] = ("fem_reference",)
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#999999", (), 0.7, 1)
-
-    def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has."""
-        return OF_COLUMN
+    names = OF_COLUMN
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +10,6 @@ from typing import Any
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.errors import InputError
-from validation.runs.files import write_csv
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
@@ -20,7 +17,7 @@ from validation.solvers.rigid.impacts import impact_restitution
 from validation.studies.bands import cases
 from validation.studies.contact.rebound import STIFF
 from validation.studies.opening import front
-from validation.studies.pack import as_toml, make_directory, slug, write_text
+from validation.studies.pack import Part, slug
 
 SCENES = ("unlocked", "unlocked-other", "impact", "drop", "bouncing-bar")
 COLUMNS = ("displacement", "contact_pressure", "gap_m", "normal_force_m")
@@ -30,7 +27,6 @@ ROUNDED = 1e-12  # of a value: the motions are found in 50 digits, the instants 
 OMEGAS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 3.0, 10.0, 100.0, math.inf)
 PHASES = tuple(round(0.05 * n, 2) for n in range(21))
 FEW = 10  # steps of which each is a number of its own
-NUMBERS, MAP = "numbers.csv", "restitution.csv"
 
 README = """\
 # Contact that opens: exact motions
@@ -70,21 +66,19 @@ def write_contact_pack(directory: Path) -> int:
     InputError
         The directory cannot be made or written.
     """
-    place = directory / "contact"
-    for part in ("scenes", "histories"):
-        make_directory(place / part)
+    part = Part(directory / "contact")
     rows: list[dict[str, Any]] = []
     for scene in cases(*SCENES):
-        write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
+        part.add_scene(scene)
         for motion in scene.run.solvers:
-            rows += numbers(scene, motion, place / "histories")
-    write_text(place / NUMBERS, as_csv(rows))
-    write_text(place / MAP, as_csv(list(restitutions())))
-    write_text(place / "README.md", README)
+            rows += numbers(scene, motion, part)
+    part.add_table("numbers", rows)
+    part.add_table("restitution", list(restitutions()))
+    part.add_text("README.md", README)
     return len(rows)
 
 
-def numbers(scene: Scene, motion: str, histories: Path) -> Iterator[dict[str, Any]]:
+def numbers(scene: Scene, motion: str, part: Part) -> Iterator[dict[str, Any]]:
     """Run an exact motion, write its history and yield its single numbers.
 
     Raises
@@ -96,7 +90,7 @@ def numbers(scene: Scene, motion: str, histories: Path) -> Iterator[dict[str, An
     row, history = execute(Case(asked, motion), "", "pack")
     if row.outcome is not Outcome.COMPLETED or history is None:
         raise InputError(f"{scene.name} {motion}: {row.outcome.sentence} {'; '.join(row.notes)}")
-    write_csv(history, histories / f"{slug(scene.name)}.{motion}.csv")
+    part.add_history(scene.name, motion, history)
     known = {name: row.metrics.get(f"switches.{name}") for name in SWITCHES}
     if scene.load.pressure == 0 == scene.load.gravity:
         known["restitution"] = row.metrics.get("contact.restitution")
@@ -130,12 +124,3 @@ def restitutions() -> Iterator[dict[str, float]]:
             for theta in PHASES:
                 e = impact_restitution(alpha, delta, 1.0, omega, theta)
                 yield {"alpha": alpha, "delta": delta, "omega": omega, "theta": theta, "restitution": e}
-
-
-def as_csv(rows: list[Any]) -> str:
-    """Return rows as a table, with all digits of its floats."""
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()

@@ -10,15 +10,14 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.files import write_csv
 from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.solvers.rigid.rocking import overturning_acceleration, quarter_period
 from validation.solvers.rigid.sliding import harmonic_slide
-from validation.studies.contact.pack import ROUNDED, as_csv
-from validation.studies.pack import as_toml, make_directory, slug, write_text
+from validation.studies.contact.pack import ROUNDED
+from validation.studies.pack import Part, slug
 
 MOTION = "block-events"
 HALF = math.degrees(math.atan(0.5))  # deg: tan(phi) = 0.5
@@ -110,21 +109,19 @@ def write_slipping_pack(directory: Path) -> int:
     InputError
         The directory cannot be made or written.
     """
-    place = directory / "friction"
-    for part in ("scenes", "histories"):
-        make_directory(place / part)
+    part = Part(directory / "friction")
     rows: list[dict[str, Any]] = []
     for scene in slipping_cases():
-        write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(scene))
-        rows += numbers(scene, place / "histories")
+        part.add_scene(scene)
+        rows += numbers(scene, part)
     shaken, rocked = list(shakes()), list(rockings())
     for name, table in (("numbers", rows), ("newmark", shaken), ("rocking", rocked)):
-        write_text(place / f"{name}.csv", as_csv(table))
-    write_text(place / "README.md", README)
+        part.add_table(name, table)
+    part.add_text("README.md", README)
     return len(rows) + len(shaken) + len(rocked)
 
 
-def numbers(scene: Scene, histories: Path) -> Iterator[dict[str, Any]]:
+def numbers(scene: Scene, part: Part) -> Iterator[dict[str, Any]]:
     """Run an exact motion, write its history and yield its single numbers.
 
     Raises
@@ -136,7 +133,7 @@ def numbers(scene: Scene, histories: Path) -> Iterator[dict[str, Any]]:
     history = prepared.run().history
     if history is None:
         raise InputError(f"{scene.name} {MOTION}: no history")
-    write_csv(history, histories / f"{slug(scene.name)}.{MOTION}.csv")
+    part.add_history(scene.name, MOTION, history)
     for n, switch in enumerate(prepared.switches()[:TOLD], start=1):
         said = f"switch {n}: {switch.corner} {kind(switch)}"
         yield _number(scene, said, switch.time, "s", ROUNDED * switch.time)

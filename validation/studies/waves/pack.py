@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 import math
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.gates import waves
 from validation.gates.wave_base import base_reflection
-from validation.runs.files import write_csv
-from validation.runs.run import Outcome
 from validation.scenes.scene import SCENE_DIRECTORY, Scene
-from validation.solvers.registry import get_solver
-from validation.studies.pack import as_toml, make_directory, slug, write_text
+from validation.studies.pack import Part, history_of
 from validation.studies.waves.response import amplitudes
 from validation.studies.waves.rows import travelling
 from validation.studies.waves.study import SITE, usual_site
@@ -81,20 +74,18 @@ def write_waves_pack(directory: Path) -> int:
     InputError
         The directory cannot be made or written.
     """
-    place, count = directory / "waves", 0
-    for part in ("scenes", "histories"):
-        make_directory(place / part)
+    part, count = Part(directory / "waves"), 0
     tables = {"waves": travel(), "joints": joints(), "bases": bases(), "response": amplitudes()}
     for name, rows in ((name, list(table)) for name, table in tables.items()):
-        write_text(place / f"{name}.csv", _as_csv(rows))
+        part.add_table(name, rows)
         count += len(rows)
     try:
-        shutil.copyfile(SCENE_DIRECTORY / f"{SITE}.csv", place / "scenes" / f"{SITE}.csv")
+        shutil.copyfile(SCENE_DIRECTORY / f"{SITE}.csv", part.directory / "scenes" / f"{SITE}.csv")
     except OSError as error:
-        raise InputError(f"{place}: cannot be written: {error.strerror}") from None
+        raise InputError(f"{part.directory}: cannot be written: {error.strerror}") from None
     for scene in scenes():
-        _write_scene(scene, place)
-    write_text(place / "README.md", README)
+        _add_scene(scene, part)
+    part.add_text("README.md", README)
     return count
 
 
@@ -106,17 +97,14 @@ def scenes() -> tuple[Scene, ...]:
     return (*found.values(), site.model_copy(update={"name": SITE}), usual)
 
 
-def _write_scene(scene: Scene, place: Path) -> None:
-    """Write a scene, its DDA history and, of the site, the exact one."""
+def _add_scene(scene: Scene, part: Part) -> None:
+    """Add a scene, its DDA history and, of the site, the exact one."""
     shown = scene
     if scene.input.record is not None:
         shown = scene.with_values({"input.record": Path(scene.input.record).name})
-    write_text(place / "scenes" / f"{slug(scene.name)}.toml", as_toml(shown))
+    part.add_scene(shown)
     for solver in ("dda", "layers") if scene.input.record is not None else ("dda",):
-        run = completed(get_solver(solver), scene)
-        if run.outcome is not Outcome.COMPLETED or run.history is None:
-            raise InputError(f"{scene.name} {solver}: {run.outcome.sentence} {'; '.join(run.notes)}")
-        write_csv(run.history, place / "histories" / f"{slug(scene.name)}.{solver}.csv")
+        part.add_history(scene.name, solver, history_of(scene, solver))
 
 
 def _cases(discounts: tuple[float, ...]) -> Iterator[tuple[dict[str, float], waves.Stepping, float]]:
@@ -149,11 +137,3 @@ def bases() -> Iterator[dict[str, float]]:
         for impedance in IMPEDANCES:
             R = base_reflection(waves.Column(UNIT, UNIT, UNIT), stepping, w, impedance)
             yield named | {"impedance": impedance, "reflected": float(np.abs(R))}
-
-
-def _as_csv(rows: list[Any]) -> str:
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)  # a float is written with all its digits
-    return text.getvalue()

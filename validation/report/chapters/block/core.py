@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Heading, Table, columns
 from validation.report.chapters.data import Group, groups
 from validation.report.chapters.ledger import ledger_blocks
-from validation.report.chapters.scene import drift_values, scene_section
+from validation.report.chapters.scene import drift_values, opening, scene_section
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.curves import style_of
@@ -36,8 +36,7 @@ TOLD = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # w
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: a section for each figure of the paper, then mesh and springs, then the ledger."""
     found = {group.name: group for group in groups(results, manifest)}
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    blocks = opening(manifest)
     for name, group in found.items():
         if name not in TOLD:
             left = tuple(by_role(Role.TRUTH)) if name in UNDER_THE_STEP else ()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.report.blocks import Block, Callout, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Callout, Paragraph, Table, columns
 from validation.report.chapters.data import Group, groups
-from validation.report.chapters.scene import gate_count, outcomes
+from validation.report.chapters.scene import gate_count, opening, outcomes
 from validation.report.chapters.text import DASH, bounded, power
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -18,8 +18,7 @@ MEASURES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max"
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: how far the codes are apart, scene by scene; where one did not run, why."""
     found = groups(results, manifest)
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    blocks = opening(manifest)
     verdicts = results.verdicts(manifest["study"])
     table = apart(found)
     blocks += [Paragraph(f"{gate_count(verdicts).capitalize()}."), table] if table.rows else []

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import history_block
+from validation.report.chapters.scene import history_block, opening
 from validation.report.chapters.text import DASH, bounded, percent, power
 from validation.runs.history import DISPLACEMENT
 from validation.runs.records import Manifest
@@ -19,8 +19,7 @@ LOCKING, LONG = "locking", "long-run"
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: the table of locking, the long run with its energy."""
     found = {group.name: group for group in groups(results, manifest)}
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    blocks += [Paragraph(manifest["purpose"])] if manifest.get("purpose") else []
+    blocks = opening(manifest)
     if LOCKING in found:
         blocks += [
             Heading(found[LOCKING].title, 2),

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Column, Heading, Table, columns
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.report.figures import histories
 from validation.report.figures.stability import DigitMap, digit_maps, digits_of
@@ -59,12 +60,7 @@ def cells(results: Results, manifest: Manifest) -> list[Cell]:
 def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study of extremes."""
     found = cells(results, manifest)
-    blocks: list[Block] = [
-        Heading(manifest.get("title") or manifest["study"]),
-        Paragraph(conclusion(found), "lead"),
-        Paragraph(manifest.get("purpose") or ""),
-        outcome_table(found),
-    ]
+    blocks = [*opening(manifest, lead=conclusion(found)), outcome_table(found)]
     matrix = [cell for cell in found if cell.scene.startswith(MATRIX)]
     for solver in SOLVERS:
         blocks += _maps(manifest["study"], [cell for cell in matrix if cell.solver == solver], directory)

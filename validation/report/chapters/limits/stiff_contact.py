@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import histories
 from validation.report.figures.stability import Settling, settling_figure
@@ -35,9 +35,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "lies between, and beyond it a ring too small to see never ends."
     )
     return [
-        Heading(manifest.get("title") or manifest["study"]),
-        Paragraph(conclusion(table), "lead"),
-        Paragraph(manifest.get("purpose") or ""),
+        *opening(manifest, lead=conclusion(table)),
         settling_table(table),
         histories.saved(settling_figure(lines(table), longest), directory, f"{group.slug}-settling.svg", caption),
         Paragraph(f"{ring} {gate_count(group.verdicts).capitalize()}."),

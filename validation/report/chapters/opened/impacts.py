@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.blocks import Block, Heading, Table, columns
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -29,11 +29,8 @@ NOTE = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: a table for each benchmark."""
-    title, purpose = manifest.get("title") or manifest["study"], manifest.get("purpose") or ""
     found = groups(results, manifest)
-    verdicts = [verdict for group in found for verdict in group.verdicts]
-    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
-    blocks: list[Block] = [Heading(title), Paragraph(f"{purpose} {NOTE}{count}")]
+    blocks = opening(manifest, verdicts_of(found), said=NOTE)
     for group in found:
         blocks += [Heading(group.title, 3), table(group)]
     return blocks

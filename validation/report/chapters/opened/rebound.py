@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import contact, histories
 from validation.runs.records import Manifest, VerdictRecord
@@ -34,15 +34,11 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     found = groups(results, manifest)
     impacts = [group for group in found if group.name.startswith(IMPACT)]
     maps = [group for group in found if group.name.startswith(MAP)]
-    verdicts = [verdict for group in found for verdict in group.verdicts]
-    blocks: list[Block] = [
-        Heading(manifest.get("title") or manifest["study"]),
-        Paragraph(manifest.get("purpose") or ""),
-    ]
+    blocks = opening(manifest)
     blocks += [Paragraph(conclusion(maps), "lead")] if maps else []
     if (data := manifest.get("data")) and data.get("schemes"):
         blocks += restitution_blocks(data, impacts, directory)
-    return blocks + map_blocks(maps, verdicts, directory)
+    return blocks + map_blocks(maps, verdicts_of(found), directory)
 
 
 # ---- restitution --------------------------------------------------------------------------------------------------

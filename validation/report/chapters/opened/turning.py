@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import histories, turning
 from validation.report.figures.turning import Line, Panel
@@ -55,7 +55,8 @@ def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "Right: tilt over the tipping angle on a base that accelerates for 0.36 s, by the pulse over the least that "
         "overturns the rigid block."
     )
-    blocks = [*opening(manifest, found), Paragraph(SWINGS), swing_table(swings), Paragraph(PULSES), pulse_table(pulses)]
+    blocks = [*opening(manifest, verdicts_of(found)), Paragraph(SWINGS), swing_table(swings)]
+    blocks += [Paragraph(PULSES), pulse_table(pulses)]
     return [*blocks, *drawn(shown, directory, "rocking.svg", caption)]
 
 
@@ -67,15 +68,8 @@ def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> l
         "its area over that of the start (dashed: the product of 1 + r² over the steps)."
     )
     shown = [fall_panel(found), area_panel(found)]
-    blocks = [*opening(manifest, found), Paragraph(FALLS), fall_table(found)]
+    blocks = [*opening(manifest, verdicts_of(found)), Paragraph(FALLS), fall_table(found)]
     return [*blocks, *drawn([panel for panel in shown if panel.lines], directory, "toppling.svg", caption)]
-
-
-def opening(manifest: Manifest, found: Sequence[Group]) -> list[Block]:
-    """Return title and purpose, with what the gates say."""
-    count = gate_count([verdict for group in found for verdict in group.verdicts])
-    purpose = manifest.get("purpose") or ""
-    return [Heading(manifest.get("title") or manifest["study"]), Paragraph(f"{purpose} {count.capitalize()}.")]
 
 
 def drawn(shown: Sequence[Panel], directory: Path, file: str, caption: str) -> list[Block]:

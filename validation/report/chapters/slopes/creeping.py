@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from validation.gates import friction
-from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.blocks import Block, FigureBlock, Paragraph, Table, columns
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain
 from validation.report.figures.friction import Panel, Trace, panels_figure
 from validation.report.figures.histories import saved
@@ -40,13 +40,7 @@ SAID = (
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: the figure and the table by steps."""
     found = {group.name: group for group in groups(results, manifest)}
-    verdicts = [verdict for group in found.values() for verdict in group.verdicts]
-    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
-    blocks: list[Block] = [
-        Heading(manifest.get("title") or manifest["study"]),
-        Paragraph(f"{manifest.get('purpose') or ''}{count}"),
-        Paragraph(SAID),
-    ]
+    blocks = [*opening(manifest, verdicts_of(found.values())), Paragraph(SAID)]
     if found.get(study.STEPS):
         blocks += [over_time_and_step(found, directory), by_step(found)]
     blocks += by_stiffness(found)

@@ -9,8 +9,8 @@ import numpy as np
 
 from validation.gates import friction
 from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
-from validation.report.chapters.scene import gate_count
+from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain
 from validation.report.figures.friction import Panel, Trace, panels_figure
 from validation.report.figures.histories import saved
@@ -38,17 +38,11 @@ SAID = (
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: figure, run-outs, thresholds."""
     found = {group.name: group for group in groups(results, manifest)}
-    verdicts = [verdict for group in found.values() for verdict in group.verdicts]
-    count = f" {gate_count(verdicts).capitalize()}." if verdicts else ""
     slides = [
         case for name in (study.SLIDING, study.AVERAGE, study.DRAG) if name in found for case in found[name].cases
     ]
     starts = [case for name in (study.THRESHOLD, study.MANUAL) if name in found for case in found[name].cases]
-    blocks: list[Block] = [
-        Heading(manifest.get("title") or manifest["study"]),
-        Paragraph(f"{manifest.get('purpose') or ''}{count}"),
-        Paragraph(SAID),
-    ]
+    blocks = [*opening(manifest, verdicts_of(found.values())), Paragraph(SAID)]
     if found.get(study.SLIDING) and found.get(study.DRAG):
         blocks.append(trajectories(found[study.SLIDING], found[study.DRAG], directory))
     blocks += [Heading("Run-out", 2), run_outs(slides)] if slides else []

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.scene import gate_count
+from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain
 from validation.report.figures.histories import saved
 from validation.report.figures.response import ResponseCurve, response_figure
@@ -31,10 +31,7 @@ Rows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene, name) -> metrics
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: what the step takes, the figure, the table."""
     rows: Rows = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
-    verdicts = results.verdicts(manifest["study"])
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"])]
-    blocks += [Paragraph(said, "lead") for said in (lead(rows),) if said]
-    blocks.append(Paragraph(f"{manifest.get('purpose', '')} {gate_count(verdicts).capitalize()}."))
+    blocks = opening(manifest, results.verdicts(manifest["study"]), lead(rows))
     if curves := [_curve(manifest["data"], told) for told in manifest.get("data", {}).get("curves", [])]:
         caption = (
             "The paper's block under a pressure of 5 MPa that vibrates: DDA at dt = 2 ms under (1/2, 1), the same "

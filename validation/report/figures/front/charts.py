@@ -69,11 +69,8 @@ def _draw(axes: Axes, chart: Chart) -> None:
             axis.set_major_formatter(lambda value, _: _power(value))
             axis.set_minor_locator(NullLocator() if name == "y" else LogLocator(subs=tuple(range(2, 10)), numticks=12))
             axis.set_minor_formatter(NullFormatter())
-    axes.set_xlim(*chart.x_range)
-    axes.set_ylim(*chart.y_range)
+    axes.set(xlim=chart.x_range, ylim=chart.y_range, xlabel=chart.labels[0], ylabel=chart.labels[1])
     axes.set_title(chart.title, pad=12.0)
-    axes.set_xlabel(chart.labels[0])
-    axes.set_ylabel(chart.labels[1])
     _hairlines(axes, chart)
     ends, colors = {}, {}
     for stroke in chart.strokes:

@@ -22,8 +22,7 @@ def model_figure(side: str, pressure: str) -> Figure:
     with house_style():
         figure = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_xlim(0.0, WIDTH)
-        axes.set_ylim(0.0, HEIGHT)
+        axes.set(xlim=(0.0, WIDTH), ylim=(0.0, HEIGHT))
         axes.set_axis_off()
         _bodies(axes)
         for x, name in ((LEFT, "M"), (LEFT + SIDE, "N")):
