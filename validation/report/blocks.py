@@ -32,7 +32,8 @@ class Column:
     """A table column: title, kind of its cells, and a title shared with neighbours.
 
     ``decimal`` aligns numbers at the decimal point, ``verdict`` colours PASS, FAIL and NOT RUN in a list of gates,
-    ``outcome`` the same with what follows the word, ``code`` is an identifier, ``id`` a long one that breaks and takes the remaining width, as ``fill`` does for text.
+    ``outcome`` the same with what follows the word, ``code`` is an identifier, ``id`` a long one that breaks and takes
+    the remaining width, as ``fill`` does for text.
     """
 
     title: str

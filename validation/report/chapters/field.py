@@ -10,7 +10,8 @@ from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, Field, ProgramLine, read
+from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProgramLine, read
+from validation.studies.field.table import Table as Field
 
 NONE = "n. a."
 SAID = (
