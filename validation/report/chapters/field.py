@@ -50,10 +50,10 @@ def counted(found: Field) -> str:
     there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in (PASS, FAIL)}
     if not there:
         return "No other program is installed here: README of examples/peers has a recipe for each."
+    passed, failing = words.count(PASS), words.count(FAIL)
     return (
-        f"{len(there)} programs answered {words.count(PASS) + words.count(FAIL)} times to {len(found.problems)} "
-        f"problems: {words.count(PASS)} answers pass, {words.count(FAIL)} fail, of which {named} with a cause that is "
-        "certain."
+        f"Other programs: {len(there)}, with {passed + failing} answers to {len(found.problems)} problems. "
+        f"Of these {passed} pass and {failing} fail, {named} of them with a cause that is certain."
     )
 
 

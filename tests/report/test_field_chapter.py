@@ -1,0 +1,73 @@
+"""The chapter of the judged field: every word and number of a cell reaches the page, and nothing else does."""
+
+from __future__ import annotations
+
+from validation.report.blocks import Table as Shown
+from validation.report.chapters.field import by_problem, counted, failures, inapplicable, programs
+from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProblemLine, ProgramLine
+from validation.studies.field.table import Table as Field
+
+PROBLEMS = tuple(ProblemLine(name, f"field-{name}", name, f"What of {name}?") for name in ("locked", "rocking"))
+PROGRAMS = (
+    ProgramLine("dda", "DDA by habit", "", "suite", True, {"model": "one strain", "settings": "alpha = 1/2"}),
+    ProgramLine("one", "One", "pip install one", "chosen", True, {"version": "1.5", "model": "m", "settings": "s"}),
+    ProgramLine("one-default", "One, as it comes", "", "default", True, {}),
+    ProgramLine("two", "Two", "pip install two", "chosen", False, {}),
+)
+SAYS = "the solver says that it is not made for this scene: "
+
+
+def cells() -> dict[tuple[str, str], Cell]:
+    found = [
+        Cell("locked", "dda", FAIL, FAIL, "numerical damping", "displacement", 0.5128, 0.0574, 0.5),
+        Cell("rocking", "dda", PASS, PASS, "", "rotation", 3.2e-6, 0.0146, 0.25),
+        Cell("locked", "one", PASS, PASS, "", "displacement", 0.00123, 0.0574, 1.5),
+        Cell("rocking", "one", NOT_APPLICABLE, NOT_APPLICABLE, reason=f"{SAYS}it does not turn"),
+        Cell("locked", "one-default", FAIL, FAIL, "not explained", "displacement", 12.0, 0.0574, 1.0),
+        Cell("rocking", "one-default", FAIL, FAIL, "wrong units: mm?"),
+        Cell("locked", "two", NOT_RUN, NOT_RUN, reason="not installed: pip install two"),
+        Cell("rocking", "two", NOT_RUN, NOT_RUN, reason="not installed: pip install two"),
+    ]
+    return {(cell.problem, cell.program): cell for cell in found}
+
+
+FIELD = Field(PROBLEMS, PROGRAMS, cells())
+
+
+def test_the_table_has_a_cell_for_every_program_that_ran() -> None:
+    table = by_problem(FIELD)
+    assert [column.title for column in table.columns] == ["Program", "locked", "rocking", "Time [s]"]
+    assert table.rows == (
+        ("allowed [%]", "5.7", "1.5", ""),
+        ("DDA by habit", "FAIL 51", "PASS < 0.001", "0.75"),
+        ("One", "PASS 0.12", "n. a.", "1.5"),
+        ("One, as it comes", "FAIL > 1000", "FAIL", "1"),
+    )
+    assert [column.kind for column in table.columns] == ["text", "outcome", "outcome", "decimal"]
+    assert table.notes[-1] == "Not installed: Two."
+
+
+def test_causes_and_reasons_stand_with_program_and_problems() -> None:
+    assert failures(FIELD).rows == (
+        ("DDA by habit", "locked", "numerical damping"),
+        ("One, as it comes", "locked", "not explained"),
+        ("", "rocking", "wrong units: mm?"),
+    )
+    assert inapplicable(FIELD).rows == (("One", "rocking", "it does not turn"),)
+    alike = {key: cell if cell.verdict != FAIL else Cell(*key, FAIL, FAIL, "damped") for key, cell in cells().items()}
+    assert ("One, as it comes", "locked, rocking", "damped") in failures(Field(PROBLEMS, PROGRAMS, alike)).rows
+
+
+def test_programs_say_what_they_are() -> None:
+    table: Shown = programs(FIELD)
+    assert table.rows[1] == ("One", "1.5", "m", "s")
+    assert [row[0] for row in table.rows] == ["DDA by habit", "One", "One, as it comes"]
+
+
+def test_the_sentence_counts_other_peoples_programs_only() -> None:
+    assert counted(FIELD) == (
+        "Other programs: 1, with 3 answers to 2 problems. Of these 1 pass and 2 fail, 1 of them with a cause that is "
+        "certain."
+    )
+    alone = Field(PROBLEMS, PROGRAMS[:1], {key: cell for key, cell in cells().items() if key[1] == "dda"})
+    assert counted(alone).startswith("No other program is installed here")
