@@ -103,7 +103,7 @@ class Solver:
     7. `build(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
        A solver of one function overrides `solve(scene, full, fields)` instead.
-    8. `names`, or `columns()`: the columns that it has; a scene's further columns are not asked of it.
+    8. `own_columns`, or `columns()`: the columns that it has; a scene's further columns are not asked of it.
     """
 
     name: str = ""
@@ -118,7 +118,7 @@ class Solver:
     role: Role = Role.OTHER
     rank: float = -1.0  # users' solvers come first: every other one is a reference for them
     line: LineStyle | None = None  # None: a style that depends on the name alone
-    names: tuple[str, ...] | None = None  # of its columns; None: it takes whatever a scene asks for
+    own_columns: tuple[str, ...] | None = None  # None: it takes whatever a scene asks for
 
     def option(self, text: str) -> Solver:
         """Return this solver with the option that ``name:option`` gives, such as a number of ranks.
@@ -145,7 +145,7 @@ class Solver:
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
-        return self.names
+        return self.own_columns
 
     def versions(self) -> Mapping[str, str]:
         """Return the versions of programs that its results depend on, beyond the suite's own libraries."""

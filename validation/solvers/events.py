@@ -290,7 +290,7 @@ class BlockEvents(Solver):
     sources = ("fem_reference.events", "fem_reference.problem")
     role, rank = Role.LIMIT, 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
-    names: tuple[str, ...] | None = BLOCK_COLUMNS
+    own_columns: tuple[str, ...] | None = BLOCK_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
@@ -310,7 +310,7 @@ class BarEvents(BlockEvents):
     handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#666666", (), 0.9, 1)
-    names = BAR_COLUMNS
+    own_columns = BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the bar is not exact for the scene."""

@@ -140,7 +140,7 @@ class FEniCSx(Solver):
     saves = False
     role, rank = Role.SECOND_CODE, 3.0
     line = LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4)
-    names = OPENING_COLUMNS  # those beyond the first three are of contact that opens
+    own_columns = OPENING_COLUMNS  # those beyond the first three are of contact that opens
 
     def __init__(self) -> None:
         self.ranks = 1

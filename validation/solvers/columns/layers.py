@@ -74,7 +74,7 @@ class ExactLayers(Solver):
     sources: tuple[str, ...] = ("fem_reference",)
     role, rank = Role.TRUTH, 6.5
     line = LineStyle("#999999", (), 0.7, 1)
-    names = OF_COLUMN
+    own_columns = OF_COLUMN
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""
