@@ -22,12 +22,13 @@ from validation.scenes.scene import Scene
 
 SLIPS = 1e-30  # m: the yield of a corner that is open; zero would be none
 FINE, COARSE, MANY = 0.1, 0.7, 60_000  # w dt of RK4, where more sub-steps than that would follow, and what is many
-FINE_SLIP, COARSE_SLIP, MANY_SLIP = 0.02, 0.2, 100_000  # of the leapfrog that friction takes
+FINE_SLIP, COARSE_SLIP, MANY_SLIP = 0.005, 0.2, 300_000  # of the leapfrog that friction takes
 HEAVY = 1e12  # mass of a base that moves as it is told, over the block's
 STEADY = 1e-3  # settlement of a block that turns over its lift by the tilt up to which it and its base are rigid
 RIGID = 100.0  # stiffness of a block over that of its springs from which a rigid box may stand for it
 OF_CONTACT = {features.UNILATERAL, features.FRICTION, features.SLOPE, features.ROTATION, features.COLUMN}
-TURNING = 1e-3  # sub-step over (h / g)^(1/2) of a block that turns
+GLUE = 100.0  # coefficient of friction of a corner that never slips, of a box
+TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
 
 
 def sizes(scene: Scene) -> tuple[float, float]:
@@ -90,7 +91,11 @@ class Corners:
         self.normal = np.array(rows)
         self.slips = any(spring.slips for spring in network.springs)
         record = base_record(scene)
-        self.path = None if record is None else [np.interp(instants, record.time, x) for x in (record.x, record.y)]
+        self.path = None
+        if record is not None:
+            x, y = (np.interp(instants, record.time, part) for part in (record.x, record.y))
+            self.path = x - x[0], y  # the springs along the base are relaxed at t = 0, wherever it is then
+            march.data.qpos[6:8] = 0.0, y[0]
 
     @property
     def needed(self) -> bool:
@@ -146,7 +151,7 @@ def rigid_box(scene: Scene, *, default: bool) -> Columns:
         scale = math.sqrt(h / q.gravity) if q.gravity else t.step
         dt = t.step / parts(1 / scale, t.step, t.steps, TURNING, TURNING, MOST)
         options = 'integrator="RK4" cone="elliptic" impratio="100"'
-    contact = _rubs(scene) + ("" if default else _stiff(dt))
+    contact = _rubs(scene, default) + ("" if default else _stiff(dt))
     lowest = (abs(math.sin(tilt)) * a + math.cos(tilt) * h) / 2 + scene.contact.gap
     joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 -1 0"/>'
     box = f'<geom type="box" size="{a / 2!r} 0.5 {h / 2!r}" density="{b.density!r}" {contact}/>'
@@ -170,13 +175,14 @@ def _named(rows: Array) -> Columns:
     return dict(zip(names, rows.T, strict=True))
 
 
-def _rubs(scene: Scene) -> str:
+def _rubs(scene: Scene, default: bool) -> str:
     """Return the attributes of a geom with the scene's friction, the same for box and plane."""
     c = scene.contact
     tangent = math.tan(math.radians(c.friction or 0.0))
     if c.friction is None and c.shear > 0:
-        still = upright(scene) and scene.run.geometry == "small"
-        refuse("MuJoCo's contact has no glue: contact.friction is needed where a corner may slip", where=not still)
+        pushed = scene.load.traction or scene.load.eccentricity or scene.load.slope or scene.block.tilt
+        refuse("MuJoCo's contact has no glue; give contact.friction", where=default and pushed != 0)
+        tangent = GLUE
     return f'condim="3" friction="{tangent!r} 0 0"' if tangent else 'condim="1"'
 
 
@@ -198,8 +204,8 @@ class MuJoCo:
     )
     settings = (
         "RK4 at w dt = 0.1; with friction the semi-implicit Euler from a velocity half a step back, which is the "
-        "leapfrog, at w dt = 0.02; columns of 8 cells in what a wave passes in a step; rigid box: (h/g)^(1/2) / 1000, "
-        "RK4, elliptic cones, impratio 100, contact of critical damping with 0.3 / dt"
+        "leapfrog, at w dt = 0.005; columns of 8 cells in what a wave passes in a step; rigid box: "
+        "(h/g)^(1/2) / 10000, RK4, elliptic cones, impratio 100, contact of critical damping with 0.3 / dt"
     )
 
     @property
@@ -224,6 +230,8 @@ class MuJoCo:
         if scene.column is not None:
             return column(scene, default=self.default)
         refuse("gg below 1 discounts the velocity of DDA's steps, which MuJoCo has not", where=scene.time.discount != 1)
+        old = scene.run.rotation != "exact"
+        refuse("run.rotation = first-order is that of older block codes, which MuJoCo has not", where=old)
         if self.boxed(scene):
             return rigid_box(scene, default=self.default)
         return spring_block(scene, default=self.default)
@@ -234,6 +242,8 @@ class MuJoCo:
             return False
         (a, h), q, b = sizes(scene), scene.load, scene.block
         refuse("a pressure or traction on a block that turns far", where=_pushed(scene))
+        lands = scene.contact.gap != 0 or b.velocity != 0
+        refuse("a block that turns far stands on rigid ground, which returns nothing of a landing", where=lands)
         soft = 1 / (2 * scene.contact.stiffness) + h / (b.young * a)
         settles = b.mass * q.gravity * soft > STEADY * a * abs(math.sin(math.radians(b.tilt or 45.0)))
         refuse("a block that turns far is a rigid box, but this one or its springs are soft", where=settles)

@@ -2,90 +2,142 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
 from peers.mujoco_model import MOST, Columns, March, Network, Spring, parts, refuse
-from validation.scenes.drive import motion_at
+from validation.runs.history import Array
+from validation.scenes.column import ColumnSection
+from validation.scenes.drive import Motion, motion_at
 from validation.scenes.scene import Scene
 
-CELLS, MOST_CELLS = 8, 2000  # elements of a column in what a wave passes in a step, and all of them
-PER_RADIAN = 0.7  # w dt of RK4
+CELLS, MOST_CELLS = 8, 2000  # cells in what a wave passes in a step, and all masses of a column
+RESOLVED = 0.7  # w dt of RK4
 NEAR = 1e-9  # of a column's height: what counts as one height
+Segment = tuple[float, float, float, float, float]  # ends [m], density, modulus, length of a cell [m]
 
 
-@dataclass
 class Chain:
-    """A column as masses on a line: what holds it below, and where its masses are."""
+    """A column as masses on a line, from the base upwards.
 
-    network: Network
-    heights: list[float]  # of the masses, from the base upwards [m]
-    ground: float  # stiffness between base and lowest mass, or impedance of a transmitting base [N/m, N s/m]
-    carried: float  # mass that moves with the base itself [kg]
+    Attributes
+    ----------
+    masses, heights
+        Of the masses that move [kg/m2], [m].
+    ground
+        Stiffness between base and lowest mass [Pa/m], or impedance of a transmitting base [Pa s/m].
+    carried
+        Mass that moves with a rigid base [kg/m2].
+    """
+
+    def __init__(self, scene: Scene, *, default: bool) -> None:
+        self.column, self.joints = _column(scene), _joints(scene)
+        self.masses, self.heights, self.springs = list[float](), list[float](), list[Spring]()
+        self.ground, self.carried = 0.0, 0.0
+        self._stand()
+        for segment in _segments(scene, self.joints, default=default):
+            self._cross(segment[0])
+            self._pile(segment)
+
+    def _stand(self) -> None:
+        """Place a mass on the springs, or on the dampers, of a base that is not rigid."""
+        foot, impedance = self._joint(0.0), self.column.impedance
+        if foot is not None:
+            self.ground = foot
+            self.springs.append(Spring({"0": 1.0}, foot))
+        elif impedance is not None:
+            self.ground = impedance
+        else:
+            return
+        self.masses.append(0.0)
+        self.heights.append(0.0)
+
+    def _joint(self, level: float) -> float | None:
+        near = [k for height, k in self.joints.items() if abs(height - level) <= NEAR * self.column.height]
+        return near[0] if near else None
+
+    def _cross(self, level: float) -> None:
+        """Go over a joint, if there is one above the base: the next mass stands at the same height."""
+        stiffness = self._joint(level)
+        if stiffness is not None and level > 0:
+            self._link(stiffness)
+            self.masses.append(0.0)
+            self.heights.append(self.heights[-1])
+
+    def _pile(self, segment: Segment) -> None:
+        """Set cells upon each other."""
+        low, high, density, modulus, cell = segment
+        count = max(math.ceil((high - low) / cell * (1 - NEAR)), 1)
+        refuse(f"it would take more than {MOST_CELLS} masses", where=len(self.masses) + count > MOST_CELLS)
+        half, stiffness = density * (high - low) / count / 2, modulus * count / (high - low)
+        for number in range(count):
+            if self.masses:
+                self.masses[-1] += half
+                self._link(stiffness)
+            else:
+                self.ground, self.carried = stiffness, half
+                self.springs.append(Spring({"0": 1.0}, stiffness))
+            self.masses.append(half)
+            self.heights.append(low + (high - low) * (number + 1) / count)
+
+    def _link(self, stiffness: float) -> None:
+        upper = len(self.masses)
+        self.springs.append(Spring({str(upper - 1): -1.0, str(upper): 1.0}, stiffness))
+
+    def network(self, rate: float) -> Network:
+        """Return the masses and springs; `rate` is that of a damping of the masses [1/s]."""
+        masses = {str(number): mass for number, mass in enumerate(self.masses)}
+        damping = {name: rate * mass for name, mass in masses.items()}
+        if self.column.base == "transmitting":
+            damping["0"] += self.ground
+        return Network(masses, self.springs, damping)
 
 
-def chain(scene: Scene, *, default: bool) -> Chain:
-    """Return the column of a scene, each cell half its mass at either end; by default a cell for each block of DDA."""
-    c = scene.column
-    assert c is not None
-    top, joints = c.height, {spring.height: spring.stiffness for spring in c.springs}
-    foot = [height for height in joints if height <= NEAR * top]
-    refuse("a joint on the top carries nothing", where=any(height >= top * (1 - NEAR) for height in joints))
-    refuse("a joint between column and transmitting base", where=bool(foot) and c.base == "transmitting")
-    refuse("two joints at one height", where=len(joints) < len(c.springs))
-    masses, heights, springs, level, carried = dict[str, float](), list[float](), list[Spring](), 0.0, 0.0
-    ground = joints[foot[0]] if foot else c.impedance or 0.0
-    if foot or c.base == "transmitting":
-        masses["0"], heights = 0.0, [0.0]
-    if foot:
-        springs.append(Spring({"0": 1.0}, ground))
+def _column(scene: Scene) -> ColumnSection:
+    assert scene.column is not None
+    return scene.column
+
+
+def _joints(scene: Scene) -> dict[float, float]:
+    """Return the joints, heights to stiffnesses, springs of the base included; what a chain has not is refused."""
+    c = _column(scene)
+    heights = sorted(spring.height for spring in c.springs)
+    near = NEAR * c.height
+    refuse("a joint on the top carries nothing", where=any(height >= c.height - near for height in heights))
+    below = c.base == "transmitting" and any(height <= near for height in heights)
+    refuse("a joint between column and transmitting base has no mass below it", where=below)
+    refuse("two joints at one height", where=any(np.diff(heights) <= near))
+    return {spring.height: spring.stiffness for spring in c.springs}
+
+
+def _segments(scene: Scene, joints: dict[float, float], *, default: bool) -> Iterator[Segment]:
+    """Yield what lies between layers' faces and joints; by default a cell is a block of DDA."""
+    c, level = _column(scene), 0.0
     for layer in c.layer:
-        end, modulus = level + layer.thickness, c.modulus(layer)
-        cell = layer.thickness / layer.blocks if default else math.sqrt(modulus / layer.density) * scene.time.step / CELLS
-        stops = sorted(height for height in joints if level + NEAR * top < height < end - NEAR * top)
-        for low, high in zip([level, *stops], [*stops, end], strict=True):
-            if heights and any(abs(low - height) <= NEAR * top for height in joints if low > 0):
-                masses[str(len(masses))] = 0.0
-                heights.append(heights[-1])
-                at = min(joints, key=lambda height: abs(height - low))
-                springs.append(_between(len(masses) - 2, joints[at]))
-            count = max(math.ceil((high - low) / cell * (1 - NEAR)), 1)
-            refuse(f"it would take more than {MOST_CELLS} masses", where=len(masses) + count > MOST_CELLS)
-            half, stiffness = layer.density * (high - low) / count / 2, modulus * count / (high - low)
-            for number in range(count):
-                if masses:
-                    masses[str(len(masses) - 1)] += half
-                    springs.append(_between(len(masses) - 1, stiffness))
-                else:
-                    springs.append(Spring({"0": 1.0}, stiffness))
-                    ground, carried = stiffness, half
-                masses[str(len(masses))] = half
-                heights.append(low + (high - low) * (number + 1) / count)
+        end, modulus, near = level + layer.thickness, c.modulus(layer), NEAR * c.height
+        passed = math.sqrt(modulus / layer.density) * scene.time.step
+        cell = layer.thickness / layer.blocks if default else passed / CELLS
+        ends = [level, *sorted(height for height in joints if level + near < height < end - near), end]
+        for low, high in itertools.pairwise(ends):
+            yield low, high, layer.density, modulus, cell
         level = end
-    rate = -math.log(scene.time.discount) / scene.time.step
-    damping = {name: rate * mass for name, mass in masses.items()}
-    if c.base == "transmitting":
-        damping["0"] += ground
-    return Chain(Network(masses, springs, damping), heights, ground, carried)
-
-
-def _between(lower: int, stiffness: float) -> Spring:
-    return Spring({str(lower): -1.0, str(lower + 1): 1.0}, stiffness)
 
 
 def column(scene: Scene, *, default: bool) -> Columns:
-    """Return the motion of a column of masses."""
-    c, t = scene.column, scene.time
-    assert c is not None
-    refuse("a discount of 0 has no rate", where=t.discount == 0)
-    found = chain(scene, default=default)
-    each = 1 if default else parts(found.network.frequency(), t.step, t.steps, PER_RADIAN, PER_RADIAN, MOST)
-    dt, passes = t.step / each, c.base == "transmitting"
-    march = March(found.network.text(f'timestep="{dt!r}"' + ("" if default else ' integrator="RK4"')), found.network)
-    middle = motion_at(scene, dt * (np.arange(each * t.steps) + 0.5))
-    below = found.ground * (2 * middle.velocity if passes else middle.displacement)
+    """Return the motion of a column of masses: displacements, and the pressure on the base."""
+    t = scene.time
+    refuse("gg = 0 has no rate -ln(gg) / dt", where=t.discount == 0)
+    chain = Chain(scene, default=default)
+    network = chain.network(-math.log(t.discount) / t.step)
+    each = 1 if default else parts(network.frequency(), t.step, t.steps, RESOLVED, RESOLVED, MOST)
+    dt = t.step / each
+    march = March(network.text(f'timestep="{dt!r}"' + ("" if default else ' integrator="RK4"')), network)
+    middle = motion_at(scene, np.asarray(dt * (np.arange(each * t.steps) + 0.5), np.float64))
+    passes = chain.column.base == "transmitting"
+    below = chain.ground * (2 * middle.velocity if passes else middle.displacement)
 
     def drive(number: int) -> None:
         force = march.data.qfrc_applied
@@ -93,15 +145,22 @@ def column(scene: Scene, *, default: bool) -> Columns:
         force[0] += below[number]
         force[-1] -= middle.pressure[number]
 
-    rows = march.rows(t.steps, each, lambda: np.array([*march.data.qpos, march.data.qvel[0]]), drive)
-    base, x = motion_at(scene, t.step * np.arange(1.0, t.steps + 1)), rows[:, :-1]
-    if passes:
-        pressure = found.ground * (2 * base.velocity - rows[:, -1])
+    rows = march.rows(t.steps, each, lambda: np.array([march.data.qvel[0], *march.data.qpos]), drive)
+    base = motion_at(scene, np.asarray(t.step * np.arange(1.0, t.steps + 1), np.float64))
+    return _reported(chain, base, rows[:, 0], rows[:, 1:])
+
+
+def _reported(chain: Chain, base: Motion, rate: Array, x: Array) -> Columns:
+    """Return the columns from the rate of the lowest mass, shape (steps,), and all displacements, (steps, masses)."""
+    if chain.column.base == "transmitting":
+        pressure = chain.ground * (2 * base.velocity - rate)
     else:
-        pressure = found.ground * (base.displacement - x[:, 0]) + found.carried * base.acceleration
+        pressure = chain.ground * (base.displacement - x[:, 0]) + chain.carried * base.acceleration
     columns = {"displacement": x[:, -1], "contact_pressure": pressure}
-    levels = np.array([*([] if found.heights[0] == 0 else [0.0]), *found.heights])
-    x = x if found.heights[0] == 0 else np.column_stack([base.displacement, x])
-    for number, height in enumerate(c.heights):
-        columns[f"displacement_{number + 1}"] = np.array([np.interp(height - NEAR * c.height, levels, row) for row in x])
+    levels = np.array(chain.heights)
+    if levels[0] > 0:
+        levels, x = np.array([0.0, *levels]), np.column_stack([base.displacement, x])
+    for number, height in enumerate(chain.column.heights):
+        at = height - NEAR * chain.column.height  # below a joint
+        columns[f"displacement_{number + 1}"] = np.array([np.interp(at, levels, row) for row in x])
     return columns
