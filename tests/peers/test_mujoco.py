@@ -141,6 +141,16 @@ def test_its_default_diverges_at_the_step_of_the_problem_and_leaves_no_file(
 
 
 @installed
+def test_its_default_box_lands_and_does_not_bounce() -> None:
+    scene = changed("rebound", time__steps=300)
+    found = AsItComes().solve(scene)
+    landed = found["displacement"][50:]
+    assert -0.03 < np.min(landed) <= np.max(landed) < -scene.contact.gap + 1e-3
+    weight = scene.block.mass * scene.load.gravity / scene.block.base_length
+    assert found["contact_pressure"][-1] == pytest.approx(weight, rel=1e-2)
+
+
+@installed
 @pytest.mark.parametrize(
     ("scene", "within"),
     [

@@ -182,6 +182,8 @@ def _rubs(scene: Scene, default: bool) -> str:
     if c.friction is None and c.shear > 0:
         pushed = scene.load.traction or scene.load.eccentricity or scene.load.slope or scene.block.tilt
         refuse("MuJoCo's contact has no glue; give contact.friction", where=default and pushed != 0)
+        if default:
+            return ""  # nothing pushes along the base: MuJoCo's own friction, which is never asked
         tangent = GLUE
     return f'condim="3" friction="{tangent!r} 0 0"' if tangent else 'condim="1"'
 
