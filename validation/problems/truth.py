@@ -14,7 +14,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
-from validation.solvers.rigid.rocking import quarter_period, rocking
+from validation.solvers.rigid.rocking import friction_needed, quarter_period, rocking
 
 ROCKING = "rigid rocking"
 
@@ -48,7 +48,8 @@ def truth_of(scene: Scene) -> Truth:
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
-    for name in [*by_role(Role.LIMIT), *by_role(Role.TRUTH)]:
+    of_one_strain = not {features.COLUMN, features.SUB_BLOCKS} & {*features.of(scene)}
+    for name in by_role(Role.LIMIT if of_one_strain else Role.TRUTH):
         reason = get_solver(name).refusal(scene)
         if reason is None:
             return Truth(name, scene.time.duration)
@@ -85,12 +86,29 @@ def _comes_down(scene: Scene) -> float:
     return quarter_period(width, height, abs(math.radians(scene.block.tilt)), scene.load.gravity)
 
 
+SETTLES = 1e-3  # of what the tilt lifts the other corner: what a corner that still counts as rigid gives way
+
+
 def _refuse_other_rocking(scene: Scene) -> None:
     apart = [f.name for f in features.FEATURES if f.name in features.of(scene) and f.name not in OF_ROCKING]
     if apart:
         raise InputError(f"{scene.name}: no exact motion is known of a block that turns with {', '.join(apart)}")
     if scene.block.tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
         raise InputError(f"{scene.name}: a block that turns is known exactly where it is let go from a tilt, by weight")
+    c, turns = scene.contact, "the block does not turn about its corner alone"
+    if c.gap or scene.block.velocity or c.cohesion:
+        raise InputError(f"{scene.name}: no exact motion is known: {turns}: it has a gap, a velocity or cohesion")
+    width, height = _sizes(scene)
+    needed = math.degrees(math.atan(friction_needed(width, height, abs(math.radians(scene.block.tilt)))))
+    if c.shear == 0 or (c.friction is not None and c.friction <= needed):
+        raise InputError(
+            f"{scene.name}: contact.friction: must be above {needed:.4g} degrees, else the corner slides; got "
+            f"{'no shear springs' if c.shear == 0 else format(c.friction, 'g')}"
+        )
+    weight = scene.block.mass * scene.load.gravity
+    settles = weight / min(c.stiffness, c.shear) + weight * height / (scene.block.young * width)
+    if settles > SETTLES * width * math.sin(abs(math.radians(scene.block.tilt))):
+        raise InputError(f"{scene.name}: no exact motion is known: springs or block are not rigid beside the tilt")
     if set(scene.run.columns) != {"rotation"}:
         raise InputError(
             f"{scene.name}: run.columns: must be rotation alone, which is known exactly, got "

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from validation.runs.history import Array
 
@@ -29,6 +32,19 @@ def quarter_period(width: float, height: float, tilt: float, gravity: float = 9.
     from fem_reference.exact.rocking import RockingBlock
 
     return RockingBlock(width, height, gravity).quarter_period(tilt)
+
+
+def friction_needed(width: float, height: float, tilt: float) -> float:
+    """Return the coefficient of friction that holds a corner until a block that is released at a tilt [rad] comes down.
+
+    With f = alpha - theta from f0 to alpha, the centroid at R (sin f, cos f) from the corner, f'' = p^2 sin f and
+    f'^2 = 2 p^2 (cos f0 - cos f), g = 4 R p^2 / 3, it is the greatest |x''| / (g + y'') on the way.
+    """
+    alpha = math.atan2(width, height)
+    f = np.linspace(alpha - tilt, alpha, 1001)
+    rate2 = 2 * (np.cos(f[0]) - np.cos(f))
+    across = np.cos(f) * np.sin(f) - np.sin(f) * rate2
+    return float(np.max(np.abs(across) / (4 / 3 - np.sin(f) ** 2 - np.cos(f) * rate2)))
 
 
 def rocking(

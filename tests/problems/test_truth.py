@@ -1,0 +1,99 @@
+"""Which exact motion a scene has: the right one, or none; a wrong one would judge programs wrongly."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
+from validation.problems.truth import exact, truth_of
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import solve
+from validation.solvers.rigid.rocking import friction_needed
+
+ROCKING = load_scene("field-rocking")
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_every_problem_has_its_exact_motion(name: str) -> None:
+    one = problem(name)
+    kinds = {"column": "layers", "rocking": "rigid rocking"}
+    assert one.truth.name == kinds.get(name, "block-events")
+    if name != "rocking":
+        assert one.truth.until == one.scene.time.duration
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"contact.gap": 0.1}, "it has a gap, a velocity or cohesion"),
+        ({"block.velocity": -1.0}, "it has a gap, a velocity or cohesion"),
+        ({"contact.cohesion": 1e3}, "it has a gap, a velocity or cohesion"),
+        ({"contact.friction": 15.0}, "contact.friction: must be above 18.3"),
+        ({"contact.stiffness": 1e8}, "springs or block are not rigid beside the tilt"),
+        ({"contact.shear_stiffness": 1e8}, "springs or block are not rigid beside the tilt"),
+        ({"block.young": 1e8}, "springs or block are not rigid beside the tilt"),
+        ({"load.slope": 1.0}, "a block that turns with slope"),
+        ({"contact.band": [0.0, 1e-3]}, "a block that turns with dead bands"),
+        ({"load.pressure": 1e3}, "let go from a tilt, by weight"),
+        ({"block.tilt": 0.0}, "let go from a tilt, by weight"),
+        ({"run.columns": ["rotation", "displacement"]}, "must be rotation alone"),
+    ],
+)
+def test_a_block_that_turns_otherwise_has_none(values: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        problem_of(ROCKING.with_values(values))
+
+
+def test_a_frictionless_corner_slides() -> None:
+    definition = ROCKING.definition()
+    del definition["contact"]["friction"]
+    scene = type(ROCKING).model_validate(definition | {"name": "x"}).with_values({"contact.shear_stiffness": 0.0})
+    with pytest.raises(InputError, match="got no shear springs"):
+        problem_of(scene)
+
+
+def test_a_sweep_has_none() -> None:
+    with pytest.raises(InputError, match="sweep"):
+        truth_of(load_scene("figures-3-4"))
+
+
+def test_a_scene_without_an_exact_motion_says_why() -> None:
+    with pytest.raises(InputError, match=r"no exact motion is known: block-events: .*kinetic damping"):
+        truth_of(load_scene("field-opening").with_values({"time.gg": 0.99}))
+    with pytest.raises(InputError, match="damping tables"):  # the continuum's is not that of a block of one strain
+        truth_of(load_scene("field-locked").with_values({"damping.stiffness": 1e-4}))
+
+
+@pytest.mark.parametrize("tilt", [0.5, 0.9])
+def test_the_friction_that_a_corner_needs(tilt: float) -> None:
+    """Accelerations of the rotation itself, by differences of the exact motion."""
+    width, height = 2.0, 4.0
+    alpha = math.atan2(width, height)
+    scene = ROCKING.with_values({"block.tilt": math.degrees(tilt * alpha), "time.step": 1e-3, "time.steps": 3000})
+    motion = exact(scene, truth_of(scene))
+    f = alpha - (tilt * alpha + motion.columns["rotation"])
+    r = math.hypot(width, height) / 2
+    x, y = (np.diff(r * part, 2) / 1e-6 for part in (np.sin(f), np.cos(f)))
+    measured = float(np.max(np.abs(x) / (scene.load.gravity + y)))
+    assert friction_needed(width, height, tilt * alpha) == pytest.approx(measured, rel=5e-3)
+
+
+def test_the_rotation_is_that_of_the_suites_block() -> None:
+    for sign in (1, -1):
+        scene = ROCKING.with_values({"block.tilt": sign * ROCKING.block.tilt})
+        motion = exact(scene, truth_of(scene))
+        found = solve(scene, "dda").history
+        assert found is not None
+        rotation = found.columns["rotation"][: len(motion.time)]
+        np.testing.assert_allclose(rotation, motion.columns["rotation"], atol=1e-3)
+
+
+def test_locked_springs_pull() -> None:
+    scene = load_scene(f"{PREFIX}locked")
+    motion = exact(scene, truth_of(scene))
+    assert float(np.min(motion.contact_pressure)) < -1e6
