@@ -19,7 +19,7 @@ PYTHON = "/usr/bin/python3"  # Debian's, for which its packages are made
 PROGRAM = Path(__file__).with_name("siconos_program.py")
 RECIPE = "Debian: apt-get install python3-siconos"
 ABSENT = 3  # exit status of the program's side where there is no Siconos
-MOST = 40_000  # steps of a run that settings for accuracy may choose
+MOST = 20_000  # steps of a run that settings for accuracy may choose
 RADIANS = 0.02  # of the fastest vibration in a step, settings for accuracy
 VISCOUS = 1e-6  # of the friction's complementarity: what makes its matrix definite, see `complementarity`
 GLUED = 1e3  # tan(phi) of a corner that does not slip while it is closed
@@ -44,7 +44,7 @@ class Siconos:
     )
     settings = (
         "MoreauJeanOSI theta = 1/2; springs without tension EulerMoreauOSI theta = gamma = 1/2 with the relation at "
-        "the middle of the step, LCP by Lemke; steps of 0.02 rad of the fastest vibration, at most 40 000 of them."
+        "the middle of the step, LCP by Lemke; steps of 0.02 rad of the fastest vibration, at most 20 000 of them."
     )
 
     def __init__(self) -> None:
@@ -211,12 +211,13 @@ def springs(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
     return columns_of(q, c.stiffness * np.maximum(0.0, -(q @ of["gap"].T) - c.gap).sum(axis=1) / a)
 
 
-def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: int) -> dict[str, np.ndarray]:
+def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: int) -> dict[str, Any]:
     """Return x' = A x + b + B l, y = C x + D l + e, 0 <= y perp l >= 0 with x = (q, q', r), lengths in units of d.
 
     Of each corner y = w + N/p with l = N/p, and, where it rubs, two y = (tan(phi) N + C -+ p_s (s - r)) / p_s with the
     rates of slip r' = l1 - l2; a step's slip is the unit of l1, l2. Their block of the matrix is singular; `VISCOUS`
-    on its diagonal, a resistance p_s dt VISCOUS r', is what Lemke's pivots need.
+    on its diagonal, a resistance p_s dt VISCOUS r', is what Lemke's pivots need. Without friction, a closed corner is
+    glued by a friction of `GLUED`, and its rows hold at the ends of the steps (from row `ends` on).
     """
     c, step = scene.contact, scene.time.step / parts
     p, ps, mass = c.stiffness, c.shear, of["M"][:, None]
@@ -238,7 +239,8 @@ def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: in
         e[2:] = a * c.cohesion / 2 / (ps * d)
     x0, b = np.zeros(size), np.zeros(size)
     x0[7], b[6:12] = scene.block.velocity, of["F"] / of["M"]
-    return {"A": A, "B": B, "C": C, "D": D, "b": b, "e": e, "x0": x0}
+    ends = 2 if c.friction is None else n
+    return {"A": A, "B": B, "C": C, "D": D, "b": b, "e": e, "x0": x0, "ends": ends}
 
 
 def rigid(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 
 NEAR = 1e-9  # of the column's height, and of an element
 SHORTEST = 0.1  # rad of the pulse's highest frequency in a step, settings for accuracy
-LEAST, MOST = 4, 40_000  # steps in one of the scene's, and of a run, that settings for accuracy choose
+LEAST, MOST = 4, 20_000  # steps in one of the scene's, and of a run, that settings for accuracy choose
 ELEMENTS = 200  # that settings for accuracy may choose; a dense matrix is solved in each step
 Element = tuple[int, float, float]  # its lower node, whose upper one is the next, and the heights of both [m]
 
@@ -78,11 +78,17 @@ class Chain:
 
 
 def pulse_parts(scene: Any) -> int:
-    """Return the number of steps in one of the scene's that follow its pulse, or a record."""
+    """Return the number of steps in one of the scene's that follow its pulse, or a record, by `ELEMENTS` at most."""
     drive = scene.input
     highest = 3 * drive.frequency if drive.frequency else 5 / drive.duration if drive.duration else 0.0  # Hz
     wanted = math.ceil(2 * math.pi * highest * scene.time.step / SHORTEST)
-    return max(1, min(max(LEAST, wanted), MOST // scene.time.steps))
+    affordable = int(math.sqrt(2) * scene.time.step * ELEMENTS / passing(scene.column))
+    return max(1, min(max(LEAST, wanted), affordable, MOST // scene.time.steps))
+
+
+def passing(c: Any) -> float:
+    """Return the time in which a wave passes the column [s]."""
+    return sum(layer.thickness * math.sqrt(layer.density / c.modulus(layer)) for layer in c.layer)
 
 
 def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, list[Element]]:
@@ -97,8 +103,7 @@ def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, lis
     if max(joints, default=0.0) > c.height * (1 - NEAR):
         raise NotImplementedError("column.joint: one at the top joins nothing")
     if travel is not None:
-        passing = sum(layer.thickness * math.sqrt(layer.density / c.modulus(layer)) for layer in c.layer)
-        travel = max(travel, passing / ELEMENTS)
+        travel = max(travel, passing(c) / ELEMENTS)
     elements: list[Element] = []
     parts: list[tuple[int, float, float]] = []  # lower node, a sixth of the mass, stiffness
     low = 0.0

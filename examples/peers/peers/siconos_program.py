@@ -25,13 +25,13 @@ def stepped(sk: Any, system: Any, interactions: list[Any], solvers: tuple[Any, A
     return sk.TimeStepping(model, sk.TimeDiscretisation(0.0, given["step"]), *solvers)
 
 
-def rows(stepping: Any, given: Request, before: Callable[[int], None] = lambda number: None) -> Iterator[int]:
-    """Make all steps; yield at the end of each, -1 where it is not one of the scene's and else 0."""
+def rows(stepping: Any, given: Request, before: Callable[[int], None] = lambda number: None) -> Iterator[bool]:
+    """Make all steps; yield at the end of each whether it is one of the scene's."""
     for number in range(given["steps"] * given["parts"]):
         before(number)
         stepping.computeOneStep()
         stepping.nextStep()
-        yield 0 if (number + 1) % given["parts"] == 0 else -1
+        yield (number + 1) % given["parts"] == 0
 
 
 def linear(sk: Any, given: Request) -> dict[str, Any]:
@@ -50,24 +50,38 @@ def linear(sk: Any, given: Request) -> dict[str, Any]:
 
     push(0)
     stepping = stepped(sk, system, [], (sk.MoreauJeanOSI(), sk.LCP()), given)
-    return {"q": [np.array(system.q()).tolist() for at in rows(stepping, given, push) if at == 0]}
+    return {"q": [np.array(system.q()).tolist() for at in rows(stepping, given, push) if at]}
 
 
 def complementarity(sk: Any, given: Request) -> dict[str, Any]:
-    """Solve x' = A x + b + B l, 0 <= C x + D l + e perp l >= 0 by the theta-gamma scheme, at the middle of the step."""
+    """Solve x' = A x + b + B l, 0 <= C x + D l + e perp l >= 0 by the theta-gamma scheme, at the middle of the step.
+
+    Rows from `ends` on hold for x at its end, which is twice the middle less the start: held at the middle, a force
+    that vanishes at once would change its sign from step to step, and be there when the corner closes again.
+    """
     A, B, C, D, b, e, x0 = (np.array(given[name]) for name in ("A", "B", "C", "D", "b", "e", "x0"))
+    ends, own = given["ends"], C.copy()
+    C[ends:] *= 2
     system = sk.FirstOrderLinearTIDS(x0, A, b)
     relation = sk.FirstOrderLinearTIR(C, B)
+    offset = sk.SiconosVector(len(e))
     relation.setDPtr(D)
-    relation.setePtr(e)
+    relation.setePtr(offset)
+
+    def before(number: int) -> None:
+        at_start = own[ends:] @ system.x() if ends < len(e) else ()
+        for i in range(0 if number == 0 else ends, len(e)):
+            offset.setValue(i, float(e[i] - (at_start[i - ends] if i >= ends else 0.0)))
+
+    before(0)
     contact = sk.Interaction(sk.ComplementarityConditionNSL(len(e)), relation)
     scheme = sk.EulerMoreauOSI(0.5, 0.5)
     scheme.setUseGammaForRelation(True)
     stepping = stepped(sk, system, [contact], (scheme, sk.LCP()), given)
     found, opened = [], False
-    for at in rows(stepping, given):
+    for at in rows(stepping, given, before):
         opened = opened or min(contact.lambda_(0)[:2]) <= 0
-        if at == 0:
+        if at:
             found.append(np.array(system.x()).tolist())
     return {"x": found, "opened": bool(opened)}
 
@@ -102,7 +116,7 @@ def rigid(sk: Any, given: Request) -> dict[str, Any]:
         if turns:
             update(q, q[2] + (given["step"] / 2 * rate[2] if given["middle"] else 0.0))
 
-    return {"q": [np.array(q).tolist() for at in rows(stepping, given, before) if at == 0]}
+    return {"q": [np.array(q).tolist() for at in rows(stepping, given, before) if at]}
 
 
 def arm(corner: np.ndarray, angle: float) -> tuple[float, float]:
