@@ -1,0 +1,163 @@
+"""Siconos as a solver: its schemes against independent predictions, and what is refused by field."""
+
+import functools
+import math
+import subprocess
+
+import numpy as np
+import pytest
+from peers import siconos
+from peers.siconos_column import Chain
+
+from validation import solve
+from validation.problems.problem import problem_of
+from validation.problems.truth import exact
+from validation.scenes import features
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
+
+MOVED = ["displacement", "contact_pressure", "horizontal_displacement", "rotation"]
+
+
+@functools.cache
+def installed():
+    try:
+        return subprocess.run([siconos.PYTHON, "-c", "import siconos.kernel"], capture_output=True).returncode == 0
+    except OSError:
+        return False
+
+
+@pytest.fixture
+def program():
+    if not installed():
+        pytest.skip("NOT RUN: siconos is not installed")
+
+
+def scene(name, **values):
+    return load_scene(f"field-{name}").with_values({key.replace("__", "."): value for key, value in values.items()})
+
+
+def differences(given, solver):
+    """Relative L2 differences of the answer's columns from the exact motion."""
+    posed = problem_of(given)
+    truth, found = exact(posed.scene, posed.truth), solver.solve(given)
+    size = len(truth.time)
+    return {
+        name: np.linalg.norm(found[name][:size] - truth.columns[name]) / np.linalg.norm(truth.columns[name])
+        for name in given.run.columns
+        if name in found
+    }
+
+
+def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half(program):
+    """With theta = 1/2: average acceleration, from an acceleration that balances the loads at t = 0."""
+    given = scene("locked", block__poisson=0.2, load__eccentricity=0.3, load__traction=1e6, run__columns=MOVED)
+    scheme = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+    predicted, found = solve(given.with_values(scheme), "dda").history, siconos.AsItComes().solve(given)
+    for name in MOVED:
+        np.testing.assert_allclose(found[name], predicted.columns[name], rtol=0, atol=1e-9 * np.abs(found[name]).max())
+
+
+def test_its_own_contact_slides_exactly_but_for_a_step_in_which_a_corner_is_taken_as_open(program):
+    """A corner that rounding lifts does not rub for a step, which costs tan(phi) g cos(slope) dt^2 at most, once."""
+    given = scene("sliding", time__steps=50)
+    slope, tan = math.radians(28.9), math.tan(math.radians(15.0))
+    held = 9.81 * math.cos(slope) * tan
+    t = given.time.step * np.arange(1, 51)
+    predicted = (9.81 * math.sin(slope) - held) * t**2 / 2
+    late = siconos.AsItComes().solve(given)["horizontal_displacement"] - predicted
+    assert (late > -1e-6 * predicted).all()
+    assert (late < held * given.time.step**2 + 1e-6 * predicted).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "below"),
+    [
+        (scene("locked", time__steps=20), 2e-3),
+        (scene("opening", time__steps=30), 2e-3),
+        (scene("opening", time__steps=30, contact__gap=0.01, block__velocity=-1.0), 2e-3),
+        (scene("opening", time__steps=30, load__traction=1e6, run__columns=MOVED), 2e-2),
+        (scene("opening", time__steps=30, load__eccentricity=0.3, contact__friction=30.0, run__columns=MOVED), 2e-3),
+        (scene("creep", time__steps=30), 2e-3),
+        (scene("rocking", time__step=0.02, time__steps=30, block__tilt=-10.0), 1e-3),
+        (scene("column", time__step=0.002, time__steps=40), 1e-3),
+    ],
+    ids=["locked", "opening", "gap", "glued", "off-centre", "creep", "rocking", "column"],
+)
+def test_settings_for_accuracy_come_near_to_the_exact_motion(program, given, below):
+    found = differences(given, siconos.Siconos())
+    assert found
+    assert max(found.values()) < below, found
+
+
+def test_its_own_rigid_contact_rocks(program):
+    assert differences(scene("rocking"), siconos.AsItComes())["rotation"] < 1e-2
+
+
+def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does(program):
+    with pytest.raises(NotImplementedError, match=r"contact\.cohesion: is lost"):
+        siconos.Siconos().solve(scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))
+
+
+REFUSED = [
+    (siconos.Siconos, scene("locked", time__gg=0.99), r"time\.gg"),
+    (siconos.Siconos, scene("rocking", contact__gap=0.01), r"contact\.gap"),
+    (siconos.Siconos, scene("rocking", block__velocity=-0.5), r"block\.velocity"),
+    (siconos.Siconos, scene("rocking", contact__cohesion=10.0), r"contact\.cohesion"),
+    (siconos.Siconos, scene("rocking", contact__stiffness=1e6), r"contact\.stiffness"),
+    (siconos.Siconos, scene("rocking", block__young=1e5), r"block\.young"),
+    (siconos.Siconos, scene("rocking", load__pressure=1e4), "load: pressure"),
+    (siconos.Siconos, scene("rocking", run__columns=["displacement", "rotation"]), "displacement: "),
+    (siconos.Siconos, scene("column", column__glue=1e12), r"column\.glue"),
+    (siconos.AsItComes, scene("opening"), "displacement: is that of contact springs"),
+    (siconos.AsItComes, scene("creep", run__columns=["horizontal_displacement"]), "friction holds the block"),
+    (siconos.AsItComes, scene("sliding", load__gravity=-9.81), "nothing presses"),
+    (siconos.AsItComes, scene("column", column__glue=1e12), r"column\.glue"),
+]
+
+
+@pytest.mark.parametrize(("kind", "given", "field"), REFUSED)
+def test_what_is_not_expressed_is_refused_by_field_before_the_program_is_asked(monkeypatch, kind, given, field):
+    monkeypatch.setattr(siconos, "ask", lambda request: pytest.fail("it was asked"))
+    with pytest.raises(NotImplementedError, match=field):
+        kind().solve(given)
+
+
+def test_a_block_that_is_no_rectangle_is_refused():
+    corners = [[0.0, 0.0], [2.0, 0.0], [1.5, 2.0], [0.5, 2.0]]
+    with pytest.raises(NotImplementedError, match=r"block\.vertices"):
+        siconos.Siconos().solve(scene("locked", block__vertices=corners))
+
+
+def test_no_program_is_said_with_its_recipe(monkeypatch, tmp_path):
+    monkeypatch.setattr(siconos, "PYTHON", str(tmp_path / "none"))
+    with pytest.raises(NotImplementedError, match="not installed: Debian"):
+        siconos.Siconos().solve(scene("locked"))
+
+
+def test_what_it_handles_are_words_of_scenes_and_what_it_says_is_complete():
+    assert siconos.Siconos.handles <= {one.name for one in features.FEATURES}
+    for kind in (siconos.Siconos, siconos.AsItComes):
+        assert set(kind().about) == {"program", "version", "recipe", "model", "settings"}
+        assert all(len(text) <= 400 for text in kind().about.values())
+
+
+def test_the_springs_matrices_hold_the_suites_static_solution():
+    given = scene("locked", block__poisson=0.2, load__eccentricity=0.3, load__gravity=9.81, load__slope=10.0)
+    of, p = siconos.matrices(given, 2.0, 2.0), 1e9
+    q = np.linalg.solve(of["K"] + p * of["gap"].T @ of["gap"] + p * of["slide"].T @ of["slide"], of["F"])
+    static = get_solver("dda").static(given)
+    assert -p * (of["gap"] @ q).sum() / 2 == pytest.approx(static["contact_pressure"], rel=1e-9)
+    assert q[1] == pytest.approx(static["displacement"], rel=1e-9)
+
+
+def test_a_chain_has_the_columns_mass_and_compliance():
+    joints = [{"height": 0.0, "stiffness": 2e8}, {"height": 6.0, "stiffness": 1e8}]
+    given = scene("column", column__joint=joints)
+    for fine in (True, False):
+        chain = Chain.of(given, fine)
+        assert chain.M.sum() == pytest.approx(12.0 * 2000.0, rel=1e-12)
+        moved = np.linalg.solve(chain.K[1:, 1:], np.eye(len(chain.K) - 1)[-1])
+        assert moved[-1] == pytest.approx(12.0 / 2e9 + 1 / 2e8 + 1 / 1e8, rel=1e-9)
+        assert chain.row_at(8.5)[1:] @ moved == pytest.approx(8.5 / 2e9 + 1 / 2e8 + 1 / 1e8, rel=1e-9)
+        assert chain.row_at(6.0)[1:] @ moved == pytest.approx(6.0 / 2e9 + 1 / 2e8, rel=1e-9)
