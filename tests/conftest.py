@@ -1,12 +1,13 @@
 """Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
 
+import importlib
 import io
 import os
 import re
 import subprocess
 import sys
 from collections.abc import Iterable
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,34 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
     config.option.loadscopereorder = False
     return Groups(config, log)
+
+
+def pytest_collection(session: pytest.Session) -> None:
+    """Import the test modules from the last one on in every second worker, where all tests are collected.
+
+    In a fresh clone the assertions of all test modules are rewritten, which takes longer than to collect them. Workers
+    that begin at both ends of the list do half of it each and read the rest from the files that the other has written.
+    """
+    config = session.config
+    worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
+    if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
+        for path in sorted((config.rootpath / "tests").rglob("test_*.py"), reverse=True):
+            with suppress(Exception, pytest.skip.Exception):  # told where the module is collected
+                importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems() -> None:
+    """Let Hypothesis draw without the constants of our sources.
+
+    They would make the examples depend on which modules a process has imported, and on any edit, for the time of
+    parsing every source.
+    """
+    if "hypothesis" in sys.modules:
+        from hypothesis.internal.conjecture import providers
+
+        if hasattr(providers, "is_local_module_file"):  # not in its older versions, which draw no such constants
+            providers.is_local_module_file = lambda path: False
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -171,6 +171,29 @@ def _shifted(values: Array, late: int) -> Array:
     return shifted
 
 
+@dataclass(frozen=True, eq=False)
+class _Equations:
+    """What the equations of a step hold apart from the motion; every array is one over the variants."""
+
+    dt: float  # length of the step [s]
+    e: Array  # alpha dt^2 [s2]
+    half: Array  # h / 2 [m]
+    free: Array  # 1 where the base has a mass of its own, 0 where it is held
+    inertia: Array  # diagonal of M in (v, ey, ex, b), with the viscous damping of the step, shape (4, variants)
+    drag: Array | None  # c M, None where nothing is damped
+    load: Array  # load and weight in the row of v [N]
+    base_load: Array  # weight of the base [N]
+    kept: Array  # stiffness by which the gap is carried on [N/m]
+    lost: Array  # stiffness that a slip leaves out of the coupling [N/m]
+    area: Array  # S [m2]
+    kx: Array  # stiffness of the shear springs by ex [N m]
+    k: tuple[Array, Array, Array, Array, Array]  # K without the base: (v, v), (v, ey), (ey, ey), (ex, ey), (ex, ex)
+    kb: tuple[Array, Array, Array]  # K of the base: (v, b), (ey, b), (b, b)
+    ends: tuple[Array, Array]  # M + e K of ex and of b, which are eliminated first
+    onto: tuple[Array, Array, Array]  # by which b goes into the row of v and of ey, and ex into that of ey
+    left: tuple[Array, Array, Array]  # what remains: (v, v), (v, ey) and the pivot of ey
+
+
 class _Stepping:
     """The stepping of all variants at once; every attribute is an array over them."""
 
@@ -186,6 +209,8 @@ class _Stepping:
         self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)
         self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated, self.opens = each("updated"), each("opens").astype(bool)
+        self.moves, self.locked = bool(np.any(self.updated)), not np.any(self.opens)
+        self.kept: tuple[tuple[float, bytes], _Equations] | None = None
         self.closing, self.opening = each("band"), each("band") * each("reopening")
         self.strain_load, self.coupling, self.point = each("strain_load"), each("coupling"), each("point")
         self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
@@ -211,7 +236,7 @@ class _Stepping:
         """Yield displacement, pressure, the open flags and the area of every step."""
         inertia, h, a = self._inertia(), self.h, self.a
         weights = (-self.force - inertia[0] * self.gravity, -self.strain_load * self.force * h / 2)
-        load = np.stack([*weights, np.zeros_like(h), np.zeros_like(h)])
+        load = np.array([*weights, np.zeros_like(h), np.zeros_like(h)])
         self.A = self.consistent * load / inertia
         for dt in steps.tolist():
             area = self.a * self.h / (a * h)
@@ -222,61 +247,92 @@ class _Stepping:
     def _inertia(self) -> Array:
         """Return the diagonal of M in (v, ey, ex, b), shape (4, variants)."""
         m = self.density * self.a * self.h
-        return np.stack([m, m * self.h**2 / 12, m * self.a**2 / 12, self.base])
+        return np.array([m, m * self.h**2 / 12, m * self.a**2 / 12, self.base])
 
     def _step(self, dt: float) -> None:
-        inertia = self._inertia() * (1 + self.viscous * self.delta * dt)
         star = self.gg_displacement * dt * self.V + dt * dt * (0.5 - self.alpha) * self.A
         for _ in range(OPEN_CLOSE_ITERATIONS):
-            x, acceleration = self._solve(dt, inertia, star)
+            x, acceleration = self._solve(self._equations(dt), star)
             gap = self.gap + x[0] - self.h / 2 * x[1] - x[3]
+            if self.locked:
+                break
             on = np.where(self.opens, gap < np.where(self.on, self.opening, -self.closing), True)
             if np.array_equal(on, self.on):
                 break
             self.on = on
         self._accept(dt, x, acceleration, gap)
 
-    def _solve(self, dt: float, inertia: Array, star: Array) -> tuple[Array, Array]:
-        """Return the increments (v, ey, ex, b) and the accelerations at the end for the present contact state."""
-        S, half, free = self.a * self.h, self.h / 2, 1 - self.held
+    def _equations(self, dt: float) -> _Equations:
+        """Return the equations of a step, kept as long as length of step, contact state and geometry stay."""
+        key = (dt, self.on.tobytes())
+        if self.kept is None or self.kept[0] != key:
+            self.kept = key, self._made(dt)
+        return self.kept[1]
+
+    def _made(self, dt: float) -> _Equations:
+        e, S, half, free = self.alpha * dt * dt, self.a * self.h, self.h / 2, 1 - self.held
         mass = self._inertia()
-        drag = self.viscous * mass * (self.gg_velocity * self.V + dt * (1 - self.delta) * self.A)
+        M = mass * (1 + self.viscous * self.delta * dt)
         k = np.where(self.on, self.normal, 0.0)
         kx = np.where(self.on, self.shear * self.a**2 / 4, 0.0)
-        kept, lost = k * self.keeps_springs, (1 - self.coupling) * k * self.keeps_springs
         Kvy, Kyy = -self.coupling * k * half, S * self.c11 + k * half**2
         Kxy, Kxx = S * self.c12, S * self.c11 + kx
         Kvb, Kyb, Kbb = -k * free, k * half * free, k + self.kb
-        F = np.stack(
+        ends = M[2] + e * Kxx, M[3] + e * Kbb
+        tx, tb = e / ends[0], e / ends[1]
+        Svv, Svy = M[0] + e * (k - tb * Kvb**2), e * (Kvy - tb * Kvb * Kyb)
+        Syy = M[1] + e * (Kyy - tb * Kyb**2 - tx * Kxy**2)
+        return _Equations(
+            dt=dt,
+            e=e,
+            half=half,
+            free=free,
+            inertia=M,
+            drag=self.viscous * mass if np.any(self.viscous) else None,
+            load=-self.force - mass[0] * self.gravity,
+            base_load=mass[3] * self.gravity,
+            kept=k * self.keeps_springs,
+            lost=(1 - self.coupling) * k * self.keeps_springs,
+            area=S,
+            kx=kx,
+            k=(k, Kvy, Kyy, Kxy, Kxx),
+            kb=(Kvb, Kyb, Kbb),
+            ends=ends,
+            onto=(tb * Kvb, tb * Kyb, tx * Kxy),
+            left=(Svv, Svy, Syy - Svy**2 / Svv),
+        )
+
+    def _solve(self, q: _Equations, star: Array) -> tuple[Array, Array]:
+        """Return the increments (v, ey, ex, b) and the accelerations at the end for the present contact state."""
+        (k, Kvy, Kyy, Kxy, Kxx), (Kvb, Kyb, Kbb), e = q.k, q.kb, q.e
+        pressed, area = q.kept * self.gap, q.area
+        F = np.array(
             [
-                -self.force - mass[0] * self.gravity - kept * self.gap - lost * half * self.Y,
-                (kept * self.gap - self.strain_load * self.force - lost * self.D) * half
-                - S * self.sy * self.keeps_stress,
-                -S * self.sx * self.keeps_stress - kx * self.sheared * self.keeps_springs,
-                free * (kept * self.gap - self.kb * self.B - mass[3] * self.gravity),
+                q.load - pressed - q.lost * q.half * self.Y,
+                (pressed - self.strain_load * self.force - q.lost * self.D) * q.half
+                - area * self.sy * self.keeps_stress,
+                -area * self.sx * self.keeps_stress - q.kx * self.sheared * self.keeps_springs,
+                q.free * (pressed - self.kb * self.B - q.base_load),
             ]
         )
-        F = F - drag
-        e = self.alpha * dt * dt
-        rv, ry, rx, rb = inertia * star + e * F
-        # the base and ex are eliminated first, then (v, ey) remain
-        tb, tx = e / (inertia[3] + e * Kbb), e / (inertia[2] + e * Kxx)
-        Svv, Svy = inertia[0] + e * (k - tb * Kvb**2), e * (Kvy - tb * Kvb * Kyb)
-        Syy = inertia[1] + e * (Kyy - tb * Kyb**2 - tx * Kxy**2)
-        rv, ry = rv - tb * Kvb * rb, ry - tb * Kyb * rb - tx * Kxy * rx
-        y = (ry - Svy * rv / Svv) / (Syy - Svy**2 / Svv)
+        if q.drag is not None:
+            F = F - q.drag * (self.gg_velocity * self.V + q.dt * (1 - self.delta) * self.A)
+        rv, ry, rx, rb = q.inertia * star + e * F
+        (vb, yb, xy), (Svv, Svy, pivot) = q.onto, q.left
+        rv, ry = rv - vb * rb, ry - yb * rb - xy * rx
+        y = (ry - Svy * rv / Svv) / pivot
         v = (rv - Svy * y) / Svv
-        x = (rx - e * Kxy * y) / (inertia[2] + e * Kxx)
-        b = (rb - e * (Kvb * v + Kyb * y)) / (inertia[3] + e * Kbb)
-        internal = np.stack(
+        x = (rx - e * Kxy * y) / q.ends[0]
+        b = (rb - e * (Kvb * v + Kyb * y)) / q.ends[1]
+        internal = np.array(
             [
                 k * v + Kvy * y + Kvb * b,
                 Kvy * v + Kyy * y + Kxy * x + Kyb * b,
                 Kxy * y + Kxx * x,
-                free * (Kvb * v + Kyb * y + Kbb * b),
+                q.free * (Kvb * v + Kyb * y + Kbb * b),
             ]
         )
-        return np.stack([v, y, x, b]), (F - internal) / inertia
+        return np.array([v, y, x, b]), (F - internal) / q.inertia
 
     def _accept(self, dt: float, x: Array, acceleration: Array, gap: Array) -> None:
         """Move to the end of the step."""
@@ -286,5 +342,7 @@ class _Stepping:
         self.sy = self.sy + self.c11 * x[1] + self.c12 * x[2]
         self.sx = self.sx + self.c11 * x[2] + self.c12 * x[1]
         self.sheared = np.where(self.on, self.sheared + x[2], 0.0)
-        self.h = self.h * (1 + self.updated * x[1])
-        self.a = self.a * (1 + self.updated * x[2])
+        if self.moves:
+            self.h = self.h * (1 + self.updated * x[1])
+            self.a = self.a * (1 + self.updated * x[2])
+            self.kept = None

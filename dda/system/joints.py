@@ -151,7 +151,8 @@ def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[i
     kappa = np.zeros((2 * size, 2 * size))
     for j, _ in met:
         across = (paths[joints[j].first][1] - paths[joints[j].second][1])[:size]
-        kappa += np.kron(np.outer(across, across), joints[j].stiffness)
+        pairs = np.outer(across, across)[:, None, :, None] * joints[j].stiffness[:, None, :]  # what np.kron multiplies
+        kappa += pairs.reshape(kappa.shape)
     joint, end = joints[met[0][0]], met[0][1]
     point = np.array(joint.end if end else joint.start)
     bodies: dict[int, Array] = {}

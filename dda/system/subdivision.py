@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Literal
@@ -100,6 +101,7 @@ def _corner_map(model: TwoBlockModel, columns: int, rows: int) -> Callable[[Corn
     """Return the map from a corner's numbers (i, j) to its place [m]."""
     a, b, c, d = np.roll(model.block.corners, -model.base, axis=0)
 
+    @functools.cache  # a corner belongs to several sub-blocks
     def place(corner: Corner) -> Point:
         i, j = corner
         # numerators are whole numbers: opposite corners of a rectangle keep equal coordinates

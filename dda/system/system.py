@@ -197,7 +197,7 @@ class Equations:
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
     """Return B, G, kappa and its inverse."""
-    from scipy.sparse import block_diag, coo_array, csr_array
+    from scipy.sparse import coo_array, csr_array
 
     groups = gap_groups(blocks, joints)
     total = sum(len(group.stiffness) for group in groups)
@@ -216,11 +216,30 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
     if not groups:
         empty = csr_array((0, 0))
         return B, G, empty, empty
-    kappa = csr_array(block_diag([csr_array(group.stiffness) for group in groups]))
-    C = csr_array(block_diag([csr_array(inverses(group.stiffness[None])[0]) for group in groups]))
-    for matrix in (kappa, C):
-        matrix.eliminate_zeros()
-    return B, G, kappa, C
+    stiffness = [group.stiffness for group in groups]
+    return B, G, _block_diagonal(stiffness), _block_diagonal(_inverses_of(stiffness))
+
+
+def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
+    """Return the matrix with square blocks on its diagonal, without their zeros."""
+    from scipy.sparse import coo_array, csr_array
+
+    entries, first = [], 0
+    for block in blocks:
+        i, k = np.nonzero(block)
+        entries.append((block[i, k], first + i, first + k))
+        first += len(block)
+    data, i, k = (np.concatenate(part) for part in zip(*entries, strict=True))
+    return csr_array(coo_array((data, (i, k)), shape=(first, first)))
+
+
+def _inverses_of(matrices: Sequence[Array]) -> list[Array]:
+    """Return the inverses of positive definite matrices of several sizes, all of one size at a time."""
+    found: dict[int, Array] = {}
+    for size in {len(matrix) for matrix in matrices}:
+        same = [n for n, matrix in enumerate(matrices) if len(matrix) == size]
+        found |= dict(zip(same, inverses(np.array([matrices[n] for n in same])), strict=True))
+    return [found[n] for n in range(len(matrices))]
 
 
 def inverses(matrices: Array) -> Array:

@@ -251,7 +251,7 @@ class SlidingMotion:
     @property
     def slip(self) -> float:
         """Length of the way over the base, both directions added [m]."""
-        ends = [*(float(self.at([one.base.start])[0][0]) for one in self.stretches), float(self.at([self.end])[0][0])]
+        ends = [*(one.slide for one in self.stretches), float(self.at([self.end])[0][0])]
         return math.fsum(abs(after - before) for before, after in pairwise(ends))
 
 

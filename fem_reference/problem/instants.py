@@ -24,8 +24,9 @@ def instants(times: ArrayLike, end: float) -> Array:
     return t
 
 
-def by_pieces(t: Array, starts: ArrayLike) -> Iterator[tuple[int, NDArray[np.bool_]]]:
-    """Yield the pieces that instants fall into, by their starts in the order of time, and which instants these are."""
+def by_pieces(t: Array, starts: ArrayLike) -> Iterator[tuple[int, NDArray[np.intp]]]:
+    """Yield the pieces that instants fall into, by their starts in the order of time, and the indices of these."""
     index = np.searchsorted(np.asarray(starts), t, side="right") - 1
-    for i in np.unique(index):
-        yield int(i), index == i
+    order = np.argsort(index, kind="stable")
+    pieces, first = np.unique(index[order], return_index=True)
+    yield from zip(pieces.tolist(), np.split(order, first[1:]), strict=True)

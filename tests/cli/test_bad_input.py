@@ -33,9 +33,13 @@ numbers = st.one_of(
     st.integers(-(10**30), 10**30),
     st.sampled_from([0, -0.0, 1e-320, 1e308, -1, math.nan, math.inf, -math.inf, 10**400, 2**63, 2**63 - 1]),
 )
-leaves = st.one_of(numbers, st.booleans(), st.text(max_size=20), st.none())
+# of every kind that printing or reading may stumble over; all of Unicode is a table that takes a second to build
+LETTERS = "".join(map(chr, range(128)))
+LETTERS += "\x85\xa0\xad\xe4\xb2\u0130\u0301\u03b1\u05d0\u0663\u200b\u202e\u2028\ufeff\ufffd\uffff\U0001f600"
+leaves = st.one_of(numbers, st.booleans(), st.text(LETTERS, max_size=20), st.none())
 values = st.recursive(
-    leaves, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    leaves,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(LETTERS, max_size=8), inner, max_size=3),
     max_leaves=8,
 )  # fmt: skip
 QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)

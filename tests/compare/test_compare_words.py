@@ -75,7 +75,8 @@ def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("times", "cause", "departs"), [(0.5, "springs-factor", True), (1 / 1.04, "base-compliance", False)]
+    ("times", "cause", "departs"),
+    [pytest.param(0.5, "springs-factor", True, marks=pytest.mark.long), (1 / 1.04, "base-compliance", False)],
 )
 def test_an_elastic_block_on_soft_springs_is_judged_alike(times: float, cause: str, departs: bool) -> None:
     found = softened("bar", times, time__gg=0.98)

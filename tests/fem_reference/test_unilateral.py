@@ -57,14 +57,12 @@ def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
 def test_implicit_contact_leads_to_the_exact_bar_too():
     problem, found = make(elements=128, degree=2), []
     truth = exact(bar_of(problem), 0.0301).at(0.03 / 125 * np.arange(1, 126)).displacement
-    for steps in (250, 500, 1000, 2000):
+    for steps in (250, 500, 1000):
         scheme = replace(AVERAGE, step=0.03 / steps)
         run = solve_unilateral(problem, scheme, steps, Unilateral(rule="implicit"), columns=("displacement",))
         found.append(float(np.linalg.norm(run.columns["displacement"][steps // 125 - 1 :: steps // 125] - truth)))
     # one force a step is of first order, and so is what fronts of width dt^(2/3) leave
-    assert np.polyfit(np.log([1 / 250, 1 / 500, 1 / 1000, 1 / 2000]), np.log(found), 1)[0] == pytest.approx(
-        1.0, abs=0.15
-    )
+    assert np.polyfit(np.log([1 / 250, 1 / 500, 1 / 1000]), np.log(found), 1)[0] == pytest.approx(1.0, abs=0.15)
 
 
 def test_the_first_opening_and_landing_approach_the_exact_ones():
@@ -81,7 +79,7 @@ def test_the_first_opening_and_landing_approach_the_exact_ones():
 @pytest.mark.parametrize(
     ("change", "contact"),
     [
-        ({"pressure": 0.0}, Unilateral(velocity=-0.7)),
+        pytest.param({"pressure": 0.0}, Unilateral(velocity=-0.7), marks=pytest.mark.long),
         ({"pressure": 0.0, "gravity": 9.81}, Unilateral(gap=1e-3, velocity=-0.2)),
         ({"pressure": 2e6, "gravity": 30.0}, Unilateral(gap=5e-4)),
     ],
@@ -229,7 +227,7 @@ def test_the_block_is_factorised_once_and_solved_once_a_step():
     assert (again.factorisations, again.solves) == (2, 2 * 9 + 1 + 5)
 
 
-@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
+@pytest.mark.parametrize("scheme", [CONSTANT, pytest.param(AVERAGE, marks=pytest.mark.long)])
 def test_a_base_in_one_piece_takes_two_solutions_at_most(scheme):
     for p in (1e9, 1e11):
         run = solve_unilateral(make(p=p, elements=32, degree=1), replace(scheme, step=3e-5), 1200)

@@ -203,6 +203,7 @@ def mesh_error(scene: Scene) -> dict[str, float]:
     omega = b / size(scene)[1] * math.sqrt(E / scene.block.density) * scene.time.step
     quantities = ("displacement", "pressure")
     shares = np.column_stack([bar_shares(scene, quantity, b) for quantity in quantities])
-    exact, shifted = (bar_response(scene, factor * omega) @ shares for factor in (1.0, 1 + shift))
+    both = bar_response(scene, np.concatenate([omega, (1 + shift) * omega]))  # one loop over the steps for the two
+    exact, shifted = both[:, : len(b)] @ shares, both[:, len(b) :] @ shares
     errors = np.linalg.norm(shifted - exact, axis=0) / np.linalg.norm(exact + (1 - shares.sum(axis=0)), axis=0)
     return dict(zip(quantities, errors.tolist(), strict=True))
