@@ -194,7 +194,7 @@ def _factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
             return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
     if alike < 0:
         return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
-    width = scene.block.base_length
+    width = scene.block.base_length if scene.column is None else 1.0
     if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:
         return f"wrong units: {name} is {width:g} times what is expected, the length of the base: a force?"
     return None
