@@ -217,6 +217,22 @@ def test_columns_are_exact_within_a_thousandth(stands, drive) -> None:
     check(changed("field-column", column=column, input=drive, run={"columns": columns}))
 
 
+@needs_program
+def test_a_rigid_base_may_start_with_a_jump(tmp_path) -> None:
+    (tmp_path / "record.csv").write_text("time,velocity\n0.0,0.5\n0.05,0.2\n0.1,0.3\n")
+    drive = {"at": "base", "record": str(tmp_path / "record.csv")}
+    column = {"layer": LAYERS, "motion": "shear", "base": "rigid", "heights": [2.0]}
+    check(changed("field-column", column=column, input=drive, run={"columns": ["displacement", "displacement_1"]}))
+
+
+@needs_program
+def test_chosen_settings_fall_from_the_start() -> None:
+    scene = load_scene("field-rebound").with_values({"time.steps": 2})
+    found = opensees.stepped(opensees.program(), scene, opensees.Plan(2, chosen=True))
+    t = scene.time.step * np.arange(1, 3)
+    np.testing.assert_allclose(found["displacement"], -t - 9.81 * t**2 / 2, rtol=1e-5)
+
+
 def check(scene) -> None:
     """Compare the solver with the exact motion of a scene, as long as that is known."""
     found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns
