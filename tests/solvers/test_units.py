@@ -102,3 +102,8 @@ def test_time_is_judged_before_the_columns(scene: Scene) -> None:
     assert "time is 1000 times" in run.notes[0]
     late = columns_of(scene) | {"time": columns_of(scene)["time"] + scene.time.step}
     assert _judged(scene, late).outcome is Outcome.WRONG_SHAPE
+
+
+def test_a_column_has_no_base_that_makes_a_pressure_a_force() -> None:
+    scene = load_scene("field-column").with_values({"run.columns": ["displacement", "displacement_1"]})
+    assert _judged(scene, columns_of(scene)).outcome is Outcome.COMPLETED

@@ -1,0 +1,242 @@
+"""OpenSees as a solver: its model is the block of one strain, its integrator is the suite's with 1/4 and 1/2."""
+
+import importlib.util
+import sys
+
+import numpy as np
+import pytest
+from peers import opensees, opensees_models
+from peers.opensees import AsItComes, NotConverged, OpenSees
+
+from validation.problems.truth import exact, truth_of
+from validation.scenes.scene import load_scene, parse_scene
+from validation.solvers.dda import DDA
+
+needs_program = pytest.mark.skipif(
+    importlib.util.find_spec("openseespy") is None, reason="NOT RUN: OpenSees is not installed"
+)
+PUSHED = {"block.poisson": 0.25, "load.eccentricity": 0.3, "load.traction": 2e5, "load.gravity": 15.0}
+SIZES = {"block.width": 3.0, "block.height": 1.25}
+OF_BLOCK = ["displacement", "horizontal_displacement", "rotation", "contact_pressure"]
+
+
+class Told:
+    """A program that does nothing but keep what it was told, and does not converge."""
+
+    def __init__(self) -> None:
+        self.said: list[tuple] = []
+
+    def __getattr__(self, name):
+        return lambda *given: self.said.append((name, *given))
+
+    def analyze(self, *_given) -> int:
+        return -3
+
+    def getTime(self) -> float:
+        return 0.25
+
+    def all(self, name, kind=None):
+        """Return what a command was told, of elements those of a kind."""
+        return [given for said, *given in self.said if said == name and kind in (None, given[0])]
+
+
+def changed(name, **tables):
+    """Return a built-in scene with whole tables replaced."""
+    return parse_scene(load_scene(name).definition() | tables, name)
+
+
+# ---- without the program ------------------------------------------------------------------------------------------
+
+
+def linear_fields(told):
+    """Return the six linear fields at the nodes: u = 1, X, Y and v = 1, X, Y from the centroid, shape (6, 6)."""
+    at = {node: np.array(point) for node, *point in told.all("node")}
+    nodes = [at[node] for node in opensees_models.SHARES]
+    centroid = sum(share * at[node] for node, share in opensees_models.SHARES.items())
+    columns = []
+    for axis in (0, 1):
+        for field in (lambda p: 1.0, lambda p: p[0], lambda p: p[1]):
+            values = np.zeros((3, 2))
+            values[:, axis] = [field(point - centroid) for point in nodes]
+            columns.append(values.ravel())
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("values", [{}, SIZES])
+def test_the_mass_of_two_legs_is_that_of_the_block(values) -> None:
+    scene, told = load_scene("field-locked").with_values(values), Told()
+    opensees_models.block(told, scene)
+    at = {node: np.array(point) for node, *point in told.all("node")}
+    mass = np.zeros((6, 6))
+    for _, _, one, other, _, _, _, per_length, *consistent in told.all("element", "Truss"):
+        assert consistent[:2] == ["-cMass", 1]
+        part = per_length * np.linalg.norm(at[one] - at[other]) / 6
+        for i, j, share in ((one, one, 2), (other, other, 2), (one, other, 1), (other, one, 1)):
+            for axis in (0, 1):
+                mass[2 * i - 2 + axis, 2 * j - 2 + axis] += share * part
+    fields = linear_fields(told)
+    (w, h), m = np.ptp(scene.block.outline, axis=0), scene.block.mass
+    expected = np.diag(2 * [m, m * w**2 / 12, m * h**2 / 12])
+    np.testing.assert_allclose(fields.T @ mass @ fields, expected, atol=1e-12 * m)
+
+
+def test_the_forces_do_the_work_of_the_loads() -> None:
+    scene = load_scene("field-locked").with_values(
+        {**PUSHED, "load.slope": 20.0, "block.width": 3.0, "block.height": 1.25}
+    )
+    told, q, (w, h) = Told(), scene.load, (3.0, 1.25)
+    opensees_models.block(told, scene)
+    forces = np.zeros(6)
+    for node, x, y in told.all("load"):
+        forces[2 * node - 2 : 2 * node] = x, y
+    weight, slope, pressed = scene.block.mass * q.gravity, np.radians(q.slope), q.pressure * (w - 2 * q.eccentricity)
+    across, down = q.traction * w, weight * np.cos(slope) + pressed
+    expected = [across + weight * np.sin(slope), 0, across * h / 2, -down, -pressed * q.eccentricity, -pressed * h / 2]
+    np.testing.assert_allclose(linear_fields(told).T @ forces, expected, atol=1e-12 * down)
+
+
+COLUMN = load_scene("field-column").definition()["column"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "says"),
+    [
+        (load_scene("field-locked").with_values({"block.subdivide": [2, 2]}), "sub-blocks"),
+        (load_scene("field-locked").with_values({"time.gg": 0.99}), "time.gg"),
+        (load_scene("field-locked").with_values({"damping.kinetic": "adaptive"}), "self-adaptive damping"),
+        (load_scene("field-locked").with_values({"load.base_motion": "moved.csv"}), "base motion"),
+        (load_scene("field-locked").with_values({"block.poisson": 0.5}), "block.poisson"),
+        (load_scene("field-locked").with_values({"block.vertices": [[0, 0], [2, 0], [1, 2]]}), "block.vertices"),
+        (load_scene("field-creep").with_values({"contact.cohesion": 1e3}), "contact.cohesion"),
+        (load_scene("field-creep").with_values({"contact.rules": "lagged"}), "lagged friction"),
+        (load_scene("field-creep").with_values({"contact.band": [0.0, 1e-3]}), "dead bands"),
+        (load_scene("field-creep").with_values({"contact.stiffness": "inf"}), "rigid contact"),
+        (load_scene("field-creep").with_values({"damping.mass": 1.0}), "damping tables"),
+        (load_scene("field-rocking").with_values({"run.rotation": "first-order"}), "run.rotation"),
+        (load_scene("field-rocking").with_values({"load.pressure": 1e5}), "load.pressure"),
+        (load_scene("field-rocking").with_values({"block.young": 1e8}), "block.young"),
+        (changed("field-column", column=COLUMN | {"glue": 1e12}), "column.glue"),
+        (changed("field-column", column=COLUMN | {"joint": [{"height": 3.5, "stiffness": 1e9}]}), "column.heights"),
+        (changed("field-column", run={"columns": ["contact_pressure"]}), "run.columns"),
+    ],
+)
+@pytest.mark.parametrize("solver", [OpenSees, AsItComes])
+def test_what_is_not_expressed_is_refused_by_name(scene, says, solver) -> None:
+    with pytest.raises(NotImplementedError, match=says):
+        solver().solve(scene)
+
+
+def test_a_program_that_is_absent_is_named_with_its_recipe(monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "openseespy", None)
+    monkeypatch.setitem(sys.modules, "openseespy.opensees", None)
+    with pytest.raises(NotImplementedError, match="OpenSees is not installed: pip install openseespy=="):
+        OpenSees().solve(load_scene("field-locked"))
+
+
+@pytest.mark.parametrize("solver", [OpenSees, AsItComes])
+def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver) -> None:
+    monkeypatch.setattr(opensees, "program", Told)
+    with pytest.raises(NotConverged, match=r"did not converge after t = 0\.25 s"):
+        solver().solve(load_scene("field-creep"))
+
+
+def test_what_symmetry_forbids_is_not_waited_for() -> None:
+    one = {"displacement": np.ones(4), "horizontal_displacement": np.full(4, 1e-18)}
+    other = {"displacement": np.ones(4), "horizontal_displacement": np.zeros(4)}
+    assert opensees._alike(one, other, tuple(one))
+    assert not opensees._alike(one, {**one, "displacement": np.full(4, 1.01)}, tuple(one))
+
+
+# ---- with it ------------------------------------------------------------------------------------------------------
+
+
+@needs_program
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("field-locked", {}),
+        ("field-locked", {**PUSHED, **SIZES, "contact.shear_stiffness": 3e8}),
+        ("field-locked", {**PUSHED, "block.hypothesis": "plane strain", "load.slope": -20.0}),
+        ("field-locked", {**PUSHED, "damping.mass": 20.0, "damping.stiffness": 2e-4}),
+        ("field-opening", {}),
+        ("field-opening", {"load.eccentricity": 0.2, "contact.shear_stiffness": 0.0}),
+        ("field-rebound", {"time.steps": 60}),
+        ("field-sliding", {}),
+    ],
+)
+def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values) -> None:
+    scheme = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "zero", "run.columns": OF_BLOCK}
+    scene = load_scene(name).with_values(values | scheme)
+    found, expected = AsItComes().solve(scene), DDA().solve(scene).history.columns
+    way = max(np.linalg.norm(expected[column]) for column in OF_BLOCK[:2])
+    for column in OF_BLOCK:
+        apart = np.linalg.norm(found[column] - expected[column])
+        assert apart <= 1e-9 * max(np.linalg.norm(expected[column]), way), column
+
+
+@needs_program
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("field-locked", {**PUSHED, "time.steps": 10, "run.columns": OF_BLOCK}),
+        ("field-opening", {"load.eccentricity": -0.2, "contact.shear_stiffness": 0.0, "time.steps": 4}),
+        ("field-rebound", {"time.steps": 100}),
+        ("field-sliding", {"time.steps": 3}),
+        ("field-creep", {"time.steps": 5, "contact.gap": 1e-4, "block.velocity": -0.2}),
+        ("field-rocking", {"block.tilt": -20.0}),
+        ("field-column", {"time.steps": 120}),
+    ],
+)
+def test_chosen_settings_are_exact_within_a_thousandth(name, values) -> None:
+    check(load_scene(name).with_values(values))
+
+
+LAYERS = [
+    {"thickness": 5.0, "density": 2000.0, "young": 1e9, "poisson": 0.2, "blocks": 3},
+    {"thickness": 7.0, "density": 2400.0, "young": 4e9, "blocks": 4},
+]
+JOINTS = [{"height": 5.0, "stiffness": 4e8}]
+FROM_BELOW = {"at": "base", "shape": "half-sine", "velocity": 0.5, "duration": 0.02}
+
+
+@needs_program
+@pytest.mark.parametrize(
+    ("stands", "drive"),
+    [
+        ({"motion": "pressure", "base": "rigid", "joint": [{"height": 0.0, "stiffness": 4e8}]}, FROM_BELOW),
+        ({"motion": "shear", "base": "springs", "base_stiffness": 5e8, "joint": JOINTS}, FROM_BELOW),
+        (
+            {"motion": "shear", "base": "transmitting", "base_density": 2500.0, "base_young": 1e10, "joint": JOINTS},
+            {"at": "base", "shape": "ricker", "velocity": 0.5, "frequency": 15.0},
+        ),
+    ],
+)
+def test_columns_are_exact_within_a_thousandth(stands, drive) -> None:
+    columns = ["displacement", "displacement_1", "displacement_2"]
+    column = {"layer": LAYERS, "heights": [0.5, 3.5]} | stands
+    check(changed("field-column", column=column, input=drive, run={"columns": columns}))
+
+
+@needs_program
+def test_a_rigid_base_may_start_with_a_jump(tmp_path) -> None:
+    (tmp_path / "record.csv").write_text("time,velocity\n0.0,0.5\n0.05,0.2\n0.1,0.3\n")
+    drive = {"at": "base", "record": str(tmp_path / "record.csv")}
+    column = {"layer": LAYERS, "motion": "shear", "base": "rigid", "heights": [2.0]}
+    check(changed("field-column", column=column, input=drive, run={"columns": ["displacement", "displacement_1"]}))
+
+
+@needs_program
+def test_chosen_settings_fall_from_the_start() -> None:
+    scene = load_scene("field-rebound").with_values({"time.steps": 2})
+    found = opensees.stepped(opensees.program(), scene, opensees.Plan(2, chosen=True))
+    t = scene.time.step * np.arange(1, 3)
+    np.testing.assert_allclose(found["displacement"], -t - 9.81 * t**2 / 2, rtol=1e-5)
+
+
+def check(scene) -> None:
+    """Compare the solver with the exact motion of a scene, as long as that is known."""
+    found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns
+    for column in scene.run.columns:
+        told = expected[column]
+        assert found[column].shape == (scene.time.steps,)
+        assert np.linalg.norm(found[column][: len(told)] - told) <= 1e-3 * np.linalg.norm(told), column
