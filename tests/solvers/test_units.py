@@ -7,7 +7,7 @@ import pytest
 
 from validation.runs.history import Array
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.solvers.user import UNITS, _judged
 
