@@ -15,6 +15,8 @@ COLUMNS = ("displacement", "contact_pressure")
 SI = {  # how much of it makes one s, one m, one Pa: written down here once more
     "time": {"milliseconds": 1000.0, "microseconds": 1000.0**2},
     "displacement": {"mm": 1000.0, "cm": 100.0, "micrometres": 1000.0**2, "km": 1 / 1000.0},
+    "horizontal_displacement": {"mm": 1000.0, "cm": 100.0, "micrometres": 1000.0**2, "km": 1 / 1000.0},
+    "rotation": {"degrees": 180 / np.pi, "mrad": 1000.0},
     "contact_pressure": {"kPa": 1 / 1000.0, "MPa": 1 / 1000.0**2, "GPa": 1 / 1000.0**3, "bar": 1 / 100000.0},
 }
 NAMES = [(column, unit) for column, units in SI.items() for unit in units]
