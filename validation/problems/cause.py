@@ -34,8 +34,9 @@ USUAL = (  # causes that give the same rows are told in this order
 )
 BAR = 0.1  # of the band, that an explanation may leave
 CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
-ROUNDS = 12  # evaluations of a fit
-PURSUED, PURSUED_SLOW = 6, 4  # families that are fitted, the nearest ones; fewer where a run takes a second
+ROUNDS = 8  # evaluations of a fit
+PURSUED, PURSUED_SLOW = 4, 3  # families that are fitted, the nearest ones; fewer where a run takes a second
+NEAR = 3 * BAR  # what a family may leave along its slope and is fitted in any case
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
@@ -149,7 +150,9 @@ class Search:
         """Return the families that come nearest along their slope, each from its best start."""
         tried = [self._near(family, family.starts if cheap else family.starts[:1]) for family in families]
         order = sorted(range(len(families)), key=lambda i: tried[i][1])
-        return [(families[i], tried[i][0]) for i in order[: PURSUED if cheap else PURSUED_SLOW]]
+        last = order[min(len(order), PURSUED if cheap else PURSUED_SLOW) - 1]
+        bar = max(tried[last][1], NEAR)  # none is left out that may give the same rows
+        return [(families[i], tried[i][0]) for i in order if tried[i][1] <= bar]
 
     def _near(self, family: Family, starts: Sequence[float]) -> tuple[float, float]:
         """Return the best start of a family, and what its best number leaves if the answer is linear in it there."""
@@ -187,7 +190,8 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     t = scene.time
     alpha, delta = base.alpha(t), base.delta(t)
     damps = delta > 0.5 or t.discount < 1
-    why = "numerical damping" if damps else "its lag at a step that is long beside the period"
+    why = "numerical damping" if damps else "the error of its step"
+    why += "" if scene.column is None else ", and the error of so many blocks"
     if base.every == 1 and (alpha, delta) == (0.5, 1.0):
         return f"DDA's usual scheme, {base.words}, at this step: {why}"
     step = "" if base.every > 1 else ", at this step"
@@ -215,12 +219,20 @@ def _named(found: Sequence[Cause]) -> Cause:
     for one in sorted((one for one in near if len(one.ids) == fewest), key=_rank):
         told.setdefault((one.ids, *(float(f"{value:.2g}") for value in one.values.values())), one)
     best, *others = told.values()
-    if len(others) >= MOST_ALIKE:
-        return Cause()
     if not others:
         return best
-    alike = tuple(one.sentence for one in others)
+    if len(others) >= MOST_ALIKE:
+        names = ", ".join(_short(one) for one in told.values())
+        return Cause(f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, told.values())))
+    first, joint, _ = best.sentence.partition("; and ")
+    alike = tuple(one.sentence.removeprefix(first + joint) if joint else one.sentence for one in others)
     return Cause(f"{best.sentence} (the same rows: {'; or '.join(alike)})", best.ids, best.values, alike, best.left)
+
+
+def _short(one: Cause) -> str:
+    """Return a cause by its ids and the number of the last, ``friction-factor 1.1``."""
+    value = one.values.get(one.ids[-1])
+    return " and ".join(one.ids) + ("" if value is None else f" {value:.4g}")
 
 
 def _rank(one: Cause) -> tuple[int, float]:
@@ -244,5 +256,3 @@ def _compared(scene: Scene, history: History) -> Cause | None:
     if UNEXPLAINED in answer.causes or answer.alike:
         return None
     return Cause(answer.sentence, tuple(answer.causes) or ("scheme",), dict(answer.values), (), answer.misfit)
-
-
