@@ -34,7 +34,7 @@ def named(name: str, found: History) -> module.Cause:
 @pytest.fixture(autouse=True)
 def without_compare(monkeypatch) -> None:
     """Leave out what takes tens of seconds where nothing explains a history."""
-    monkeypatch.setattr(module, "_compared", lambda scene, history: None)
+    monkeypatch.setattr(module, "compared", lambda scene, history: None)
 
 
 def test_ddas_habit_and_another_integrator() -> None:

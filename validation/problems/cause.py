@@ -77,7 +77,7 @@ def cause(problem: Problem, history: History, held: Standard) -> Cause:
     found = Search(runs, seen).causes()
     if found:
         return _named(found)
-    return _compared(problem.scene, history) or Cause()
+    return compared(problem.scene, history) or Cause()
 
 
 def _plain(seen: Columns, held: Standard) -> Cause | None:
@@ -243,7 +243,7 @@ def _rank(one: Cause) -> tuple[int, float]:
 # ---- compare --------------------------------------------------------------------------------------------------------
 
 
-def _compared(scene: Scene, history: History) -> Cause | None:
+def compared(scene: Scene, history: History) -> Cause | None:
     """Return what `compare` names, None where it cannot look or names nothing."""
     columns = history.columns
     if DISPLACEMENT not in columns:

@@ -19,7 +19,8 @@ from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.scenes.tables import TimeSection
-from validation.solvers.registry import get_solver
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
 
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is accurate is taken
@@ -140,11 +141,11 @@ class Runs:
 def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
     try:
         asked = scene.with_values(dict(values))
-        dda = get_solver("dda")
-        if dda.refusal(asked) is not None:
+        judged = get_solver(by_role(Role.JUDGED)[0])
+        if judged.refusal(asked) is not None:
             return None
         with np.errstate(all="ignore"):
-            run = dda.solve(asked)
+            run = judged.solve(asked)
     except (InputError, ArithmeticError, ValueError):
         return None
     whole = run.outcome is Outcome.COMPLETED and run.history is not None
