@@ -77,7 +77,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
     columns = {"solvers/columns/elements.py", "solvers/columns/layers.py"}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
-    assert elements == {"solvers/fem.py", "solvers/bar.py", "solvers/events.py", *rigid, *columns}
+    assert elements == {"exact.py", "solvers/fem.py", "solvers/bar.py", "solvers/events.py", *rigid, *columns}
     assert not dda & elements
     adapters = {
         "solvers/dda.py",

@@ -19,6 +19,8 @@ SI = {  # how much of it makes one s, one m, one Pa: written down here once more
     "rotation": {"degrees": 180 / np.pi, "mrad": 1000.0},
     "contact_pressure": {"kPa": 1 / 1000.0, "MPa": 1 / 1000.0**2, "GPa": 1 / 1000.0**3, "bar": 1 / 100000.0},
 }
+ASIDE = ("horizontal_displacement", "rotation")
+SIDEWAYS = {"load.traction": 1e5, "load.eccentricity": 0.2, "run.columns": ["displacement", *ASIDE]}
 NAMES = [(column, unit) for column, units in SI.items() for unit in units]
 VARIANTS = {  # the unit must be seen on any scene, and under a solver that is off by some percent or damped otherwise
     "paper": {},
@@ -44,7 +46,7 @@ def test_every_unit_of_the_table_is_tested() -> None:
 def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float, values: dict[str, object]) -> None:
     if column == "time":
         size = 1.0  # the instants are the scene's own
-    scene, factor = scene.with_values(values), SI[column][unit]
+    scene, factor = scene.with_values(values | (SIDEWAYS if column in ASIDE else {})), SI[column][unit]
     run = _judged(scene, columns_of(scene, {column: size * factor}))
     assert run.outcome is Outcome.WRONG_UNITS
     assert run.notes == (f"wrong units: {column} is {factor:g} times what is expected in SI, {unit}?",)

@@ -220,9 +220,11 @@ def _checked(kept: Results, required: list[str], summary: Path | None, baseline:
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
     from validation.solvers.registry import is_solver, solver_names
+    from validation.studies.field.programs import known
 
+    adapted = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
     for name in required:
-        if not is_solver(name):
+        if not is_solver(name) and name not in adapted:
             raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
     if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
         raise InputError(f"--summary: must be a file in a directory that is there, got {str(summary)!r}")

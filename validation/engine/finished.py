@@ -12,6 +12,10 @@ from validation.runs.run import Outcome
 from validation.runs.text import printable
 
 
+class NothingToDerive(Exception):
+    """What a row would be derived from is not there; the text says what."""
+
+
 @dataclass(frozen=True)
 class Derived:
     """A row that is computed from finished cases instead of by a solver; gates address it as any other.
@@ -55,6 +59,8 @@ class Finished:
                 return Row("", "", scene, name, outcome, {}, notes=(f"needs {need[1]} on {need[0]}",))
         try:
             return Row("", "", scene, name, Outcome.COMPLETED, recipe.compute(self))
+        except NothingToDerive as error:
+            return Row("", "", scene, name, Outcome.NOT_RUN, {}, notes=(str(error),))
         except Exception as error:  # numbers that a faulty run leaves without meaning
             note = printable(f"{type(error).__name__}: {error}")
             return Row("", "", scene, name, Outcome.RAISED, {}, notes=(note,))

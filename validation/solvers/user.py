@@ -9,7 +9,9 @@ import math
 import os
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -97,7 +99,7 @@ class Asked(Prepared):
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene in the solver's own process."""
         no_fields(self.solver.name, self.scene, fields)
-        limit = base_limit() + ALLOWANCE * self.scene.time.steps
+        began, limit = perf_counter(), base_limit() + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
             self._answer = ask(self.solver.command(), os.environ, request, limit)
@@ -111,7 +113,9 @@ class Asked(Prepared):
         if "raised" in self._answer:
             place = f" ({words(str(self._answer['at']))})" if self._answer.get("at") else ""
             return Run(Outcome.RAISED, notes=(words(str(self._answer["raised"])) + place,))
-        return _judged(self.scene, {name: np.asarray(x, float) for name, x in self._answer["columns"].items()})
+        seconds = {"setup": 0.0, "stepping": perf_counter() - began}
+        columns = {name: np.asarray(x, float) for name, x in self._answer["columns"].items()}
+        return replace(_judged(self.scene, columns), seconds=seconds)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution that the solver reports."""

@@ -79,9 +79,8 @@ class Cells:
 
 def case_of(name: str, program: str) -> tuple[str, str]:
     """Return scene and solver of the case that a program's cell is computed from."""
-    return {FINE: (fine_name(name), HABIT), ELEMENTS: (fine_name(name), ELEMENTS)}.get(
-        program, (PREFIX + name, program)
-    )
+    at_fine_steps = {FINE: HABIT, ELEMENTS: ELEMENTS}
+    return (fine_name(name), at_fine_steps[program]) if program in at_fine_steps else (PREFIX + name, program)
 
 
 def sampled(name: str, program: str, answer: History) -> History:

@@ -14,6 +14,7 @@ from validation.studies.field.programs import ELEMENTS, HABIT, installed
 EXACT = "block-events"  # of the exact solutions the one that takes seconds, so that its motions are kept
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; a block that turns takes long
 MORE_BLOCKS = 4
+MOST_STEPS = 200  # of a scene that finite elements run at fine steps
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 
 
@@ -67,7 +68,8 @@ def fine(name: str) -> Scene:
 
 def with_elements(scene: Scene) -> bool:
     """Whether finite elements take a problem in seconds."""
-    return not {features.FRICTION, features.ROTATION} & {*features.of(scene)}
+    slow = {features.FRICTION, features.ROTATION} & {*features.of(scene)}
+    return not slow and scene.time.steps <= MOST_STEPS
 
 
 def changed(name: str) -> dict[str, Scene]:

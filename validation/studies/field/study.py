@@ -17,7 +17,7 @@ from validation.runs.records import Annotations
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.declaration import Study
-from validation.studies.field import programs, scenes
+from validation.studies.field import predictions, programs, scenes
 from validation.studies.field.cells import BESIDE, Cells, case_of, cell_name
 from validation.studies.field.table import STUDY
 
@@ -76,9 +76,9 @@ def study() -> Study:
         name=STUDY,
         title="The judged field",
         purpose="Other people's block codes on the same problems: which of them give the exact motion, and why not.",
-        scenes=scenes.scenes(),
-        gates=lambda: tuple(gates()),
-        derived=lambda: tuple(cells.derived()),
+        scenes=[*scenes.scenes(), *predictions.scenes()],
+        gates=lambda: (*gates(), *predictions.gates()),
+        derived=lambda: (*cells.derived(), *predictions.derived()),
         data=data,
         measures=(),
         pairs=(),

@@ -1,0 +1,121 @@
+"""Judging answers to problems: wrong histories fail, both sides of a band, what is absent is told."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.problems.bands import LARGEST, band, changes, standard
+from validation.problems.judge import Word, judge
+from validation.problems.problem import Problem, problem, problem_of
+from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.scenes.scene import load_scene
+
+QUICK = ("locked", "opening", "rocking", "column")
+
+
+def short(name: str) -> Problem:
+    """Return a problem; one whose exact motion takes long, over its first steps."""
+    steps = {"sliding": 6, "creep": 30, "rebound": 120}.get(name)
+    return (
+        problem(name) if steps is None else problem_of(load_scene(f"field-{name}").with_values({"time.steps": steps}))
+    )
+
+
+def history(asked: Problem, change) -> History:
+    """Return the exact motion with its columns changed."""
+    exact = standard(asked).exact
+    return History(exact.time, {name: change(exact.time, x) for name, x in exact.columns.items()})
+
+
+WRONG = {
+    "half a step late": lambda t, x: np.interp(t - (t[1] - t[0]) / 2, np.r_[0.0, t], np.r_[0.0, x]),
+    "damped": lambda t, x: x.mean() + (x - x.mean()) * np.exp(-3.0 * t / t[-1]),
+    "turned": lambda t, x: -x,
+    "zero": lambda t, x: 0.0 * x,
+    "a fifth too large": lambda t, x: 1.2 * x,
+    "not a number": lambda t, x: np.where(t > t[-1] / 2, np.nan, x),
+}
+
+
+@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("wrong", WRONG)
+def test_a_wrong_history_fails(name: str, wrong: str) -> None:
+    asked = short(name)
+    word = judge(asked, history(asked, WRONG[wrong])).word
+    within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are less than 1 % of a
+    assert word is (Word.PASS if within else Word.FAIL)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_changes(name: str) -> None:
+    asked = short(name)
+    held = standard(asked)
+    assert judge(asked, held.exact).verdict == "PASS"
+    for datum, changed in held.changed.items():
+        rows = min(len(changed.time), len(held.exact.time))
+        if rows == len(held.exact.time):
+            assert judge(asked, changed).word is Word.PASS, datum
+
+
+@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Word.PASS), (1 + 1e-6, Word.FAIL)])
+def test_both_sides_of_the_band(name: str, times: float, word: Word) -> None:
+    asked = short(name)
+    held = standard(asked)
+    for column, edge in held.bands.items():
+        columns = dict(held.exact.columns)
+        columns[column] = columns[column] * (1 + times * edge.high)
+        found = judge(asked, History(held.exact.time, columns))
+        assert found.word is word
+        assert found.deciding.name == column
+        assert edge.datum in found.deciding.reason
+
+
+def test_a_column_that_is_absent_is_told() -> None:
+    asked = short("locked")
+    exact = standard(asked).exact
+    found = judge(asked, History(exact.time, {DISPLACEMENT: exact.displacement}))
+    assert found.verdict == "PASS on displacement; contact_pressure not reported"
+    failed = judge(asked, History(exact.time, {DISPLACEMENT: 2 * exact.displacement}))
+    assert failed.verdict == "FAIL; contact_pressure not reported"
+    assert judge(asked, History(exact.time, {})).word is Word.NOT_JUDGED
+
+
+def test_a_history_at_other_instants_is_refused() -> None:
+    asked = short("locked")
+    exact = standard(asked).exact
+    with pytest.raises(InputError, match="time: must hold 50 rows, got 49"):
+        judge(asked, History(exact.time[:-1], {}))
+    with pytest.raises(InputError, match=r"time: must be 0\.002 s in row 1, got 0\.001"):
+        judge(asked, History(exact.time / 2, exact.columns))
+
+
+def test_numbers_that_people_understand() -> None:
+    asked = short("opening")
+    told = {number.name: number for number in judge(asked, standard(asked).exact).told}
+    assert told["openings"].value == told["openings"].exact == 5
+    landing = judge(short("rocking"), standard(short("rocking")).exact).told[1]
+    assert landing.name == "instant of landing"
+    assert landing.value == pytest.approx(short("rocking").truth.until, rel=1e-4)
+    swings = judge(short("locked"), history(short("locked"), lambda t, x: x)).told
+    assert swings[0].value == pytest.approx(54.84, rel=1e-3)
+    assert PRESSURE not in {number.name for number in swings}
+
+
+def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more() -> None:
+    t = 0.01 * np.arange(1.0, 401)
+    found = band(t, np.sin(30 * t), {"the density": np.sin(30.3 * t)})
+    assert found.high <= LARGEST
+    assert 10 < found.rows < 400
+    assert band(t, 0.0 * t, {"the density": 0.0 * t}) is None
+    assert band(t, t, {"the density": t}) is None
+
+
+def test_data_that_a_scene_has() -> None:
+    assert set(changes(problem("locked").scene)) == {"the springs", "Young's modulus", "the density", "the width"}
+    assert "tan(phi) of friction" in changes(load_scene("field-creep"))
+    assert set(changes(load_scene("field-column"))) == {"Young's modulus", "the density"}
+    larger = changes(load_scene("field-creep"))["tan(phi) of friction"]["contact.friction"]
+    assert math.tan(math.radians(larger)) == pytest.approx(1.01 * math.tan(math.radians(22.0)))

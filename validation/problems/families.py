@@ -1,0 +1,254 @@
+"""Ways in which an answer may depart from the exact motion by one number, for a fit to find."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from validation.problems.models import Base, Columns, Runs
+from validation.runs.history import Array, History
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+STARTS = (0.5, 0.75, 1.3, 2.0)  # factors to begin from where a run costs nothing
+DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
+MOST_LATE = 2.0  # steps
+FASTEST, SLOWEST = 1.1, 0.5  # of the rate at which time may run
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Answers that differ by one number u, none at u = 0.
+
+    Attributes
+    ----------
+    id
+        Of the cause.
+    words
+        The sentence of the cause by its number.
+    value
+        The number that people understand, of u.
+    of
+        The columns of u; None where there are none.
+    starts
+        Values of u that a fit begins from.
+    nudge
+        Of u, for the first derivative.
+    """
+
+    id: str
+    words: Callable[[float], str]
+    value: Callable[[float], float]
+    of: Callable[[float], Columns | None]
+    starts: tuple[float, ...] = (0.0,)
+    nudge: float = 1e-3
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a scene that may be wrong by a factor."""
+
+    id: str
+    name: str
+    changed: Callable[[Scene, float], dict[str, Any]]  # scene and factor to keys and values
+
+
+def numbers(scene: Scene) -> Iterator[Number]:
+    """Yield the numbers of a scene that may be wrong by a factor, none that is zero or absent."""
+    if scene.column is not None:
+        yield Number("young-factor", "Young's modulus", _layers("young"))
+        yield Number("density-factor", "the density", _layers("density"))
+        yield from _plain(scene, INPUT)
+        return
+    yield from _plain(scene, BLOCK)
+    yield Number("width-factor", "the width", lambda s, f: _sized(s, f, 1.0))
+    yield Number("height-factor", "the height", lambda s, f: _sized(s, 1.0, f))
+    c = scene.contact
+    if math.isfinite(c.stiffness):
+        yield Number("springs-factor", "the stiffness of the springs", _springs)
+        if c.shear_stiffness and c.friction is not None:
+            key = "contact.shear_stiffness"
+            yield Number("shear-springs-factor", "the shear stiffness of the springs", lambda s, f: {key: c.shear * f})
+    if c.friction:
+        yield Number("friction-factor", "tan(phi) of friction", _friction)
+
+
+BLOCK = {
+    "block.density": ("density-factor", "the density"),
+    "block.young": ("young-factor", "Young's modulus"),
+    "block.velocity": ("velocity-factor", "the initial velocity"),
+    "block.tilt": ("tilt-factor", "the initial tilt"),
+    "contact.gap": ("gap-factor", "the gap"),
+    "load.pressure": ("load-factor", "the pressure"),
+    "load.gravity": ("gravity-factor", "gravity"),
+    "load.slope": ("slope-factor", "the slope"),
+}
+INPUT = {
+    "input.pressure": ("load-factor", "the pressure"),
+    "input.frequency": ("frequency-factor", "the input's frequency"),
+    "column.base_density": ("base-factor", "the density below the base"),
+    "column.base_stiffness": ("base-springs-factor", "the stiffness of the base"),
+}
+
+
+def _plain(scene: Scene, keys: Mapping[str, tuple[str, str]]) -> Iterator[Number]:
+    data = scene.definition()
+    for key, (cause, name) in keys.items():
+        section, _, entry = key.partition(".")
+        value = data.get(section, {}).get(entry)
+        if isinstance(value, int | float) and value:
+            yield Number(cause, name, lambda s, f, key=key, value=value: {key: value * f})  # type: ignore[misc]
+
+
+def _layers(key: str) -> Callable[[Scene, float], dict[str, Any]]:
+    return lambda s, f: {"column.layer": [layer | {key: layer[key] * f} for layer in s.definition()["column"]["layer"]]}
+
+
+def _sized(scene: Scene, wider: float, higher: float) -> dict[str, Any]:
+    if scene.block.vertices is not None:
+        return {"block.vertices": [[x * wider, y * higher] for x, y in scene.block.vertices]}
+    width, height = scene.block.outline[2]
+    return {"block.width": width * wider, "block.height": height * higher}
+
+
+def _springs(scene: Scene, factor: float) -> dict[str, Any]:
+    c = scene.contact
+    found = {"contact.stiffness": c.stiffness * factor}
+    return found | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
+
+
+def _friction(scene: Scene, factor: float) -> dict[str, Any]:
+    tangent = factor * math.tan(math.radians(scene.contact.friction or 0.0))
+    return {"contact.friction": math.degrees(math.atan(tangent))}
+
+
+@dataclass(frozen=True)
+class Law:
+    """Another law of the contact."""
+
+    id: str
+    words: str
+    values: dict[str, Any]
+
+
+GLUED = 89.0  # deg: no block slips on such friction
+
+
+def laws(scene: Scene) -> Iterator[Law]:
+    """Yield the laws of contact that a program may have in place of a scene's."""
+    if scene.column is not None or features.ROTATION in features.of(scene):
+        return
+    if scene.contact.law == "locked":
+        yield Law("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
+    elif scene.contact.friction is None:
+        yield Law("contact-locked", "the contact pulls, where the scene's opens", {"contact.law": "locked"})
+    if scene.contact.friction:
+        yield Law("no-friction", "there is no friction", {"contact.friction": 0.0})
+        yield Law("no-slip", "the contact does not slip", {"contact.friction": GLUED})
+
+
+# ---- families -------------------------------------------------------------------------------------------------------
+
+
+def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Family]:
+    """Yield the families of one wrong number of the scene, run by a base."""
+    starts = (0.0, *map(math.log, STARTS)) if cheap else (0.0,)
+    for number in numbers(runs.scene):
+        yield Family(
+            number.id,
+            lambda f, name=number.name: f"{name} is {f:.4g} times the scene's",  # type: ignore[misc]
+            math.exp,
+            lambda u, change=number.changed: _changed(runs, base, change, u),  # type: ignore[misc]
+            starts,
+        )
+
+
+def _changed(runs: Runs, base: Base, change: Callable[[Scene, float], dict[str, Any]], u: float) -> Columns | None:
+    """Return a run with one number wrong; a list of layers of the base stands for the scene's own, finer cut."""
+    scene = runs.scene.with_values({"column.layer": base.values["column.layer"]}) if _cut(base) else runs.scene
+    return runs.sampled(base, change(scene, math.exp(min(max(u, -3.0), 3.0))))
+
+
+def _cut(base: Base) -> bool:
+    return "column.layer" in base.values
+
+
+def of_damping(runs: Runs, base: Base) -> Iterator[Family]:
+    """Yield viscous damping of the mass and of the stiffness, which DDA knows for linear motions."""
+    if not features.linear(runs.scene):
+        return
+    step = runs.scene.time.step
+    for key, unit, scale, symbol in (("mass", "1/s", 1.0, "a0"), ("stiffness", "s", step**2, "a1")):
+        yield Family(
+            f"{key}-damping",
+            lambda c, key=key, unit=unit, symbol=symbol: (  # type: ignore[misc]
+                f"viscous damping of the {key} is there, {symbol} = {c:.4g} {unit}"
+            ),
+            lambda u, scale=scale: max(u, 0.0) * scale,  # type: ignore[misc]
+            lambda u, key=key, scale=scale: runs.sampled(base, {f"damping.{key}": max(u, 0.0) * scale}),  # type: ignore[misc]
+            DAMPINGS,
+            0.1,
+        )
+
+
+def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
+    """Yield what may be wrong with rows and columns alone: a factor, a shift of the rows, the rate of time."""
+    plain, dense = runs.sampled(base), runs.dense(base)
+    if plain is None or dense is None:
+        return
+    groups = [tuple(names), *((name,) for name in names if len(names) > 1)]
+    for group in groups:
+        which = "all columns" if group == tuple(names) else group[0]
+        yield Family(
+            "factor",
+            lambda f, which=which: f"{which} {_are(which)} {f:.4g} times the exact motion's",  # type: ignore[misc]
+            lambda u: 1 + u,
+            lambda u, group=group: {name: x * (1 + u * (name in group)) for name, x in plain.items()},  # type: ignore[misc]
+        )
+        yield Family(
+            "shift",
+            lambda late, which=which: f"{which} {_are(which)} {_steps(late)}",  # type: ignore[misc]
+            lambda u: u,
+            lambda u, group=group: _moved(runs, base, dense, plain, group, 1.0, u),  # type: ignore[misc]
+            (0.0, 1.0, -1.0),
+            1e-2,
+        )
+    yield Family(
+        "time-factor",
+        lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion",
+        math.exp,
+        lambda u: _moved(runs, base, dense, plain, tuple(names), math.exp(u), 0.0),
+        (0.0, math.log(0.8), math.log(0.9)),
+    )
+
+
+def _are(which: str) -> str:
+    return "are" if which == "all columns" else "is"
+
+
+def _steps(late: float) -> str:
+    return f"{abs(late):.3g} steps {'late' if late > 0 else 'early'}"
+
+
+def _moved(
+    runs: Runs, base: Base, dense: History, plain: Columns, group: Sequence[str], rate: float, late: float
+) -> Columns | None:
+    """Return columns at other instants: rate (t - late dt); what is before t = 0 is the motion's first row."""
+    if not SLOWEST <= rate <= FASTEST or abs(late) > MOST_LATE:
+        return None
+    step = runs.scene.time.step
+    asked = rate * (step * np.arange(1.0, runs.scene.time.steps + 1) - late * step)
+    if asked[-1] > dense.time[-1]:
+        return None
+    return {name: _at(dense, name, asked) if name in group else x for name, x in plain.items()}
+
+
+def _at(dense: History, name: str, asked: Array) -> Array:
+    time, column = np.concatenate([[0.0], dense.time]), np.concatenate([[0.0], dense.columns[name]])
+    found = CubicSpline(time, column)(np.maximum(asked, 0.0))
+    return np.asarray(found, dtype=np.float64)

@@ -1,0 +1,152 @@
+"""DDA's own runs of a problem, by which answers are explained: exact but for rounding, or by a scheme at the steps."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from validation.compare.fits.fit import NAMED
+from validation.compare.sentences import scheme_words
+from validation.errors import InputError
+from validation.problems.bands import Standard
+from validation.runs.history import Array, History
+from validation.runs.run import Outcome
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.scenes.tables import TimeSection
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
+
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is accurate is taken
+LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
+MORE_BLOCKS = 4
+ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
+AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
+Columns = Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class Base:
+    """A way to run a problem by DDA: a scheme and how many of its steps make one of the scene's.
+
+    Attributes
+    ----------
+    words
+        The scheme in words; empty where the run stands for the exact motion.
+    """
+
+    words: str
+    values: Mapping[str, Any]
+    every: int = 1
+    usual: bool = False  # whether wrong numbers are looked for in runs of it as well
+
+    @property
+    def exact(self) -> bool:
+        """Whether the run stands for the exact motion."""
+        return not self.words
+
+    def alpha(self, time: TimeSection) -> float:
+        """Return its alpha, where it states none that of the scene."""
+        return float(self.values.get("time.alpha", time.alpha))
+
+    def delta(self, time: TimeSection) -> float:
+        """Return its delta, where it states none that of the scene."""
+        return float(self.values.get("time.delta", time.delta))
+
+
+@dataclass(eq=False)
+class Runs:
+    """Runs of one scene, each kept."""
+
+    scene: Scene
+    held: Standard
+    kept: dict[str, History | None] = field(default_factory=dict)
+
+    def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
+        """Return a run at its own steps with other data, None where DDA cannot run it."""
+        t = self.scene.time
+        steps = math.ceil(t.steps * (1 + AHEAD)) if base.exact else t.steps
+        asked = {**base.values, "time.step": t.step / base.every, "time.steps": steps * base.every, **(values or {})}
+        key = json.dumps(asked, sort_keys=True)
+        if key not in self.kept:
+            self.kept[key] = _run(self.scene, asked)
+        return self.kept[key]
+
+    def sampled(self, base: Base, values: Mapping[str, Any] | None = None) -> Columns | None:
+        """Return a run at the steps of the scene."""
+        found = self.dense(base, values)
+        if found is None:
+            return None
+        last = self.scene.time.steps * base.every
+        return {name: x[base.every - 1 : last : base.every] for name, x in found.columns.items()}
+
+    def apart(self, seen: Columns, wanted: Columns) -> float:
+        """Return the largest difference of columns over the exact motion's norm and over its band; inf if not finite.
+
+        Columns that one of them lacks, and rows that are not judged, do not count.
+        """
+        found = [0.0]
+        for name, band in self.held.bands.items():
+            if name in seen and name in wanted:
+                size = float(np.linalg.norm(self.held.exact.columns[name][: band.rows]))
+                with np.errstate(all="ignore"):
+                    gap = float(np.linalg.norm(seen[name][: band.rows] - wanted[name][: band.rows]))
+                found.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
+        return max(found)
+
+    def exact(self) -> Base | None:
+        """Return the cheapest run that stands for the exact motion, None where none comes near enough."""
+        for base in self._accurate():
+            seen = self.sampled(base)
+            if seen is not None and self.apart(seen, self.held.exact.columns) <= ACCURATE:
+                return base
+        return None
+
+    def _accurate(self) -> Iterator[Base]:
+        values: dict[str, Any] = dict(AVERAGE)
+        if self.scene.column is not None:
+            layers = self.scene.definition()["column"]["layer"]
+            values["column.layer"] = [layer | {"blocks": MORE_BLOCKS * layer.get("blocks", 1)} for layer in layers]
+        yield Base("", {})
+        for every in FINER:
+            if every <= LONG or features.linear(self.scene):
+                yield Base("", values, every)
+
+    def schemes(self) -> Iterator[Base]:
+        """Yield the schemes by which programs step, at the steps of the scene and, the usual ones, at parts of them."""
+        t, slow = self.scene.time, features.ROTATION in features.of(self.scene)
+        own = (t.alpha, t.delta)
+        yield Base(scheme_words(*own, t.discount), {}, usual=True)
+        if slow:
+            return
+        for pair in dict.fromkeys([own, *NAMED.values()]):
+            for start in ("zero", "consistent"):
+                if (pair, start) != (own, t.start):
+                    usual = (pair, start) == (NAMED["average acceleration"], "consistent")
+                    words = f"{scheme_words(*pair, t.discount)}, initial acceleration {start}"
+                    yield Base(words, {"time.alpha": pair[0], "time.delta": pair[1], "time.start": start}, usual=usual)
+        for every in (2, 4):
+            for pair in dict.fromkeys([own, (0.25, 0.5)]):
+                values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}
+                words = f"{scheme_words(*pair, t.discount)} at a step of {t.step / every:g} s"
+                yield Base(words, values, every)
+
+
+def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
+    try:
+        asked = scene.with_values(dict(values))
+        judged = get_solver(by_role(Role.JUDGED)[0])
+        if judged.refusal(asked) is not None:
+            return None
+        with np.errstate(all="ignore"):
+            run = judged.solve(asked)
+    except (InputError, ArithmeticError, ValueError):
+        return None
+    whole = run.outcome is Outcome.COMPLETED and run.history is not None
+    return run.history if whole else None

@@ -1,0 +1,108 @@
+"""What theory predicts of programs as they come, and whether a program answers at all.
+
+A program whose default integrator is known answers, on the model of the problem, what this suite's DDA answers under
+the same formulas: two independent programs. Where they agree, the adapter states the problem rightly, and the program's
+failure is its scheme's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from validation.engine.finished import Derived, Finished, NothingToDerive
+from validation.gates.gate import Gate
+from validation.metrics.pairs import relative_l2
+from validation.problems.problem import PREFIX, PROBLEMS
+from validation.runs.history import DISPLACEMENT
+from validation.runs.row import Value
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
+from validation.studies.field.programs import HABIT, known
+from validation.studies.field.scenes import scene_of
+from validation.studies.field.table import MISSING, STUDY
+
+APART = "difference from its integrator"
+ANSWERED = "problems answered"
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a program as it comes is predicted to answer: this suite's DDA under its formulas."""
+
+    program: str
+    problem: str
+    values: Mapping[str, Any]  # of the scene's [time]
+    band: float  # relative L2
+    why: str
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that predicts it."""
+        name = f"{PREFIX}{self.problem} as {self.program} steps"
+        found = scene_of(self.problem).with_values({**self.values, "run.solvers": [HABIT]})
+        return found.model_copy(update={"name": name})
+
+    @property
+    def name(self) -> str:
+        """Name of the derived row."""
+        return f"{self.program} as predicted"
+
+
+PREDICTIONS = (
+    Prediction(
+        "opensees-default",
+        "locked",
+        {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "zero"},
+        1e-6,
+        "its transient analysis is Newmark's with 1/2 and 1/4 from zero acceleration: dda with alpha = 1/4, "
+        "delta = 1/2 by other code; band: its tolerance of Newton's iteration, well above rounding",
+    ),
+)
+
+
+def scenes() -> Iterator[Scene]:
+    """Yield the scenes that predict."""
+    for prediction in PREDICTIONS:
+        yield prediction.scene
+
+
+def derived() -> Iterator[Derived]:
+    """Yield the differences from what is predicted, and how many problems each program answers."""
+    for prediction in PREDICTIONS:
+        scene = prediction.scene.name
+        needs = (PREFIX + prediction.problem, prediction.program), (scene, HABIT)
+        yield Derived(PREFIX + prediction.problem, prediction.name, needs, _difference(needs))
+    for program in known():
+        yield Derived(STUDY, program.name, (), _answered(program.name, program.recipe))
+
+
+def _difference(needs: tuple[tuple[str, str], tuple[str, str]]) -> Callable[[Finished], Mapping[str, Value]]:
+    def compute(finished: Finished) -> Mapping[str, Value]:
+        seen, expected = (finished.history(*need) for need in needs)
+        if seen is None or expected is None:
+            return {}
+        return {APART: relative_l2(seen.columns[DISPLACEMENT], expected.columns[DISPLACEMENT])}
+
+    return compute
+
+
+def _answered(program: str, recipe: str) -> Callable[[Finished], Mapping[str, Value]]:
+    def compute(finished: Finished) -> Mapping[str, Value]:
+        rows = [finished.rows.get((PREFIX + name, program)) for name in PROBLEMS]
+        there = [row for row in rows if row is not None]
+        if not there or all(any(MISSING in note for note in row.notes) for row in there):
+            raise NothingToDerive(f"not installed: {recipe}")
+        return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in there))}
+
+    return compute
+
+
+def gates() -> Iterator[Gate]:
+    """Yield the gates on predictions, and that a program which is installed answers."""
+    for one in PREDICTIONS:
+        yield Gate(PREFIX + one.problem, (one.name,), APART, 0.0, one.band, one.why)
+    for program in known():
+        why = "a program that is installed answers a problem at least; there are no more than all"
+        yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(PROBLEMS)), why)
