@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 RECIPE = "apt-get install yade"
+LONGEST = 280.0  # s of a run
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ class Bond:
     points: tuple[int, int]
     normal: float  # [N/m]
     shear: float  # [N/m]
+    bending: float = 0.0  # [N m]
 
 
 @dataclass(frozen=True)
@@ -90,24 +92,25 @@ class Model:
     gravity: tuple[float, float] = (0.0, 0.0)  # [m/s2]
 
     def highest(self) -> float:
-        """Return an upper bound of the highest frequency [rad/s], twice the greatest row of M^-1 K (Gershgorin)."""
+        """Return an upper bound of the highest frequency [rad/s], from twice the rows of M^-1 K (Gershgorin)."""
         rows = np.zeros(len(self.bodies))
         for bond in self.bonds:
             for i, k in zip(bond.bodies, bond.points, strict=True):
                 point = self.bodies[i].points[k]
-                rows[i] += self._softness(i, (point.at[0], point.at[1] + point.radius), bond.normal, bond.shear)
+                rows[i] += self._softness(i, math.hypot(*point.at) + point.radius, bond)
         for i, body in enumerate(self.bodies):
-            for point in body.points if self.floor else ():
-                if self.floor and point.touches:
-                    rows[i] += self._softness(i, point.at, self.floor.normal, self.floor.shear)
+            for point in body.points:
+                if self.floor is not None and point.touches:
+                    rows[i] += self._softness(i, math.hypot(*point.at), self.floor)
         return math.sqrt(2 * float(rows.max()))
 
-    def _softness(self, i: int, at: tuple[float, float], normal: float, shear: float) -> float:
-        body = self.bodies[i]
+    def _softness(self, i: int, lever: float, springs: Bond | Floor) -> float:
+        """Return the stiffness of springs on a body over its mass and inertia [1/s2]."""
+        body, most = self.bodies[i], max(abs(springs.normal), springs.shear)
         if body.fixed:
             return 0.0
-        lever = (normal * at[0] ** 2 + shear * at[1] ** 2) / body.inertia if body.inertia else 0.0
-        return max(normal, shear) / body.mass + lever
+        bending = springs.bending if isinstance(springs, Bond) else 0.0
+        return most / body.mass + ((most * lever**2 + bending) / body.inertia if body.inertia else 0.0)
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,14 @@ def run(request: dict[str, Any]) -> dict[str, Any]:
         kept = {name: text for name, text in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
         command = [program, "-n", "-x", "-j1", script.name]
         done = subprocess.run(
-            command, cwd=directory, env=kept, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False
+            command,
+            cwd=directory,
+            env=kept,
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            check=False,
+            timeout=LONGEST,
         )
         if not (script.parent / ANSWER).exists():
             raise RuntimeError(f"yade gave no answer: {(done.stderr or done.stdout)[-300:]}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from peers.yade_bodies import Bond, Body, Drive, Model, Point
+from peers.yade_bodies import Body, Bond, Drive, Model, Point
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

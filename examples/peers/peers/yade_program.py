@@ -116,6 +116,8 @@ class Program:
         made = self.yade.utils.createInteraction(one, other)
         made.phys.kn, made.phys.ks, made.phys.unp = springs["normal"], springs["shear"], made.geom.penetrationDepth
         made.phys.normalAdhesion = made.phys.shearAdhesion = HELD
+        if bending := springs.get("bending"):
+            made.phys.momentRotationLaw, made.phys.kr, made.phys.maxRollPl = True, bending, -1.0
         return made
 
     def before_the_step(self) -> None:
