@@ -1,0 +1,140 @@
+"""Yade as a solver: what it refuses, that its bodies are the scene's block, and its own integrator."""
+
+import math
+import shutil
+
+import numpy as np
+import pytest
+from peers import yade_block, yade_column
+from peers.yade import AsItComes, Yade
+
+from validation.problems.problem import problem_of
+from validation.problems.truth import exact
+from validation.scenes.scene import load_scene, parse_scene
+
+with_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="NOT RUN: yade is not installed")
+
+
+def scene_of(name, **tables):
+    """A problem's scene with keys of tables changed."""
+    data = load_scene(f"field-{name}").definition()
+    for table, values in tables.items():
+        data.setdefault(table, {}).update(values)
+    return parse_scene(data, name)
+
+
+REFUSED = [
+    (scene_of("locked", block={"poisson": 0.2}), "block.poisson"),
+    (scene_of("locked", block={"subdivide": [2, 2]}), "block.subdivide"),
+    (scene_of("locked", time={"gg": 0.9}), "time.gg"),
+    (scene_of("locked", damping={"mass": 1.0}), "damping"),
+    (scene_of("opening", contact={"band": [0.0, 1e-4]}), "contact.band"),
+    (scene_of("opening", contact={"stiffness": math.inf, "shear_stiffness": 0.0}), "contact.stiffness"),
+    (scene_of("sliding", contact={"rules": "lagged"}), "contact.rules"),
+    (scene_of("rocking", load={"pressure": 1e5}), "run.geometry"),
+    (scene_of("rocking", contact={"cohesion": 1e5}), "contact.cohesion"),
+    (scene_of("rocking", block={"young": 1e6}), "block.young"),
+    (scene_of("locked", run={"columns": ["gap_m"]}), "gap_m"),
+    (scene_of("column", run={"columns": ["stress_1"]}), "stress_1"),
+]
+
+
+@pytest.mark.parametrize(("scene", "field"), REFUSED, ids=[field for _, field in REFUSED])
+def test_what_it_cannot_express_is_refused_by_name(scene, field):
+    with pytest.raises(NotImplementedError, match=field):
+        Yade().solve(scene)
+
+
+def test_another_outline_is_refused():
+    leaning = scene_of("locked").definition()
+    leaning["block"] = {"vertices": [[0, 0], [2, 0], [2.5, 2], [0.5, 2]], "density": 2700.0, "young": 1e9}
+    with pytest.raises(NotImplementedError, match=r"block\.vertices"):
+        Yade().solve(parse_scene(leaning, "leaning"))
+
+
+def test_steps_beyond_all_patience_are_refused():
+    with pytest.raises(NotImplementedError, match="explicit scheme would need"):
+        Yade().solve(scene_of("rebound", contact={"stiffness": 1e17}, block={"young": 1e22}))
+
+
+def test_a_program_that_is_absent_is_named(monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(NotImplementedError, match="Yade is not installed: apt-get install yade"):
+        Yade().solve(scene_of("locked"))
+
+
+def test_two_bodies_have_the_frequencies_of_the_block_of_one_strain():
+    """M = diag(m, m h^2 / 12), K = E a h e^2 and the springs 2 p below the base point v - h e / 2."""
+    scene = scene_of("locked", block={"side": 3.0, "young": 4e8})
+    a = h = 3.0
+    m, E, p = scene.block.mass, scene.block.young, scene.contact.stiffness
+    base = np.array([1.0, -h / 2])
+    block = np.linalg.inv(np.diag([m, m * h**2 / 12])) @ (np.diag([0, E * a * h]) + 2 * p * np.outer(base, base))
+    model = yade_block.two_bodies(scene)
+    k = model.bonds[0].normal
+    masses = np.diag([body.mass for body in model.bodies])
+    bodies = np.linalg.inv(masses) @ (k * np.array([[1, -1], [-1, 1]]) + np.diag([2 * p, 0]))
+    np.testing.assert_allclose(np.sort(np.linalg.eigvals(bodies)), np.sort(np.linalg.eigvals(block)), rtol=1e-12)
+
+
+def test_the_linkage_has_the_masses_of_the_block():
+    scene = scene_of("creep", block={"side": 3.0})
+    left, right, *rotors, upper = yade_block.linkage(scene).bodies
+    m, a, arm = scene.block.mass, 3.0, 3.0 / 4
+    assert left.mass + right.mass + sum(r.mass for r in rotors) == pytest.approx(m / 4)
+    assert upper.mass == pytest.approx(3 * m / 4)
+    turning = 2 * (left.inertia + left.mass * a**2 / 4) + sum(r.inertia for r in rotors)
+    assert turning == pytest.approx(m * a**2 / 12)
+    apart = 2 * left.mass + sum(r.inertia for r in rotors) / arm**2
+    assert apart == pytest.approx(m / 3)
+
+
+def test_a_lattice_has_the_mass_and_the_softness_of_its_layers_and_joints():
+    layers = [
+        {"thickness": 3.0, "density": 2000.0, "young": 2e9},
+        {"thickness": 5.0, "density": 2500.0, "young": 4e9},
+    ]
+    joints = [{"height": 3.0, "stiffness": 1e9}, {"height": 0.0, "stiffness": 5e9}]
+    chain = yade_column.lattice(scene_of("column", column={"layer": layers, "joint": joints, "heights": []}))
+    assert chain.masses.sum() == pytest.approx(3 * 2000 + 5 * 2500)
+    assert (1 / chain.springs).sum() == pytest.approx(3 / 2e9 + 5 / 4e9 + 1 / 1e9 + 1 / 5e9)
+    assert chain.heights[[0, -1]] == pytest.approx([0.0, 8.0])
+    assert np.all(np.diff(chain.heights) > 0)
+
+
+@with_yade
+def test_the_default_integrator_is_the_leapfrog_with_forces_changed_by_a_fifth():
+    """V += dt f (1 - 0.2 sign(f (v + dt f / 2 m))) / m, then x += dt v."""
+    scene = scene_of("locked", time={"steps": 12})
+    model, solver = yade_block.two_bodies(scene), AsItComes()
+    cut = solver.cut(scene, model)
+    dt, m = scene.time.step / cut, np.array([body.mass for body in model.bodies])
+    given = np.array([body.force[1] for body in model.bodies])
+    x = v = np.zeros(2)
+    predicted = []
+    for n in range(cut * scene.time.steps):
+        pull = model.bonds[0].normal * (x[1] - x[0])
+        f = given + np.array([pull - 2 * scene.contact.stiffness * x[0], -pull])
+        v = v + dt * f * (1 - 0.2 * np.sign(f * (v + dt * f / (2 * m)))) / m
+        x = x + dt * v
+        if (n + 1) % cut == 0:
+            predicted.append((x[0] + 3 * x[1]) / 4)
+    found = solver.solve(scene)["displacement"]
+    np.testing.assert_allclose(found, predicted, rtol=0, atol=1e-9 * np.max(np.abs(predicted)))
+
+
+@with_yade
+@pytest.mark.parametrize(
+    ("scene", "most"),
+    [
+        (scene_of("opening", time={"steps": 20}), 5e-4),
+        (scene_of("creep", time={"steps": 20}), 1e-3),
+        (scene_of("column", column={"motion": "shear"}), 2e-3),
+    ],
+    ids=["two bodies", "linkage", "lattice"],
+)
+def test_it_moves_as_the_exact_motion(scene, most):
+    posed = problem_of(scene)
+    truth, found = exact(scene, posed.truth).columns, Yade().solve(scene)
+    for name in scene.run.columns:
+        assert np.linalg.norm(found[name] - truth[name]) < most * np.linalg.norm(truth[name]), name
