@@ -74,16 +74,16 @@ class CalculiX:
         from peers.calculix_column import column_columns, column_deck
 
         if scene.column is not None:
-            return column_columns(scene, run(column_deck(scene, sub, self.accurate), self.accurate))
-        return block_columns(scene, run(block_deck(scene, sub, self.accurate), self.accurate)[:, :, :2])
+            return column_columns(scene, run(column_deck(scene, sub), self.accurate))
+        return block_columns(scene, run(block_deck(scene, sub), self.accurate)[:, :, :2])
 
 
 class AsItComes(CalculiX):
-    """CalculiX as it comes: HHT with alpha = -0.05, automatic increments from the problem's step on."""
+    """CalculiX as it comes: HHT with alpha = -0.05, in the scene's steps."""
 
-    settings = "*DYNAMIC as it comes: ALPHA=-0.05, automatic increments that start with the step and meet its instants"
+    settings = "*DYNAMIC, DIRECT in the scene's steps, ALPHA=-0.05 and convergence as they come; the ballast as above"
     accurate = False
 
     def increments(self, scene: Scene) -> int:
-        """Return the increments of a step, of which the first one is the whole."""
+        """Return the increments of a step, which is one."""
         return 1

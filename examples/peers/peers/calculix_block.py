@@ -49,7 +49,7 @@ def _check_block(scene: Scene) -> None:
     refuse(not COLUMNS & set(run.columns), "none of the columns that are asked for is reported")
 
 
-def block_deck(scene: Scene, sub: int, accurate: bool) -> Deck:
+def block_deck(scene: Scene, sub: int) -> Deck:
     """Return the model of a block under its loads."""
     _check_block(scene)
     b, t = scene.block, scene.time
@@ -65,7 +65,7 @@ def block_deck(scene: Scene, sub: int, accurate: bool) -> Deck:
             deck.model += ["2", f"{k + 4},{d},1.,{k},{d},-1."]
         deck.model += ["4", f"4,{d},1.,1,{d},-1.,2,{d},1.,3,{d},-1."]
     base = _locked(scene, deck, width) if scene.contact.law == "locked" else _contact(scene, deck, width, height)
-    if scene.contact.law != "locked" and accurate:
+    if scene.contact.law != "locked":
         _ballast(scene, deck, width, height)
     if b.velocity:
         deck.model += ["*INITIAL CONDITIONS,TYPE=VELOCITY", row("ALL", "2", b.velocity)]

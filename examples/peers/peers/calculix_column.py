@@ -79,7 +79,7 @@ def _nodes(level: int) -> list[int]:
     return [4 * level + k for k in range(1, 5)]
 
 
-def column_deck(scene: Scene, sub: int, accurate: bool) -> Deck:
+def column_deck(scene: Scene, sub: int) -> Deck:
     """Return the model of a column and what drives it."""
     from validation.scenes.drive import motion_at
 

@@ -42,16 +42,15 @@ class Deck:
 
     def text(self, accurate: bool) -> str:
         """Return the input file, with the settings that were chosen or as the program comes."""
-        dt, instants = self.step / self.sub, self.step * np.arange(1, self.steps + 1)
+        times = row(self.step / self.sub, self.step * self.steps)
         lines = [*self.model, "*NSET,NSET=OUT", *map(str, self.printed)]
-        if not accurate:
-            lines += ["*TIME POINTS,NAME=INSTANTS", *map(number, instants.tolist())]
         lines += ["*STEP,INC=100000000" + (",NLGEOM" if self.updated else "")]
-        lines += ["*DYNAMIC,ALPHA=0.,DIRECT" if accurate else "*DYNAMIC", row(dt, self.step * self.steps)]
         if accurate:
-            lines += ["*CONTROLS,PARAMETERS=FIELD", "1e-6,1e-6,,,1e-6,1e-12"]
-        when = f"FREQUENCY={self.sub}" if accurate else "TIME POINTS=INSTANTS"
-        return "\n".join([*lines, *self.loads, f"*NODE PRINT,NSET=OUT,{when}", "U", "*END STEP", ""])
+            lines += ["*DYNAMIC,ALPHA=0.,DIRECT", times, "*CONTROLS,PARAMETERS=FIELD", "1e-6,1e-6,,,1e-6,1e-12"]
+        else:
+            lines += ["*DYNAMIC,DIRECT", times]
+        printed = [f"*NODE PRINT,NSET=OUT,FREQUENCY={self.sub}", "U", "*END STEP", ""]
+        return "\n".join([*lines, *self.loads, *printed])
 
 
 def number(value: float) -> str:
