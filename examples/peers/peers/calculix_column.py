@@ -120,7 +120,7 @@ def _stack(column: ColumnSection, parts: list[Part], deck: Deck) -> None:
 
 def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instants: Array, drive: Motion) -> None:
     """Add the base and the joints, and what comes in through the base."""
-    lowest, element = _nodes(parts[0].levels[0]), 100000
+    lowest, element = _nodes(parts[0].levels[0]), parts[-1].levels[-1] + 4
     deck.model += ["*NODE,NSET=FEET"]
     shift = (0.0, -1.0) if dof == 2 else (-1.0, 0.0)
     deck.model += [node(n, x + shift[0], shift[1], z) for n, (x, z) in zip(_nodes(0), SECTION, strict=True)]
@@ -134,7 +134,7 @@ def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instan
             deck.model += [f"*SPRING,ELSET=JOINT{k}", f"{dof},{dof}", number(part.spring / 4)]
     still = [f"FEET,{fixed},{fixed}" for fixed in (1, 2, 3)]
     if column.impedance is not None:
-        _transmit(column.impedance, lowest, deck, dof, instants, drive)
+        _transmit(column.impedance, lowest, element, deck, dof, instants, drive)
     elif parts[0].spring is not None:
         still.pop(dof - 1)
         deck.model += amplitude("FOOT", instants, drive.displacement)
@@ -146,10 +146,12 @@ def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instan
     deck.model += ["*BOUNDARY", *still]
 
 
-def _transmit(impedance: float, lowest: list[int], deck: Deck, dof: int, instants: Array, drive: Motion) -> None:
+def _transmit(
+    impedance: float, lowest: list[int], element: int, deck: Deck, dof: int, instants: Array, drive: Motion
+) -> None:
     """Put dashpots under the column, and the load of the wave that comes up."""
     deck.model += ["*ELEMENT,TYPE=DASHPOTA,ELSET=DASH"]
-    deck.model += [f"{200000 + n},{low},{n}" for low, n in zip(lowest, _nodes(0), strict=True)]
+    deck.model += [f"{element + n},{low},{n}" for low, n in zip(lowest, _nodes(0), strict=True)]
     deck.model += ["*DASHPOT,ELSET=DASH", "", number(impedance / 4)]
     deck.model += amplitude("WAVE", instants, 2 * impedance * drive.velocity)
     deck.loads += ["*CLOAD,AMPLITUDE=WAVE", *(f"{n},{dof},0.25" for n in lowest)]
