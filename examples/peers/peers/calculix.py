@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 BLOCK, COLUMN = 3000, 1000  # increments of a run, so that it takes some ten seconds
 TRIES = 3  # runs with ever halved increments before one that does not converge is given up
 HANDLED = frozenset(
-    "off-centre load,own weight,base motion,unilateral contact,friction,slope,large rotation,column,"
-    "implicit contact,energy-conserving contact".split(",")  # the last two are DDA's steps, as alpha and delta are
+    [
+        *("off-centre load", "own weight", "base motion", "unilateral contact", "friction", "slope", "large rotation"),
+        *("column", "implicit contact", "energy-conserving contact"),  # the last two are DDA's steps, as alpha is
+    ]
 )
 MODEL = (
     "one C3D8 kept affine by *EQUATION, SPRING2 under locked corners, *CONTACT PAIR of node to surface with LINEAR "
@@ -35,8 +37,8 @@ class CalculiX:
 
     handles = HANDLED
     settings = (
-        f"ALPHA=0, DIRECT, {BLOCK} increments (columns {COLUMN}), forces to 1e-6; in contact a ballast of great kinetic "
-        "energy, which keeps ccx's energy rule for impacts from stopping the run"
+        f"ALPHA=0, DIRECT, {BLOCK} increments (columns {COLUMN}), forces to 1e-6; in contact a ballast of great "
+        "kinetic energy, which keeps ccx's energy rule for impacts from stopping the run"
     )
     accurate = True
 

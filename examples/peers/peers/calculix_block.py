@@ -151,7 +151,7 @@ def _ballast(scene: Scene, deck: Deck, width: float, height: float) -> None:
     force, (_, x, y) = _pull(scene, width), _record(scene)
     speed = abs(scene.block.velocity) + force / m * T
     moved = float(np.max(np.abs(x)) + np.max(np.abs(y)))
-    energy = m * speed**2 + force**2 / c.stiffness + c.stiffness * moved**2
+    energy = (m * speed**2 + force**2 / c.stiffness + c.stiffness * moved**2) or 1.0
     away = 10 * _travel(scene, width, height)
     cube = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
     deck.model += ["*NODE,NSET=BALLAST"]
@@ -174,9 +174,9 @@ def _loads(scene: Scene, deck: Deck, width: float, base: str) -> None:
         for dof, name in ((1, "ALONG"), (2, "UP")):
             deck.loads += [f"*BOUNDARY,AMPLITUDE={name}", f"{base},{dof},{dof},1."]
     push, e = load.pressure * (width - 2 * abs(load.eccentricity)), load.eccentricity / width
-    for node, share in ((3, 0.5 + e), (4, 0.5 - e)):
-        deck.loads += ["*CLOAD", row(str(node), "2", -push * share)]
-        deck.loads += ["*CLOAD", row(str(node), "1", load.traction * width / 2)]
+    for corner, share in ((3, 0.5 + e), (4, 0.5 - e)):
+        deck.loads += ["*CLOAD", row(str(corner), "2", -push * share)]
+        deck.loads += ["*CLOAD", row(str(corner), "1", load.traction * width / 2)]
     if load.gravity:
         turn = math.radians(load.slope)
         deck.loads += ["*DLOAD", row("BLOCK", "GRAV", load.gravity, math.sin(turn), -math.cos(turn), 0.0)]

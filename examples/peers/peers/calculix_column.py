@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -59,11 +60,12 @@ def parts_of(column: ColumnSection) -> list[Part]:
     for level in sorted([0.0, *tops.tolist(), *springs, *column.heights]):
         if not cuts or level > cuts[-1] + near:
             cuts.append(float(level))
-    which = [int(np.searchsorted(tops, (a + b) / 2)) for a, b in zip(cuts, cuts[1:], strict=False)]
+    which = [int(np.searchsorted(tops, (a + b) / 2)) for a, b in itertools.pairwise(cuts)]
     layers = [column.layer[k] for k in which]
     moduli = [column.modulus(layer) for layer in layers]
-    pairs = list(zip(cuts, cuts[1:], strict=False))
-    times = [(b - a) * math.sqrt(l.density / m) for (a, b), l, m in zip(pairs, layers, moduli, strict=True)]
+    pairs = list(itertools.pairwise(cuts))
+    slowness = [math.sqrt(layer.density / m) for layer, m in zip(layers, moduli, strict=True)]
+    times = [(b - a) * s for (a, b), s in zip(pairs, slowness, strict=True)]
     parts: list[Part] = []
     last = 0
     for (a, b), k, m, time in zip(pairs, which, moduli, times, strict=True):
@@ -110,7 +112,7 @@ def _stack(column: ColumnSection, parts: list[Part], deck: Deck) -> None:
         deck.model += [node(n, x, height, z) for n, (x, z) in zip(_nodes(level), SECTION, strict=True)]
     for number_, part in enumerate(parts):
         deck.model += [f"*ELEMENT,TYPE=C3D8,ELSET=PART{number_}"]
-        for low, high in zip(part.levels, part.levels[1:], strict=False):
+        for low, high in itertools.pairwise(part.levels):
             deck.model += [",".join(map(str, [low, *_nodes(low), *_nodes(high)]))]
         layer = column.layer[part.layer]
         deck.model += [f"*MATERIAL,NAME=ROCK{number_}", "*ELASTIC", row(layer.young, layer.poisson)]
@@ -176,7 +178,7 @@ def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
     if column.impedance is None and parts[0].spring is None:  # seen from the base
         u = u + drive.displacement[:, None]
     first = parts[0].levels[0]
-    columns = {"displacement": u[:, -1], "contact_pressure": -_stress(parts[0], u, first, below=False)}
+    columns = {"displacement": u[:, -1], "contact_pressure": _stress(parts[0], u, first, below=False)}
     for k, height in enumerate(column.heights, start=1):
         part = next(p for p in parts if p.top >= height - NEAR * column.height)
         below = height > NEAR * column.height
@@ -186,9 +188,9 @@ def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
 
 
 def _stress(part: Part, u: Array, first: int, below: bool) -> Array:
-    """Return the stress at the upper end of a part, or at its lower end, from its three levels there [Pa]."""
+    """Return the stress at the upper or lower end of a part from its three levels there [Pa], compression positive."""
     h = (part.top - part.bottom) / (len(part.levels) - 1)
     a, b, c = (part.levels[k] - first for k in ((-1, -2, -3) if below else (0, 1, 2)))
     slope = (3 * u[:, a] - 4 * u[:, b] + u[:, c]) / (2 * h)
-    found: Array = part.modulus * (slope if below else -slope)
+    found: Array = part.modulus * (-slope if below else slope)
     return found
