@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from peers.calculix import AsItComes, CalculiX
 from peers.calculix_block import block_deck
-from peers.calculix_column import column_deck, parts_of
+from peers.calculix_column import acceleration, column_deck, parts_of
 from peers.calculix_deck import parsed
 
 from validation.problems.problem import problem, problem_of
@@ -76,6 +76,13 @@ def test_a_column_is_cut_at_layers_joints_and_heights():
     assert [part.bottom for part in parts] == [0.0, 3.5, 6.0, 8.5]
     assert [part.spring for part in parts] == [None, None, 1e9, None]
     assert parts[1].levels[0] == parts[0].levels[-1] and parts[2].levels[0] == parts[1].levels[-1] + 1
+
+
+@pytest.mark.parametrize("moved", [lambda t: 0.1 * t, lambda t: t**2])
+def test_the_momentum_of_a_base_is_kept_though_it_start_with_a_jump(moved):
+    t = np.linspace(0.0, 1.0, 101)
+    reached = np.trapezoid(acceleration(t, moved(t)), t)
+    assert abs(reached - (moved(1.0) - moved(0.98)) / 0.02) < 0.02 * abs(reached)
 
 
 def hht(scene: Scene, alpha: float) -> np.ndarray:

@@ -143,7 +143,7 @@ def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instan
         deck.loads += ["*BOUNDARY,AMPLITUDE=FOOT", f"FEET,{dof},{dof},1."]
     else:
         still += [f"{n},{dof},{dof}" for n in lowest]
-        deck.model += amplitude("SHAKE", instants, _acceleration(instants, drive.displacement))
+        deck.model += amplitude("SHAKE", instants, acceleration(instants, drive.displacement))
         deck.loads += ["*DLOAD,AMPLITUDE=SHAKE", "ALL,GRAV,1.," + ("0.,-1.,0." if dof == 2 else "-1.,0.,0.")]
     deck.model += ["*BOUNDARY", *still]
 
@@ -159,7 +159,7 @@ def _transmit(
     deck.loads += ["*CLOAD,AMPLITUDE=WAVE", *(f"{n},{dof},0.25" for n in lowest)]
 
 
-def _acceleration(instants: Array, moved: Array) -> Array:
+def acceleration(instants: Array, moved: Array) -> Array:
     """Return an acceleration whose trapezoids keep the momentum of a base that moves from rest, jumps included."""
     dt = instants[1]
     inner = (moved[2:] - 2 * moved[1:-1] + moved[:-2]) / dt**2
