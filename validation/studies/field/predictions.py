@@ -59,6 +59,14 @@ PREDICTIONS = (
         "its transient analysis is Newmark's with 1/2 and 1/4 from zero acceleration: dda with alpha = 1/4, "
         "delta = 1/2 by other code; band: its tolerance of Newton's iteration, well above rounding",
     ),
+    Prediction(
+        "siconos-default",
+        "locked",
+        {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"},
+        1e-6,
+        "theta = 1/2 of a linear system without contact is the trapezoidal rule, which is Newmark's with 1/4 and 1/2 "
+        "from M A0 = F: dda by other code; band: sums of a printed answer, well above rounding",
+    ),
 )
 
 
