@@ -67,7 +67,7 @@ def test_studies_scenes_and_solvers_have_a_line_each() -> None:
         scene = load_scene(name)
         assert line.split()[1] == str(len(scene.expand())) and line.endswith(scene.title)
         assert ", ".join(scene.run.solvers) in line
-    for line, name in zip(solvers, solver_names(), strict=True):
+    for line, name in zip(solvers, registry.BUILT_IN, strict=False):  # what is installed beside follows
         assert f" {get_solver(name).role} " in line and all(word in line for word in get_solver(name).handles)
 
 
