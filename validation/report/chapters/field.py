@@ -154,8 +154,14 @@ def _lines(program: ProgramLine, found: dict[str, list[str]]) -> list[tuple[str,
 def programs(found: Field) -> Table:
     """Return what each program says of itself."""
     titles = (Column("Program"), Column("Version"), Column("Model", "fill"), Column("Settings", "fill"))
-    rows = []
+    rows: list[tuple[str, str, str, str]] = []
+    before: ProgramLine | None = None
     for program in shown(found):
         said = program.about
-        rows.append((program.title, said.get("version", ""), said.get("model", ""), said.get("settings", "")))
+        alike = before is not None and before.about.get("program") == said.get("program")
+        again = alike and before is not None and before.about.get("model") == said.get("model")
+        version = "" if alike else said.get("version", "")
+        model = "the same" if again and said.get("model") else said.get("model", "")
+        rows.append((program.title, version, model, said.get("settings", "")))
+        before = program
     return Table(titles, tuple(rows))
