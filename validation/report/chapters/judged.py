@@ -21,8 +21,8 @@ from validation.runs.history import History
 
 ANSWER = "answer"
 ALLOWED = (
-    "Allowed is what one per cent of the datum that is named changes in the exact motion: data of a block are not known "
-    "to better than one per cent, and an error below that changes nothing for its user."
+    "Allowed is what one per cent of the datum that is named changes in the exact motion: data of a block are not "
+    "known to better than one per cent, and an error below that changes nothing for its user."
 )
 
 
