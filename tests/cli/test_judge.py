@@ -50,6 +50,7 @@ def test_a_right_answer_passes_with_page_and_badge(tmp_path: Path, exact: Histor
     assert done.returncode == 0, done.stderr
     assert "Bob's <code> & co 1.0 on locked: PASS: it is at most below 1e-9 % off" in done.stdout
     assert "cause:" not in done.stdout
+    assert re.search(r"displacement_m +PASS +below 1e-9 % +5.7 %  the density\n", done.stdout)
     assert sorted(path.name for path in place.iterdir()) == [
         "answer.csv",
         "badge.svg",
@@ -103,6 +104,22 @@ def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History
     ):
         done = typed(*arguments)
         assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", exact)
+    (place / "badge.svg").mkdir()
+    done = typed("judge", place)
+    assert done.returncode == 2 and "badge.svg: must be a file or nothing yet, got a directory" in done.stderr
+    assert sorted(path.name for path in place.iterdir()) == ["answer.csv", "badge.svg", "submission.json"]
+
+
+def test_control_characters_are_written_out(tmp_path: Path, exact: History) -> None:
+    place = submitted(tmp_path / "mine", exact, program="a\x1b[31m\u202e", settings="one\n  two")
+    done = typed("judge", place)
+    assert "a\\x1b[31m\\u202e 1.0 on locked: PASS" in done.stdout
+    page = (place / "judged.html").read_text(encoding="utf-8")
+    assert "\x1b" not in page and "\u202e" not in page and "one two" in page
 
 
 def test_a_solver_is_judged_on_any_scene(tmp_path: Path) -> None:

@@ -133,6 +133,16 @@ def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
         (lambda r: [row[:2] for row in r], "contact_pressure_Pa: is required, got time_s, displacement_m; not"),
         (lambda r: [row[1:] for row in r], "header: time_s: is required, got displacement_m, contact_pressure_Pa"),
         (lambda r: [[*row, row[1]] for row in r], "displacement_m: must stand once, got it 2 times"),
+        (lambda r: [[";".join(row)] for row in r], "header: must be separated by commas, got semicolons: 'time_s;"),
+        (lambda r: [["\t".join(row)] for row in r], "header: must be separated by commas, got tabs: 'time_s\\t"),
+        (lambda r: [["# of my code"], *r], "header: # of my code: must be among time_s,"),
+        (lambda r: [["", *r[0]], *(["7", *row] for row in r[1:])], "header: column 1: must be among time_s, displa"),
+        (lambda r: [r[0], ['"0,002"', "0", "0"], *r[2:]], "time_s: must be a number, got '0,002'; a decimal comma?"),
+        (lambda r: [r[0], ["0.002", "1_0", "0"], *r[2:]], "row 1: displacement_m: must be a number, got '1_0'"),
+        (lambda r: [r[0], ["0.002", "1e400", "0"], *r[2:]], "displacement_m: must be a finite number, got 1e400"),
+        (lambda r: [r[0], ["0.002", "1e308", "0"], *r[2:]], "must be at most 1e+100 in size, got 1e308"),
+        (lambda r: [*r, *r[1:]], "time_s: must have 50 rows, 0.002 s apart, got 52 or more"),
+        (lambda r: [r[0], *r[:0:-1]], "row 1: time_s: must be 0.002, got 0.1"),
         (lambda r: r[:-1], "time_s: must have 50 rows, 0.002 s apart, got 49"),
         (lambda r: [r[0], ["0", "0", "0"], *r[1:]], "got 51; the state at t = 0 is left out"),
         (lambda r: [r[0], *r[2:], r[-1]], "row 1: time_s: must be 0.002, got 0.004"),
@@ -153,6 +163,35 @@ def test_a_wrong_table_is_named(
     table = text_of(change(rows_of(table_of(motion, one.scene.run.columns))))
     line = refused(submitted(tmp_path, table))
     assert "answer.csv: " in line and said in line
+
+
+def of_a_spreadsheet(rows: Rows) -> str:
+    """Return a table as spreadsheets write it: a mark in front, CR LF, empty cells and rows at the ends."""
+    return "\ufeff" + "\r\n".join(",".join([*row, "", ""]) for row in [*rows, ["", "", ""]])
+
+
+def in_single_precision(rows: Rows) -> str:
+    return text_of([rows[0], *([repr(float(np.float32(row[0]))), *row[1:]] for row in rows[1:])])
+
+
+@pytest.mark.parametrize("written", [of_a_spreadsheet, in_single_precision])
+def test_what_other_programs_write_is_read(
+    written: Callable[[Rows], str], tmp_path: Path, one: Problem, motion: History
+) -> None:
+    place = submitted(tmp_path, written(rows_of(table_of(motion, one.scene.run.columns))))
+    (place / "._answer.csv").write_bytes(b"\0")  # which a system lays beside a file
+    found = read_submission(place)
+    np.testing.assert_array_equal(found.history.displacement, motion.displacement)
+    np.testing.assert_array_equal(found.history.time, motion.time)
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path, one: Problem, motion: History) -> None:
+    place = submitted(tmp_path, table_of(motion, one.scene.run.columns))
+    stated = json.dumps(GOOD)
+    (place / FILE).write_text(stated.replace('{"format"', '{"pack": "1.0", "format"'))
+    assert f"{FILE}: must be JSON in UTF-8: 'pack' must stand once, got it 2 times" in refused(place)
+    (place / FILE).write_text(stated.replace("}", ', "not_reported": "time_s"}'))
+    assert f"{FILE}: not_reported: must be a list, got 'time_s'" in refused(place)
 
 
 def test_files_that_are_missing_or_no_such_files(tmp_path: Path, one: Problem, motion: History) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from validation.report.blocks import Table as Shown
-from validation.report.chapters.field import by_problem, counted, failures, inapplicable, programs
+from validation.report.chapters.data import spoken_of
+from validation.report.chapters.field import absent, by_problem, counted, failures, programs
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProblemLine, ProgramLine
 from validation.studies.field.table import Table as Field
 
@@ -53,14 +56,35 @@ def test_causes_and_reasons_stand_with_program_and_problems() -> None:
         ("One, as it comes", "locked", "not explained"),
         ("", "rocking", "wrong units: mm?"),
     )
-    assert inapplicable(FIELD).rows == (("One", "rocking", "it does not turn"),)
+    assert absent(FIELD).rows == (("One", "rocking", "it does not turn"),)
     alike = {key: cell if cell.verdict != FAIL else Cell(*key, FAIL, FAIL, "damped") for key, cell in cells().items()}
-    assert ("One, as it comes", "locked, rocking", "damped") in failures(Field(PROBLEMS, PROGRAMS, alike)).rows
+    assert ("One, as it comes", "all", "damped") in failures(Field(PROBLEMS, PROGRAMS, alike)).rows
+
+
+def test_a_run_that_raised_an_error_is_told_without_its_place() -> None:
+    raised = Cell("rocking", "one", NOT_RUN, NOT_RUN, reason="Stopped: no balance at t = 0 s (a/b.py:21, in _step)")
+    found = Field(PROBLEMS, PROGRAMS, cells() | {("rocking", "one"): raised})
+    assert absent(found).rows == (("One", "rocking", "no answer: Stopped: no balance at t = 0 s"),)
+
+
+def test_pages_speak_of_the_scenes_that_cells_are_of() -> None:
+    own = {"title": "", "solver": "dda", "key": "", "definition": {}}
+    records = [own | {"scene": name} for name in ("a", "a changed")]
+    runs = {"a dda": [["a", "dda"], "judged dda"]}
+    assert [r["scene"] for r in spoken_of({"study": "field", "cases": records, "data": {"runs": runs}})] == ["a"]
+    assert spoken_of({"study": "mine", "cases": records}) == records
+    assert spoken_of({"study": "field", "cases": records, "data": {"runs": "damaged"}}) == records
 
 
 def test_programs_say_what_they_are() -> None:
     table: Shown = programs(FIELD)
     assert table.rows[1] == ("One", "1.5", "m", "s")
+    one, beside = ({"program": "One", "version": "1.5", "model": "m", "settings": s} for s in ("fine", "as it comes"))
+    alike = (replace(PROGRAMS[1], about=one), replace(PROGRAMS[2], about=beside))
+    assert programs(Field(PROBLEMS, alike, cells())).rows == (
+        ("One", "1.5", "m", "fine"),
+        ("One, as it comes", "", "the same", "as it comes"),
+    )
     assert [row[0] for row in table.rows] == ["DDA by habit", "One", "One, as it comes"]
 
 

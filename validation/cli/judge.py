@@ -69,6 +69,7 @@ def _judged(
     from validation.errors import InputError
     from validation.problems.problem import problem_of
     from validation.problems.submission import read_submission
+    from validation.runs.text import printable
 
     if solver is not None:
         if scene is not None:
@@ -80,9 +81,10 @@ def _judged(
     progress(0, 3, "reading, and the exact motion")
     found = read_submission(Path(target), own)
     data = found.data
-    about = [("program", data.program), ("version", data.version), ("settings", data.settings), ("who", data.who)]
+    about = [(field, printable(getattr(data, field))) for field in ("program", "version", "settings", "who")]
     about += [("not reported", ", ".join(data.not_reported))] if data.not_reported else []
-    return _with_cause(found.problem, found.history, tuple(about), progress), f"{data.program} {data.version}"
+    name = printable(f"{data.program} {data.version}")
+    return _with_cause(found.problem, found.history, tuple(about), progress), name
 
 
 def _of_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[Judged, str]:
@@ -173,15 +175,14 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
 def _print(judged: Judged, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
     from validation.problems.data import united
-    from validation.report.chapters.judged import headline, per_cent
+    from validation.report.chapters.judged import datum, headline, per_cent
 
     typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
     if judged.cause is not None:
         typer.echo(f"cause: {judged.cause.sentence}")
-    typer.echo(f"\n  {'column':<26} {'verdict':<13} {'error':>12} {'allowed':>10}")
+    typer.echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for one in judged.judgement.columns:
-        typer.echo(f"  {united(one.name):<26} {one.word:<13} {per_cent(one.error):>12} {per_cent(one.band):>10}")
-    for one in judged.judgement.columns:
-        typer.echo(f"  {united(one.name)}: {one.reason}")
+        why = datum(one, judged.held) or one.reason
+        typer.echo(f"  {united(one.name):<25} {one.word:<12} {per_cent(one.error):>11} {per_cent(one.band):>8}  {why}")
     for path in written:
         typer.echo(f"wrote {path}")

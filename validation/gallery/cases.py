@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from validation.report.chapters.data import spoken_of
 from validation.report.chapters.text import case_labels
 from validation.runs.case_name import scene_of
 from validation.runs.records import CaseRecord, Manifest, VerdictRecord
@@ -81,7 +82,7 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
     manifests = {name: results.whole(name, histories=True) for name in names}
     found: dict[str, _Found] = {}
     for study, manifest in manifests.items():
-        for record in manifest.get("cases", []):
+        for record in spoken_of(manifest):
             scene = found.setdefault(scene_of(record["scene"]), _Found())
             scene.title = scene.title or record.get("title") or ""
             scene.studies[study] = None

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import tempfile
+from contextlib import ExitStack
 from importlib import metadata, resources
 from pathlib import Path
 
+from validation.errors import InputError
 from validation.gallery.chapters import placed
 from validation.gallery.pages import environment
 from validation.gallery.svg import Sheet
 from validation.problems.data import PACK
 from validation.problems.judge import Word
 from validation.report.chapters.judged import Judged, page, per_cent
-from validation.runs.files import write_atomically
+from validation.runs.files import atomic_path
 
 PAGE, BADGE = "judged.html", "badge.svg"
 COLORS = {Word.PASS: "#1c6b2f", Word.FAIL: "#a80f0f", Word.NOT_JUDGED: "#5a5a5a"}
@@ -27,12 +29,14 @@ def write_judged(judged: Judged, program: str, place: Path) -> list[Path]:
     InputError
         A file cannot be written.
     """
-    written = []
-    for name, text in ((PAGE, html(judged, program)), (BADGE, badge(judged))):
-        path, data = place / name, text.encode()
-        write_atomically(path, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
-        written.append(path)
-    return written
+    paths = [place / PAGE, place / BADGE]
+    for path in paths:
+        if path.is_dir():
+            raise InputError(f"{path}: must be a file or nothing yet, got a directory; choose another place with --out")
+    with ExitStack() as both:  # leaves both files or neither
+        for path, text in zip(paths, (html(judged, program), badge(judged)), strict=True):
+            both.enter_context(atomic_path(path)).write_bytes(text.encode())
+    return paths
 
 
 def html(judged: Judged, program: str) -> str:

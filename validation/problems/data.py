@@ -175,7 +175,7 @@ class SubmissionData(Data):
     """What stands beside the table of a submission."""
 
     format: Literal["dda-validation submission"]
-    pack: str
+    pack: Literal["2.0"]
     problem: Text
     program: Text
     version: Text

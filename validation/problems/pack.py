@@ -35,6 +35,7 @@ Progress = Callable[[int, int, str], None]
 PLACE = "problems"  # directory of a pack that holds this part
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
+DIALECT = "https://json-schema.org/draft/2020-12/schema"  # of pydantic's schemas
 TEMPLATE = {  # what a submitter changes
     "program": "name of the program",
     "version": "its version",
@@ -55,6 +56,18 @@ A part of the reference pack of dda-validation, version {pack}; nothing needs to
 | a submission to fill in | `submissions/NAME/submission.json`, by `submission.schema.json` |
 
 {table}
+
+## What the words of a problem mean
+
+- **Block**: a rectangle of unit thickness that moves, turns and strains as a whole: one strain (xx, yy, xy) all over,
+  linear and elastic, its mass spread evenly. A mesh inside it is another model, and another answer.
+- **Contact**: two springs at its lower corners, on a fixed base; `unilateral` ones push and do not pull, and slide by
+  Coulomb's law where `friction_deg` is a number. Springs of friction are unstrained at t = 0.
+- **Load**: there in full from t = 0 on. The block starts unstrained, and at rest but for `velocity_m_per_s`.
+- **Geometry**: `small` is equilibrium in the first shape; with `large rotation` corners and directions turn along.
+- **Column**: a continuum in one direction. A Ricker pulse is p (1 - 2 s) exp(-s), s = (pi f (t - 2/f))^2, as a pressure
+  downwards on the top; a `transmitting` base lets waves through that its impedance matches.
+- Nothing damps, but what leaves through such a base and what friction takes.
 
 ## An answer
 
@@ -130,8 +143,9 @@ def write_problems(directory: Path, progress: Progress = lambda done, total, lab
         blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
         _write(place / "submissions" / name / "submission.json", _json(blank))
         rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
-    _write(place / "problem.schema.json", _json(ProblemData.model_json_schema()))
-    _write(place / "submission.schema.json", _json(SubmissionData.model_json_schema()))
+    for data_of in (ProblemData, SubmissionData):
+        stem = data_of.__name__.removesuffix("Data").lower()
+        _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
     _write(place / "README.md", README.format(pack=PACK, table=table))
     return len(PROBLEMS)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import difflib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from pydantic import ValidationError
 from validation.errors import InputError
 from validation.problems.bands import standard
 from validation.problems.data import PACK, SubmissionData, kind, unit, united
+from validation.problems.judge import SAME_INSTANT
 from validation.problems.pack import TEMPLATE, TIME
 from validation.problems.problem import PROBLEMS, Problem, problem
 from validation.runs.history import Array, History
@@ -25,7 +27,8 @@ from validation.solvers.user import UNITS, factor
 
 FILE = "submission.json"
 LARGEST_FILE = 100_000_000  # bytes
-NEAR = 1e-6  # of a step, by which a time may be off: six digits after the point of a step
+LARGEST = 1e100  # of a value in SI units; the squares of larger ones overflow
+SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks"}  # that stand where commas belong
 ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds"}
 EXPORT = "dda-validate export-pack DIR writes the problems"
 
@@ -75,7 +78,7 @@ def _data(path: Path) -> SubmissionData:
 def _object(path: Path) -> dict[str, Any]:
     try:
         regular(path, LARGEST_FILE)
-        found = json.loads(path.read_bytes().decode("utf-8-sig"))
+        found = json.loads(path.read_bytes().decode("utf-8-sig"), object_pairs_hook=_once)
     except InputError:
         raise
     except FileNotFoundError:
@@ -87,6 +90,15 @@ def _object(path: Path) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise InputError(f"{path}: must be an object, got {type(found).__name__}")
     return found
+
+
+def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of JSON; a key that stands twice would lose its first value."""
+    names = [name for name, _ in pairs]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{name!r} must stand once, got it {names.count(name)} times")
+    return dict(pairs)
 
 
 def _problem(path: Path, name: str) -> Problem:
@@ -113,7 +125,10 @@ def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[
 
 
 def _table(directory: Path) -> Path:
-    found = sorted(path for path in directory.iterdir() if path.suffix.lower() == ".csv")
+    try:  # a name that begins with a point is the system's, not the submitter's
+        found = sorted(p for p in directory.iterdir() if p.suffix.lower() == ".csv" and not p.name.startswith("."))
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be read: {error.strerror}") from None
     if len(found) != 1:
         got = ", ".join(path.name for path in found) or "none"
         raise InputError(f"{directory}: must hold one CSV file beside {FILE}, got {got}")
@@ -121,11 +136,13 @@ def _table(directory: Path) -> Path:
 
 
 def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
-    names, table = _read(path)
+    names, rows = _read(path, asked.scene.time.steps + 2)
     _check_header(path, names, asked, columns)
-    values = dict(zip(names, table.T, strict=True))
     motion = standard(asked).exact
-    _check_numbers(path, names, table)
+    if len(rows) > len(motion.time) + 1:  # too many in any case, so that their numbers are not read
+        raise _miscounted(path, motion.time, f"{len(motion.time) + 2} or more")
+    numbers = [_numbers(path, names, number, row) for number, row in enumerate(rows, start=1)]
+    values = dict(zip(names, np.array(numbers).reshape(len(numbers), len(names)).T, strict=True))
     _check_times(path, values[TIME], motion.time)
     history = History(motion.time, {column: values[united(column)] for column in columns})
     for column in columns:
@@ -135,37 +152,59 @@ def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
     return history
 
 
-def _read(path: Path) -> tuple[list[str], Array]:
+def _read(path: Path, most: int) -> tuple[list[str], list[list[str]]]:
+    """Return the names of a table and its first rows, at most so many, in words."""
     try:
         regular(path, LARGEST_FILE)
         with path.open(encoding="utf-8-sig", newline="") as stream:
-            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+            rows = list(islice(_filled(csv.reader(stream)), most + 1))
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: must be a CSV table in UTF-8: {error}") from None
     if not rows:
         raise InputError(f"{path}: must be a table of numbers under a header, got an empty file")
-    names = [name.strip() for name in rows[0]]
-    numbers = [_numbers(path, names, number, row) for number, row in enumerate(rows[1:], start=1)]
-    return names, np.array(numbers).reshape(len(numbers), len(names))
+    return rows[0], rows[1:]
+
+
+def _filled(rows: Iterator[list[str]]) -> Iterator[list[str]]:
+    """Yield rows without the empty cells at their ends, which spreadsheets leave, and no empty row."""
+    for row in rows:
+        cells = [cell.strip() for cell in row]
+        while cells and not cells[-1]:
+            cells.pop()
+        if cells:
+            yield cells
 
 
 def _numbers(path: Path, names: Sequence[str], number: int, row: Sequence[str]) -> list[float]:
     if len(row) != len(names):
         raise InputError(f"{path}: row {number}: must have {len(names)} values, got {len(row)}")
-    found = []
-    for name, cell in zip(names, row, strict=True):
-        try:
-            found.append(float(cell))
-        except ValueError:
-            raise InputError(f"{path}: row {number}: {name}: must be a number, got {cell.strip()!r}") from None
-    return found
+    return [_number(f"{path}: row {number}: {name}", cell) for name, cell in zip(names, row, strict=True)]
+
+
+def _number(where: str, cell: str) -> float:
+    try:
+        if "_" in cell or not cell.isascii():  # Python's own ways to write a number
+            raise ValueError
+        value = float(cell)
+    except ValueError:
+        hint = "; a decimal comma?" if cell.count(",") == 1 else ""
+        raise InputError(f"{where}: must be a number, got {cell!r}{hint}") from None
+    if not np.isfinite(value):
+        raise InputError(f"{where}: must be a finite number, got {cell}")
+    if abs(value) > LARGEST:
+        raise InputError(f"{where}: must be at most {LARGEST:g} in size, got {cell}")
+    return value
 
 
 def _check_header(path: Path, names: Sequence[str], asked: Problem, columns: Sequence[str]) -> None:
     wanted = {TIME: "s"} | {united(column): unit(column) for column in columns}
-    for name in names:
+    if between := next((s for s in SEPARATORS if TIME in names[0].split(s)[:-1]), ""):
+        raise InputError(f"{path}: header: must be separated by commas, got {SEPARATORS[between]}: {names[0]!r}")
+    for place, name in enumerate(names, start=1):
+        if not name:
+            raise InputError(f"{path}: header: column {place}: must be among {', '.join(wanted)}, got no name")
         if name not in wanted:
             raise InputError(f"{path}: header: {name}: {_rule(name, wanted, asked)}, got {name!r}")
         if names.count(name) > 1:
@@ -187,23 +226,18 @@ def _rule(name: str, wanted: dict[str, str], asked: Problem) -> str:
     return f"must be among {', '.join(wanted)}"
 
 
-def _check_numbers(path: Path, names: Sequence[str], table: Array) -> None:
-    bad = np.argwhere(~np.isfinite(table))
-    if len(bad):
-        row, column = bad[0]
-        raise InputError(
-            f"{path}: row {row + 1}: {names[column]}: must be a finite number, got {float(table[row, column])}"
-        )
-
-
 def _check_times(path: Path, times: Array, wanted: Array) -> None:
     step = float(wanted[0])
     if len(times) != len(wanted):
         zero = "; the state at t = 0 is left out" if len(times) == len(wanted) + 1 and times[0] == 0 else ""
-        raise InputError(f"{path}: {TIME}: must have {len(wanted)} rows, {step:g} s apart, got {len(times)}{zero}")
-    off = np.flatnonzero(np.abs(times - wanted) > NEAR * step)
+        raise _miscounted(path, wanted, f"{len(times)}{zero}")
+    off = np.flatnonzero(np.abs(times - wanted) > SAME_INSTANT * step)
     if len(off):
         n = int(off[0])
         close = np.allclose(times, 1e3 * wanted, rtol=1e-6, atol=0)
         hint = "; milliseconds?" if close else ""
-        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {float(wanted[n]):g}, got {float(times[n]):g}{hint}")
+        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {wanted[n]:.9g}, got {times[n]:.9g}{hint}")
+
+
+def _miscounted(path: Path, wanted: Array, got: str) -> InputError:
+    return InputError(f"{path}: {TIME}: must have {len(wanted)} rows, {float(wanted[0]):g} s apart, got {got}")

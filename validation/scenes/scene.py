@@ -244,12 +244,13 @@ def one_line(error: ValidationError, source: str) -> str:
     first = error.errors(include_url=False)[0]
     field = ".".join(str(part) for part in first["loc"])
     where = f"{source}: {field}" if field else source  # a rule on the whole scene begins with its field
-    rule = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    message = first["msg"].replace("a valid tuple", "a list")
+    rule = message.removeprefix("Value error, ").removeprefix("Input should be ")
     if first["type"] == "extra_forbidden":
         rule = "unknown key"
     elif first["type"] == "missing":
         return f"{where}: is required, got nothing"
-    elif rule == first["msg"].removeprefix("Input should be ") and "Input should be" in first["msg"]:
+    elif rule == message.removeprefix("Input should be ") and "Input should be" in message:
         rule = f"must be {rule}"
     elif first["type"].endswith(("too_short", "too_long")):
         rule = f"must{rule.partition('should')[2].partition(' after')[0]}"

@@ -199,16 +199,8 @@ class MuJoCo:
 
     handles = features.LOADS | features.RULES | OF_CONTACT
     default = False
-    model = (
-        "the block of one strain as six masses on slide joints, strain and corner springs as springs of fixed tendons: "
-        "a dead band where they only push, plasticity with a yield that follows the normal force where they slip; a "
-        "block that turns as a rigid box on MuJoCo's contact; a column as a chain of masses"
-    )
-    settings = (
-        "RK4 at w dt = 0.1; with friction the semi-implicit Euler from a velocity half a step back, which is the "
-        "leapfrog, at w dt = 0.005; columns of 8 cells in what a wave passes in a step; rigid box: "
-        "(h/g)^(1/2) / 10000, RK4, elliptic cones, impratio 100, contact of critical damping with 0.3 / dt"
-    )
+    model = "block of one strain by masses on slide joints, springs by tendons; a rigid box where it turns"
+    settings = "RK4, with friction the leapfrog, at fine steps; rigid box: elliptic cones, stiff contact"
 
     @property
     def about(self) -> dict[str, str]:
@@ -256,11 +248,8 @@ class AsItComes(MuJoCo):
     """MuJoCo with its default integrator, contact and solver, at the step of the scene."""
 
     default = True
-    model = (
-        "on contact that opens, with friction, or where it is rigid beside its springs, a rigid box on a plane with "
-        "MuJoCo's own contact in the place of the springs; else masses on slide joints and springs of fixed tendons"
-    )
-    settings = "none but the step of the scene: semi-implicit Euler, solref 0.02 1, solimp 0.9 0.95 0.001, pyramids"
+    model = "where a corner can open, a rigid box on MuJoCo's own contact; else masses on slide joints"
+    settings = "semi-implicit Euler at the step of the scene; solref, solimp and cones as they come"
 
     def boxed(self, scene: Scene) -> bool:
         """Whether a rigid box on a plane is the scene's model."""

@@ -55,7 +55,8 @@ class Histories:
         file, beside, otherwise = ON_SLOPE if scene.load.gravity else PRESSED
         own = load_scene(directory() / beside).with_values(otherwise)
         for field, mine, theirs in differing(scene, own):
-            raise NotImplementedError(f"a history is data: it was written for {field} = {theirs}, not {mine}")
+            its, asked = (f"{x:g}" if isinstance(x, float) else x for x in (theirs, mine))
+            raise NotImplementedError(f"a history is data: it was written for {field} = {its}, not {asked}")
         found = read(directory() / file)
         steps = scene.time.steps
         if steps > len(found.time):

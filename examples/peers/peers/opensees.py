@@ -29,6 +29,7 @@ MOST_WORK = 150_000  # sub-steps of a round, times what a mesh adds
 FIRST = 1e-6  # of a sub-step: the first one, at whose end the acceleration is that of the loads
 SMALL, ROUNDING = 1e-10, 1e-14  # of what springs give, and of a way: increment at which Newton's iteration ends
 ITERATIONS = 30
+MODEL = "tri31 and truss masses: exactly one strain; contact zeroLengthContactASDimplex; a column of trusses"
 
 Columns = dict[str, Array]
 
@@ -45,11 +46,7 @@ class OpenSees:
         | {features.OFF_CENTRE, features.WEIGHT, features.UNILATERAL, features.FRICTION, features.SLOPE}
         | {features.ROTATION, features.COLUMN, features.DAMPING}
     )
-    settings = (
-        f"Newmark 1/2, 1/4, no damping; a first sub-step of {FIRST:g} of the others, so that the start is consistent; "
-        f"sub-steps made {FINER} times finer until the history changes by less than {ENOUGH:g}, at most {MOST_WORK}; "
-        "elements of a column sqrt(2) times as long as a wave's way in a sub-step"
-    )
+    settings = f"Newmark 1/2, 1/4; sub-steps {FINER} times finer until the history changes by less than {ENOUGH:g}"
 
     @property
     def about(self) -> dict[str, str]:
@@ -58,9 +55,7 @@ class OpenSees:
             "program": "OpenSees",
             "version": _version(),
             "recipe": RECIPE,
-            "model": "block: tri31 of thickness 2 and the consistent mass of two trusses (exactly the block of one "
-            "strain), three corotTruss where it turns; contact: zeroLength, or zeroLengthContactASDimplex (penalty, "
-            "Coulomb); column: trusses, a dashpot below",
+            "model": MODEL,
             "settings": self.settings,
         }
 
@@ -102,11 +97,7 @@ class OpenSees:
 class AsItComes(OpenSees):
     """OpenSees with what it takes where nothing is specified, at the scene's step."""
 
-    settings = (
-        "what analysis('Transient') takes: Newmark 1/2, 1/4, Newton-Raphson, zero acceleration at first; the scene's "
-        "step; a column of one truss a block with lumped mass. Set: a solver for matrices that are not symmetric, and "
-        f"increments below {SMALL:g} of what springs give, since its own test, 1e-6 N, is below their rounding"
-    )
+    settings = "Newmark 1/2, 1/4 from zero acceleration, Newton-Raphson; the step of the scene"
 
     def history(self, ops: Any, scene: Scene) -> Columns:
         """Return the history at the scene's step."""

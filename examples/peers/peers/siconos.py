@@ -37,15 +37,8 @@ class Siconos:
             *("implicit contact", "energy-conserving contact"),  # rules of DDA's step, of which nothing is used here
         )
     )
-    model = (
-        "Block of one strain, its matrices given to Siconos. Locked springs: part of the stiffness. Springs without "
-        "tension: a linear complementarity system, 0 <= N perp gap + N/p >= 0, Coulomb friction by two multipliers a "
-        "corner. Large rotation: rigid block, rigid corners, e = 0. Column: a chain of linear elements."
-    )
-    settings = (
-        "MoreauJeanOSI theta = 1/2; springs without tension EulerMoreauOSI theta = gamma = 1/2 with the relation at "
-        "the middle of the step, LCP by Lemke; steps of 0.02 rad of the fastest vibration, at most 20 000 of them."
-    )
+    model = "block of one strain by its matrices; contact springs as a linear complementarity system"
+    settings = "MoreauJeanOSI, EulerMoreauOSI, theta = gamma = 1/2; 0.02 rad of the fastest vibration a step"
 
     def __init__(self) -> None:
         self.about = {
@@ -76,12 +69,8 @@ class AsItComes(Siconos):
     """Siconos with its own integrator and contact at the step of the problem."""
 
     fine = False
-    model = (
-        "Locked springs: part of the stiffness of the block of one strain. Contact is Siconos' own, rigid corners with "
-        "Newton's impact law and Coulomb friction under a rigid block: it has no stiffness, so that what springs do is "
-        "not applicable. Column: a chain of linear elements, one for each block."
-    )
-    settings = "MoreauJeanOSI() as constructed (theta = 1/2), FrictionContact(2) as constructed; the problem's step."
+    model = "the same block on locked springs; contact is Siconos' own, rigid, without stiffness"
+    settings = "MoreauJeanOSI(), theta = 1/2, and FrictionContact(2) at the step of the scene"
 
 
 def version() -> str:

@@ -43,10 +43,7 @@ class Yade:
     fraction = FINE
     linked = LINKED
     staggered = True  # whether the velocities at t = 0 are taken half a step back, where leapfrog has them
-    settings = (
-        "NewtonIntegrator(damping=0); step times highest frequency at most 0.05, 1 where that is of hard bonds and in "
-        "a column; velocities start half a step back, where the leapfrog has them"
-    )
+    settings = "leapfrog without damping; step times highest frequency at most 0.05, in a column 1"
 
     @cached_property
     def about(self) -> dict[str, str]:
@@ -55,10 +52,7 @@ class Yade:
             "program": "Yade",
             "version": version(),
             "recipe": RECIPE,
-            "model": "rigid bodies and penalty springs: a deformable block is two of them, m/4 at the base and 3m/4 "
-            "above, on a bond 9Ea/4h, under loads that lean a linkage of five (exact for one strain and small "
-            "motion); a stiff or turning block is one clump; a column is a lattice of particles, its transmitting base "
-            "a dashpot of the script; kn and ks are set to the scene's springs",
+            "model": "rigid bodies on penalty springs; two of them on a bond for the strain; a column of particles",
             "settings": self.settings,
         }
 
@@ -104,8 +98,4 @@ class AsItComes(Yade):
     damping = 0.2
     fraction = linked = COARSE
     staggered = False
-    settings = (
-        "NewtonIntegrator as it comes (non-viscous damping 0.2, velocities of t = 0 taken as those of its first half "
-        "step); the problem's step, or its largest fraction below 0.8 of the critical step, the factor of its "
-        "GlobalStiffnessTimeStepper"
-    )
+    settings = "non-viscous damping 0.2; the step of the scene, or a fraction below 0.8 of the critical one"

@@ -83,11 +83,24 @@ def groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[Gro
     """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
     rows = results.rows()
     scenes: dict[str, dict[str, list[CaseRecord]]] = {}
-    for entry in manifest.get("cases", []):
+    for entry in spoken_of(manifest):
         scenes.setdefault(scene_of(entry["scene"]), {}).setdefault(entry["scene"], []).append(entry)
     verdicts = results.verdicts(manifest.get("study"))
     history_of = results.history if drawn else lambda _: None
     return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
+
+
+def spoken_of(manifest: Manifest) -> list[CaseRecord]:
+    """Return the cases of a study that a page speaks of: all, or where its data name its cells' `runs`, those scenes.
+
+    The other scenes of such a study are what its bands and checks are computed from, and show nothing by themselves.
+    """
+    cases = manifest.get("cases", [])
+    try:
+        scenes = {case[0] for case, _ in manifest.get("data", {})["runs"].values()}
+    except (AttributeError, LookupError, TypeError, ValueError):  # no field, or one of another version
+        return cases
+    return [entry for entry in cases if entry["scene"] in scenes]
 
 
 def verdicts_of(found: Iterable[Group]) -> list[VerdictRecord]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table
@@ -14,6 +15,7 @@ from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, 
 from validation.studies.field.table import Table as Field
 
 NONE = "n. a."
+PLACE = re.compile(r" \([^()]*:\d+, in [^()]*\)$")  # of the code that raised an error
 SAID = (
     "Each problem has an exact motion. An answer passes where its relative L2 error is below what one per cent of the "
     "problem's data changes, which is the row of what is allowed. A program stands with parameters chosen for accuracy "
@@ -21,12 +23,13 @@ SAID = (
 )
 NOTE = (
     "Relative L2 error in per cent of the column that is worst beside its band; n. a. not applicable, the reason is "
-    "told below; a dash was not run. Time: of all answers together, with the start of the program, on this machine."
+    "told below, and why a dash stands for no answer. Time: of all answers together, with the start of the program, on "
+    "this machine."
 )
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
-    """Return the chapter: the table, the causes of failures, what is not applicable, the programs."""
+    """Return the chapter: the table, the causes of failures, what has no verdict, the programs."""
     found = read(results)
     if found is None:
         return [*opening(manifest), Paragraph("The study was not run by this version; run it again.")]
@@ -36,7 +39,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
         Paragraph(SAID),
         by_problem(found),
         *_part("Why answers fail", failures(found)),
-        *_part("What is not applicable", inapplicable(found)),
+        *_part("What is not applicable or gave no answer", absent(found)),
         *_part("The programs", programs(found)),
     ]
 
@@ -128,34 +131,42 @@ def failures(found: Field) -> Table:
         for cell in _cells(found, program):
             if cell.verdict == FAIL:
                 by_cause.setdefault(cell.cause, []).append(cell.problem)
-        rows += _lines(program, by_cause)
+        rows += _lines(found, program, by_cause)
     return Table(titles, tuple(rows))
 
 
-def inapplicable(found: Field) -> Table:
-    """Return why problems are not applicable, those of one program with one reason in a line."""
+def absent(found: Field) -> Table:
+    """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
     titles = (Column("Program"), Column("Problems"), Column("Reason", "fill"))
     rows = []
     for program in shown(found):
         by_reason: dict[str, list[str]] = {}
         for cell in _cells(found, program):
-            if cell.verdict == NOT_APPLICABLE:
-                reason = cell.reason.removeprefix("the solver says that it is not made for this scene: ")
-                by_reason.setdefault(reason, []).append(cell.problem)
-        rows += _lines(program, by_reason)
+            if cell.verdict in (NOT_APPLICABLE, NOT_RUN):
+                reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
+                told = reason if cell.verdict == NOT_APPLICABLE else f"no answer: {reason}"
+                by_reason.setdefault(told, []).append(cell.problem)
+        rows += _lines(found, program, by_reason)
     return Table(titles, tuple(rows))
 
 
-def _lines(program: ProgramLine, found: dict[str, list[str]]) -> list[tuple[str, ...]]:
-    lines = [(", ".join(problems), words) for words, problems in found.items()]
+def _lines(found: Field, program: ProgramLine, said: dict[str, list[str]]) -> list[tuple[str, ...]]:
+    """Return a line for each text, with the problems that it is said of."""
+    every = len(found.problems)
+    lines = [("all" if len(problems) == every > 1 else ", ".join(problems), words) for words, problems in said.items()]
     return [(program.title if n == 0 else "", *line) for n, line in enumerate(lines)]
 
 
 def programs(found: Field) -> Table:
     """Return what each program says of itself."""
     titles = (Column("Program"), Column("Version"), Column("Model", "fill"), Column("Settings", "fill"))
-    rows = []
+    rows: list[tuple[str, str, str, str]] = []
+    before: Mapping[str, str] = {}
     for program in shown(found):
         said = program.about
-        rows.append((program.title, said.get("version", ""), said.get("model", ""), said.get("settings", "")))
+        alike = said.get("program", "") != "" and said["program"] == before.get("program")
+        version, model = said.get("version", ""), said.get("model", "")
+        told = ("" if alike else version, "the same" if alike and model == before.get("model") else model)
+        rows.append((program.title, *told, said.get("settings", "")))
+        before = said
     return Table(titles, tuple(rows))

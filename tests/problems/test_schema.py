@@ -1,0 +1,120 @@
+"""The JSON Schemas of the pack: what they take pydantic takes, and what the pack writes conforms to them."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import pytest
+from pydantic import BaseModel, ValidationError
+
+from validation.problems.bands import standard
+from validation.problems.data import PACK, SUBMISSION, ProblemData, SubmissionData
+from validation.problems.pack import TEMPLATE, problem_data
+from validation.problems.problem import problem
+
+JSON = dict[str, Any]
+TYPES: dict[str, tuple[type, ...]] = {
+    "object": (dict,),
+    "array": (list,),
+    "string": (str,),
+    "number": (int, float),
+    "integer": (int,),
+    "null": (type(None),),
+}
+SILENT = {"title", "description", "default", "$defs"}  # keywords that refuse nothing
+
+
+def takes(schema: Mapping[str, Any], value: Any, root: Mapping[str, Any]) -> bool:
+    """Whether a JSON Schema takes a value, by the keywords that pydantic writes; another keyword is an error."""
+    return all(_holds(keyword, rule, value, schema, root) for keyword, rule in schema.items() if keyword not in SILENT)
+
+
+def _holds(keyword: str, rule: Any, value: Any, schema: Mapping[str, Any], root: Mapping[str, Any]) -> bool:
+    fields = value if isinstance(value, dict) else {}
+    known = schema.get("properties", {})
+    checks: dict[str, Callable[[], bool]] = {
+        "$ref": lambda: takes(root["$defs"][rule.rpartition("/")[2]], value, root),
+        "anyOf": lambda: any(takes(one, value, root) for one in rule),
+        "type": lambda: isinstance(value, TYPES[rule]) and not isinstance(value, bool),
+        "const": lambda: value == rule,
+        "enum": lambda: value in rule,
+        "required": lambda: set(rule) <= set(fields),
+        "properties": lambda: all(takes(known[name], part, root) for name, part in fields.items() if name in known),
+        "additionalProperties": lambda: rule or set(fields) <= set(known),
+        "items": lambda: not isinstance(value, list) or all(takes(rule, part, root) for part in value),
+        "minLength": lambda: not isinstance(value, str) or len(value) >= rule,
+        "maxLength": lambda: not isinstance(value, str) or len(value) <= rule,
+        "pattern": lambda: not isinstance(value, str) or bool(re.search(rule, value)),
+    }
+    return checks[keyword]()
+
+
+def pydantic_takes(model: type[BaseModel], value: Any) -> bool:
+    try:
+        model.model_validate_json(json.dumps(value))
+    except ValidationError:
+        return False
+    return True
+
+
+def exported(name: str) -> JSON:
+    asked = problem(name)
+    found: JSON = json.loads(problem_data(asked, standard(asked)).model_dump_json())
+    return found
+
+
+VALUES = (..., None, [], "", "words", 1.5, True, {"unknown": 1}, "x" * 20_000)
+
+
+def submission() -> JSON:
+    return {"format": SUBMISSION, "pack": PACK, "problem": "locked", **TEMPLATE}
+
+
+@pytest.mark.parametrize("name", ["locked", "column"])
+def test_what_the_pack_writes_conforms(name: str) -> None:
+    schema, data = ProblemData.model_json_schema(), exported(name)
+    assert takes(schema, data, schema) and pydantic_takes(ProblemData, data)
+    schema = SubmissionData.model_json_schema()
+    assert takes(schema, submission(), schema) and pydantic_takes(SubmissionData, submission())
+
+
+def places(data: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Return the path of every value in plain data."""
+    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    found = [at] if at else []
+    for key, part in parts:
+        found += places(part, (*at, key))
+    return found
+
+
+def changed(data: JSON, at: tuple[Any, ...], value: Any) -> JSON:
+    """Return data with another value at a place; `...` takes it away."""
+    found = copy.deepcopy(data)
+    holder = found
+    for key in at[:-1]:
+        holder = holder[key]
+    if value is ...:
+        del holder[at[-1]]
+    else:
+        holder[at[-1]] = value
+    return found
+
+
+@pytest.mark.parametrize("model", [ProblemData, SubmissionData])
+def test_schema_and_pydantic_say_the_same_of_changed_data(model: type[BaseModel]) -> None:
+    """Pydantic alone takes true for the number one; all else both take or both refuse."""
+    schema = model.model_json_schema()
+    told: set[bool] = set()
+    for data in (exported("locked"), exported("column")) if model is ProblemData else (submission(),):
+        for at in places(data):
+            for value in VALUES:
+                other = changed(data, at, value)
+                by_schema, by_pydantic = takes(schema, other, schema), pydantic_takes(model, other)
+                told.add(by_schema)
+                assert by_pydantic or not by_schema, (at, value)
+                assert by_schema or not by_pydantic or value is True, (at, value)
+    assert told == {True, False}
