@@ -203,7 +203,7 @@ def _next(pieces: Pieces, piece: Piece, course: Course, end: Decimal) -> State:
         lead = beginning.lead(watched)
         found = ZERO if lead.sign < 0 else None
         if lead.sign > 0 and lead.clear < s:
-            found = piece.observe(watched).first_fall(s, lead.clear)
+            found = piece.first_fall(watched, s, lead.clear)
         if found is not None:
             s, switched = found, True
     x, rate = piece.after(s)

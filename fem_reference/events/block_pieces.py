@@ -8,20 +8,27 @@ from __future__ import annotations
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
+from operator import add, mul
 
 import numpy as np
 
 from fem_reference.events.block_model import LEFT, OPEN, RIGHT, BlockModel, States
 from fem_reference.events.block_rows import Corner, Row, State
-from fem_reference.events.decimals import ZERO, Matrix, Vector, dot, eigen, small, split
+from fem_reference.events.decimals import ONE, ZERO, Matrix, Vector, dot, eigen, small, split
 from fem_reference.events.oscillation import Oscillation, Smooth
-from fem_reference.events.series import ANGLE, Series, Stepper, terms
+from fem_reference.events.series import ANGLE, Series, Stepper, positive, terms
 from fem_reference.problem.problem import Array
 
 GUARD = 15
 """Digits that a sum may lose before what is left of it counts as zero."""
+FLOATS = 25
+"""Digits of a series that is rounded to floats: more than a float has, whatever cancels at its end."""
+ROUNDED = 1e-13
+"""Part of its terms by which a sum of rounded coefficients may be wrong."""
 SPAN = 60
 """Longest piece as an angle of its fastest mode [rad]; the sines of longer pieces would lose digits in floats."""
+UNKNOWNS = [[Decimal(int(i == j)) for j in range(6)] for i in range(6)]
+"""Rows of the unknowns themselves."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +65,19 @@ class Piece:
         """A linear function of the unknowns or of their rates, over the time since the state."""
         raise NotImplementedError
 
+    def first_fall(self, row: Row, end: Decimal, start: Decimal) -> Decimal | None:
+        """The first time in (start, end] at which such a function falls through zero, None if it does not."""
+        return self.observe(row).first_fall(end, start)
+
     def after(self, s: Decimal) -> tuple[Vector, Vector]:
         """Unknowns and their rates a time s after the state."""
         raise NotImplementedError
 
     def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
-        """A scale of time [s], frequencies, and for each row the coefficients of (s / scale)^k, cosines and sines."""
+        """A scale of time [s], frequencies, and the coefficients of (s / scale)^k, cosines and sines.
+
+        They are those of the six unknowns and of each row, shape (6 + rows, ...).
+        """
         raise NotImplementedError
 
     def corner(self, index: int) -> Corner:
@@ -121,8 +135,8 @@ class ModalPiece(Piece):
         return Oscillation((first, c[1], c[2]), kept)
 
     def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
-        """A scale of time of 1 s, frequencies, and for each row the coefficients of powers, cosines and sines."""
-        functions = [self.observe(row) for row in rows]
+        """A scale of time of 1 s, frequencies, and the coefficients of powers, cosines and sines."""
+        functions = [self.observe(row) for row in [*map(Row, UNKNOWNS), *rows]]
         frequencies = sorted({w for f in functions for w, _, _ in f.waves})
         coefficients = np.array([_coefficients(f, frequencies) for f in functions])
         return 1.0, np.array([float(w) for w in frequencies]), coefficients
@@ -154,25 +168,56 @@ class SlippingPiece(Piece):
         start = self.state.displacement, self.state.velocity
         return self.stepper.coefficients(start, self.forces, self.longest, terms())
 
-    def observe(self, row: Row) -> Series:
-        """A linear function of the unknowns or of their rates, over the time since the state."""
-        weights = [(i, w) for i, w in enumerate(row.weights) if w]
-        c = [sum((w * x[i] for i, w in weights), ZERO) for x in self.coefficients]
+    @cached_property
+    def columns(self) -> list[tuple[Decimal, ...]]:
+        """The same coefficients, unknown by unknown."""
+        return list(zip(*self.coefficients, strict=True))
+
+    @cached_property
+    def rounded(self) -> Array:
+        """Those of them that floats can see, in floats, shape (terms, unknowns)."""
+        return np.array(self.coefficients[: terms(FLOATS)], dtype=float)
+
+    def observe(self, row: Row, count: int | None = None) -> Series:
+        """A linear function of the unknowns or of their rates, over the time since the state, or its first terms."""
+        parts = [(w, column[:count]) for w, column in zip(row.weights, self.columns, strict=True) if w]
+        c = [ZERO] * len(self.coefficients[:count])
+        for i, (w, column) in enumerate(parts):
+            part = column if w == 1 else map(w.__mul__, column)
+            c = list(map(add, c, part) if i else part)
         if row.of_rates:
             c = [k * x / self.longest for k, x in enumerate(c)][1:]
         c[0] += row.constant
         c[1] += row.drift * self.longest
         return Series(self.longest, tuple(c))
 
+    def first_fall(self, row: Row, end: Decimal, start: Decimal) -> Decimal | None:
+        """The first time in (start, end] at which such a function falls through zero, None if it does not.
+
+        Most functions are far from it, which floats show in a part of the time.
+        """
+        weights, length = np.array(row.weights, dtype=float), float(self.longest)
+        c, sizes = self.rounded @ weights, np.abs(self.rounded) @ np.abs(weights)
+        if row.of_rates:
+            c, sizes = (x[1:] * np.arange(1, len(x)) / length for x in (c, sizes))
+        added = np.array([float(row.constant), float(row.drift) * length])
+        c[:2] += added
+        clear = positive(c, float(end) / length, ROUNDED * float(sizes.sum() + np.abs(added).sum()))
+        return None if clear else super().first_fall(row, end, start)
+
     def table(self, rows: list[Row]) -> tuple[float, Array, Array]:
         """The length of the series as scale of time [s], no frequencies, and the coefficients of the powers."""
-        coefficients = [[float(c) for c in self.observe(row).coefficients] for row in rows]
-        return float(self.longest), np.zeros(0), np.array(coefficients)
+        found = [self.observe(row, terms(FLOATS)).coefficients for row in rows]
+        return float(self.longest), np.zeros(0), np.vstack([self.rounded.T, np.array(found, dtype=float)])
 
     def after(self, s: Decimal) -> tuple[Vector, Vector]:
         """Unknowns and their rates a time s after the state."""
-        rows = [Series(self.longest, tuple(column))(s) for column in zip(*self.coefficients, strict=True)]
-        return [value for value, _, _ in rows], [slope for _, slope, _ in rows]
+        z, powers = s / self.longest, [ONE]
+        for _ in self.coefficients[1:]:
+            powers.append(powers[-1] * z)
+        slopes = [k * power / self.longest for k, power in enumerate(powers[:-1], 1)]
+        x = [sum(map(mul, column, powers), ZERO) for column in self.columns]
+        return x, [sum(map(mul, column[1:], slopes), ZERO) for column in self.columns]
 
 
 class Pieces:
@@ -212,8 +257,7 @@ class FloatPiece:
         self.states = np.array(state.states, dtype=float)
         self.references = np.array([float(x) for x in state.references])
         self.slipped = np.array([float(x) for x in state.slipped])
-        rows = [Row(_unit(i)) for i in range(6)]
-        rows += [corner.gap for corner in corners] + [corner.stretch for corner in corners]
+        rows = [corner.gap for corner in corners] + [corner.stretch for corner in corners]
         rows += [corner.slide for corner in corners]
         self.scale, self.frequencies, self.coefficients = piece.table(rows)
         self.loss = self._loss(float(piece.model.ps))
@@ -270,10 +314,6 @@ class FloatPiece:
             power = np.convolve(ps * stretch, moved)
             total[1 : len(power) + 1] += power / np.arange(1, len(power) + 1)
         return total
-
-
-def _unit(i: int) -> Vector:
-    return [Decimal(int(i == j)) for j in range(6)]
 
 
 def _coefficients(row: Oscillation, frequencies: list[Decimal]) -> list[float]:

@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from decimal import Decimal, getcontext
-from functools import cached_property
+from functools import cache, cached_property
+from operator import mul
 
 import numpy as np
 
@@ -59,12 +60,14 @@ class Series(Smooth):
 
     def first_fall(self, end: Decimal, start: Decimal = ZERO) -> Decimal | None:
         """The first s in (start, end] at which the function falls through zero, None if it does not."""
-        return None if self._clear(float(end / self.scale)) else super().first_fall(end, start)
+        clear = positive(np.array(self.coefficients, dtype=float), float(end / self.scale))
+        return None if clear else super().first_fall(end, start)
 
-    def _clear(self, z: float) -> bool:
-        """Whether the polynomial of Bernstein's form on [0, z], which holds the function, is positive."""
-        c = np.array([float(x) for x in self.coefficients]) * z ** np.arange(len(self.coefficients))
-        return bool((_bernstein(len(c)) @ c).min() > MARGIN * np.abs(c).sum())
+
+def positive(coefficients: Array, z: float, error: float = 0.0) -> bool:
+    """Whether Bernstein's form of a polynomial on [0, z], whose polygon holds it, is positive by more than an error."""
+    c = coefficients * z ** np.arange(len(coefficients))
+    return bool((_bernstein(len(c)) @ c).min() > MARGIN * np.abs(c).sum() + error)
 
 
 _BERNSTEIN: dict[int, Array] = {}
@@ -79,10 +82,15 @@ def _bernstein(count: int) -> Array:
     return _BERNSTEIN[count]
 
 
-def terms() -> int:
-    """Terms of a series whose remainder is below the digits of the current decimal context."""
+def terms(digits: int | None = None) -> int:
+    """Terms of a series whose remainder is below so many digits; by default those of the current decimal context."""
+    return _terms(digits or getcontext().prec)
+
+
+@cache
+def _terms(digits: int) -> int:
     left, n = 0.0, 0
-    while left > -getcontext().prec - 5 or n < 2 * ANGLE:
+    while left > -digits - 5 or n < 2 * ANGLE:
         n += 1
         left += math.log10(ANGLE / n)
     return n
@@ -123,11 +131,12 @@ class Stepper:
         pushes = [
             [f * u / m for f, m in zip(part, self.mass, strict=True)] for part, u in zip(force, units, strict=True)
         ]
-        rows = [[(j, k * square) for j, k in row] for row in self.rows]
+        rows = [([j for j, _ in row], [k * square for _, k in row]) for row in self.rows]
+        nothing = [ZERO] * len(rows)
         found = [start[0], [v * scale for v in start[1]]]
         for k in range(count - 2):
-            pulls = [sum((a * found[k][j] for j, a in row), ZERO) for row in rows]
-            push = pushes[k] if k < 2 else [ZERO] * len(rows)
+            pulls = [sum(map(mul, entries, map(found[k].__getitem__, places)), ZERO) for places, entries in rows]
+            push = pushes[k] if k < 2 else nothing
             share = ONE / ((k + 1) * (k + 2))
             found.append([(f - pull) * share for f, pull in zip(push, pulls, strict=True)])
         return found

@@ -12,12 +12,14 @@ from validation.problems.problem import Problem, problem, problem_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import load_scene
 
-QUICK = ("locked", "opening", "rocking", "column")
+SHORTENED = {"sliding": 6, "creep": 30, "rebound": 120}  # steps
+# those whose exact motion takes long are judged over their first steps
+ALL = ("locked", "opening", "rocking", "column", *(pytest.param(name, marks=pytest.mark.long) for name in SHORTENED))
 
 
 def short(name: str) -> Problem:
     """Return a problem; one whose exact motion takes long, over its first steps."""
-    steps = {"sliding": 6, "creep": 30, "rebound": 120}.get(name)
+    steps = SHORTENED.get(name)
     return (
         problem(name) if steps is None else problem_of(load_scene(f"field-{name}").with_values({"time.steps": steps}))
     )
@@ -39,7 +41,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("wrong", WRONG)
 def test_a_wrong_history_fails(name: str, wrong: str) -> None:
     asked = short(name)
@@ -48,7 +50,7 @@ def test_a_wrong_history_fails(name: str, wrong: str) -> None:
     assert word is (Word.PASS if within else Word.FAIL)
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", ALL)
 def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_changes(name: str) -> None:
     asked = short(name)
     held = standard(asked)
@@ -59,7 +61,7 @@ def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_change
             assert judge(asked, changed).word is Word.PASS, datum
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Word.PASS), (1 + 1e-6, Word.FAIL)])
 def test_both_sides_of_the_band(name: str, times: float, word: Word) -> None:
     asked = short(name)

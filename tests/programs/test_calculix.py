@@ -126,7 +126,7 @@ BOTH = ["displacement", "horizontal_displacement"]
 
 
 @needs_ccx
-@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
+@pytest.mark.parametrize("hypothesis", ["plane stress", pytest.param("plane strain", marks=pytest.mark.long)])
 def test_locked_springs_under_all_loads_and_a_moving_base(tmp_path, hypothesis):
     record = tmp_path / "record.csv"
     record.write_text(RECORD)
@@ -136,18 +136,21 @@ def test_locked_springs_under_all_loads_and_a_moving_base(tmp_path, hypothesis):
     assert max(differences(scene).values()) < 0.01
 
 
+@pytest.mark.long
 @needs_ccx
 def test_corners_that_open_slip_and_stick_are_those_of_dda():
     scene = scene_of("creep", time__steps=30)
     assert max(differences(scene).values()) < 0.02
 
 
+@pytest.mark.long
 @needs_ccx
 def test_a_block_that_rocks_turns_as_a_rigid_one():
     scene = scene_of("rocking", time__steps=30, block__tilt=-10.0)
     assert differences(scene)["rotation"] < 1e-3
 
 
+@pytest.mark.long
 @needs_ccx
 @pytest.mark.parametrize(
     ("motion", "base"),

@@ -70,17 +70,22 @@ def test_its_own_contact_slides_exactly_but_for_a_step_in_which_a_corner_is_take
     assert (late < held * given.time.step**2 + 1e-6 * predicted).all()
 
 
+SLOWER = [
+    (scene("opening", time__steps=30, contact__gap=0.01, block__velocity=-1.0), 2e-3),
+    (scene("opening", time__steps=30, load__traction=1e6, run__columns=MOVED), 2e-2),
+    (scene("opening", time__steps=30, load__eccentricity=0.3, contact__friction=30.0, run__columns=MOVED), 2e-3),
+    (scene("creep", time__steps=30), 2e-3),
+    (scene("rocking", time__step=0.02, time__steps=30, block__tilt=-10.0), 1e-3),
+    (scene("column", time__step=0.002, time__steps=40), 1e-3),
+]
+
+
 @pytest.mark.parametrize(
     ("given", "below"),
     [
         (scene("locked", time__steps=20), 2e-3),
         (scene("opening", time__steps=30), 2e-3),
-        (scene("opening", time__steps=30, contact__gap=0.01, block__velocity=-1.0), 2e-3),
-        (scene("opening", time__steps=30, load__traction=1e6, run__columns=MOVED), 2e-2),
-        (scene("opening", time__steps=30, load__eccentricity=0.3, contact__friction=30.0, run__columns=MOVED), 2e-3),
-        (scene("creep", time__steps=30), 2e-3),
-        (scene("rocking", time__step=0.02, time__steps=30, block__tilt=-10.0), 1e-3),
-        (scene("column", time__step=0.002, time__steps=40), 1e-3),
+        *(pytest.param(*given, marks=pytest.mark.long) for given in SLOWER),
     ],
     ids=["locked", "opening", "gap", "glued", "off-centre", "creep", "rocking", "column"],
 )

@@ -102,6 +102,7 @@ def test_a_lattice_has_the_mass_and_the_softness_of_its_layers_and_joints():
     assert np.all(np.diff(chain.heights) > 0)
 
 
+@pytest.mark.long
 @with_yade
 def test_the_default_integrator_is_the_leapfrog_with_forces_changed_by_a_fifth():
     """V += dt f (1 - 0.2 sign(f (v + dt f / 2 m))) / m, then x += dt v."""
@@ -128,8 +129,8 @@ def test_the_default_integrator_is_the_leapfrog_with_forces_changed_by_a_fifth()
     ("scene", "most"),
     [
         (scene_of("opening", time={"steps": 20}), 5e-4),
-        (scene_of("creep", time={"steps": 20}), 1e-3),
-        (scene_of("column", column={"motion": "shear"}), 2e-3),
+        pytest.param(scene_of("creep", time={"steps": 20}), 1e-3, marks=pytest.mark.long),
+        pytest.param(scene_of("column", column={"motion": "shear"}), 2e-3, marks=pytest.mark.long),
     ],
     ids=["two bodies", "linkage", "lattice"],
 )

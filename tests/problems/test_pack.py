@@ -1,0 +1,77 @@
+"""The problem pack: complete, and all that a stranger needs to answer a problem with the exact motion."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import typed
+
+from validation.problems import pack
+from validation.problems.data import PACK, ProblemData, SubmissionData, united
+from validation.problems.judge import judge
+from validation.problems.problem import PROBLEMS
+from validation.problems.submission import read_submission
+
+QUICK = ("locked", "rocking", "column")
+FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody"}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the problems whose exact motions take no time."""
+    directory = tmp_path_factory.mktemp("pack")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pack, "PROBLEMS", QUICK)
+        assert pack.write_problems(directory) == len(QUICK)
+    return directory / "problems"
+
+
+def answered(problems: Path, name: str, place: Path) -> str:
+    """Answer a problem of a pack with its own exact motion, and return the verdict."""
+    shutil.copytree(problems / "submissions" / name, place)
+    stated = place / "submission.json"
+    stated.write_text(json.dumps(json.loads(stated.read_text()) | FILLED))
+    shutil.copy(problems / "exact" / f"{name}.csv", place / "answer.csv")
+    found = read_submission(place)
+    return judge(found.problem, found.history).verdict
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_problem_is_answered_by_the_files_of_the_pack(name: str, written: Path, tmp_path: Path) -> None:
+    assert answered(written, name, tmp_path / "mine") == "PASS"
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
+    data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
+    table = (written / data.exact).read_text().splitlines()
+    assert table[0].split(",") == [pack.TIME, *(column.name for column in data.answer)]
+    assert len(table) == 1 + data.sampling.count
+    assert float(table[1].split(",")[0]) == pytest.approx(data.sampling.step_s)
+    for column in data.answer:
+        assert 0 == column.low < column.high < 0.2 and "one per cent of" in column.reason
+        assert column.until_s <= data.sampling.step_s * data.sampling.count * (1 + 1e-9)
+    assert (data.pack, data.problem, data.column is None) == (PACK, name, name != "column")
+    assert (data.block is None) == (data.contact is None) == (data.load is None) == (name == "column")
+
+
+def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
+    for schema, data in (("problem", ProblemData), ("submission", SubmissionData)):
+        assert json.loads((written / f"{schema}.schema.json").read_text()) == data.model_json_schema()
+    page = (written / "README.md").read_text()
+    assert f"version {PACK};" in page and f"`{united('rotation')}`" in page
+    assert [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4][
+        -len(QUICK) :
+    ] == list(QUICK)
+
+
+@pytest.mark.long
+def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
+    done = typed("export-pack", tmp_path / "pack")
+    assert done.returncode == 0, done.stderr
+    assert f"{len(PROBLEMS)} problems for any program" in done.stdout
+    for name in PROBLEMS:
+        assert answered(tmp_path / "pack" / "problems", name, tmp_path / name) == "PASS"
