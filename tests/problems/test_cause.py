@@ -63,7 +63,7 @@ def test_a_wrong_datum_in_an_exact_program(values: dict, name: str, factor: floa
 
 
 def test_what_gives_the_same_rows_has_one_name() -> None:
-    """A program may be wrong in Poisson's ratio, the speed below the base or a moment of inertia: no datum of its own."""
+    """A program may be wrong in Poisson's ratio, the speed below the base or an inertia: no datum of its own."""
     column = problem("column").scene
     below = {key: x for key, x in column.definition()["column"].items() if key != "base_speed"} | {"base_young": 2e9}
     for scene in (column, parse_scene(column.definition() | {"column": below}, "column")):
