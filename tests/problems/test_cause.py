@@ -8,9 +8,11 @@ import pytest
 from validation.problems import cause as module
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
+from validation.problems.families import numbers
 from validation.problems.judge import Word, judge
 from validation.problems.problem import problem
 from validation.runs.history import History
+from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver
 
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
@@ -58,6 +60,21 @@ def test_a_wrong_datum_in_an_exact_program(values: dict, name: str, factor: floa
     found = named("locked", fine("locked", values))
     assert found.ids == (name,)
     assert found.values[name] == pytest.approx(factor, rel=2e-3)
+
+
+def test_what_gives_the_same_rows_has_one_name() -> None:
+    """A program may be wrong in Poisson's ratio, the speed below the base or an inertia: no datum of its own."""
+    column = problem("column").scene
+    below = {key: x for key, x in column.definition()["column"].items() if key != "base_speed"} | {"base_young": 2e9}
+    for scene in (column, parse_scene(column.definition() | {"column": below}, "column")):
+        found = {number.id: number for number in numbers(scene)}
+        doubled = scene.with_values(found["base-factor"].changed(scene, 2.0))
+        assert doubled.column.impedance == pytest.approx(2 * scene.column.impedance)
+        assert "impedance" in found["base-factor"].name
+        assert "Poisson" in found["young-factor"].name
+    names = {number.id: number.name for number in numbers(problem("rocking").scene)}
+    assert "moment of inertia" in names["gravity-factor"]
+    assert {number.id: number.name for number in numbers(problem("sliding").scene)}["gravity-factor"] == "gravity"
 
 
 @pytest.mark.long

@@ -112,7 +112,30 @@ def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more() -> No
     assert found.high <= LARGEST
     assert 10 < found.rows < 400
     assert band(t, 0.0 * t, {"the density": 0.0 * t}) is None
-    assert band(t, t, {"the density": t}) is None
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"contact.gap": 1.0, "load.pressure": 0.0, "load.gravity": 9.81, "run.columns": ["displacement"]},
+        {
+            "contact.friction": 0.0,
+            "load.pressure": 0.0,
+            "load.gravity": 9.81,
+            "load.slope": -30.0,
+            "run.columns": ["horizontal_displacement"],
+        },
+    ],
+)
+def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) -> None:
+    """Free fall, and sliding without friction: g t^2 / 2 to seven digits passes, one half a step late does not."""
+    asked = problem_of(load_scene("field-opening").with_values({"time.steps": 12, **values}))
+    (name,), held = asked.scene.run.columns, standard(asked)
+    assert held.bands[name].high == 0.01
+    assert "in proportion to what drives it" in held.bands[name].reason
+    t, g = held.exact.time, -9.81 if name == DISPLACEMENT else -9.81 * math.sin(math.radians(30.0))
+    for late, word in ((1e-7, Word.PASS), (0.5 * t[0], Word.FAIL)):
+        assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).word is word
 
 
 def test_data_that_a_scene_has() -> None:

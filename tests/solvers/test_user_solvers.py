@@ -62,6 +62,22 @@ def test_what_a_solver_does_is_named(scene: Scene, attribute: str, outcome: Outc
     assert words in "; ".join(run.notes)
 
 
+def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(tmp_path: Path, monkeypatch) -> None:
+    """DDA takes no base that is elsewhere than at zero where contact opens; another program's answer stands."""
+    (tmp_path / "base.csv").write_text("time,x,y\n0,0.001,0\n1,0.001,0\n")
+    (tmp_path / "other.py").write_text(
+        "class Other:\n"
+        "    handles = frozenset({'unilateral contact', 'base motion'})\n"
+        "    def solve(self, scene):\n"
+        "        return {'displacement': [-1e-3] * scene.time.steps}\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    moved = load_scene("field-opening").with_values({"load.base_motion": str(tmp_path / "base.csv"), "time.steps": 3})
+    with pytest.raises(InputError, match="must be zero at t = 0"):
+        get_solver("dda").solve(moved)
+    assert get_solver("other:Other").solve(moved).outcome is Outcome.COMPLETED
+
+
 @pytest.mark.long
 def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, "1.5")

@@ -24,6 +24,9 @@ UNKNOWN = 0.01  # relative error of a datum that nobody knows better
 # error is 1, must not come near to it. The column is judged up to the instant at which that happens.
 LARGEST = 0.2
 LEAST = 4  # rows that are judged, at least
+# A change below that is rounding of the exact motion (1e-7 in a column's) or of printed numbers (six digits).
+ROUNDED = 1e-6
+DRIVE = "what drives it"  # the datum of a motion that no other one changes
 Values = dict[str, Any]
 
 
@@ -59,6 +62,11 @@ class Band:
     @property
     def reason(self) -> str:
         """Why the band ends there."""
+        if self.datum == DRIVE:
+            return (
+                "no datum of block, layers or contact changes the exact motion: it is in proportion to what drives it "
+                f"(loads, velocity, base), of which {100 * self.high:.2g} % changes it by as much"
+            )
         return (
             f"one per cent of {self.datum} changes the exact motion by {100 * self.high:.2g} %: data of a block are "
             "not known to better than one per cent, an error below that changes nothing for its user"
@@ -175,7 +183,8 @@ def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | Non
     """Return the band of a column; None where nothing of it can be judged.
 
     e_d(n) = ||x_d - x|| / ||x|| over the first n rows, d a datum; the rows that are judged are the most for which no
-    e_d is larger than `LARGEST`, and the band ends at the largest e_d there.
+    e_d is larger than `LARGEST`, and the band ends at the largest e_d there. A motion that no datum changes, as free
+    flight or sliding without friction, is in proportion to what drives it, of which it is judged to one per cent.
     """
     rows = min([len(column), *(len(other) for other in changed.values())])
     moved = {datum: moved_by(other[:rows], column[:rows]) for datum, other in changed.items()}
@@ -183,8 +192,10 @@ def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | Non
         return None
     most = np.max([*moved.values()], axis=0)
     judged = _judged_rows(most)
-    if judged < LEAST or not most[judged - 1] > 0:
+    if judged < LEAST:
         return None
+    if most[judged - 1] < ROUNDED:
+        return Band(UNKNOWN, DRIVE, judged, float(time[judged - 1]))
     datum = max(moved, key=lambda name: moved[name][judged - 1])
     return Band(float(most[judged - 1]), datum, judged, float(time[judged - 1]))
 

@@ -61,11 +61,14 @@ class Number:
 def numbers(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of a scene that may be wrong by a factor, none that is zero or absent."""
     if scene.column is not None:
-        yield Number("young-factor", "Young's modulus", _layers("young"))
+        yield Number("young-factor", OF_WAVES, _layers("young"))
         yield Number("density-factor", "the density", _layers("density"))
         yield from _plain(scene, INPUT)
+        if scene.column.impedance is not None:
+            yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
         return
-    yield from _plain(scene, BLOCK)
+    turns = {"load.gravity": ("gravity-factor", TURNS)} if features.ROTATION in features.of(scene) else {}
+    yield from _plain(scene, BLOCK | turns)
     yield Number("width-factor", "the width", lambda s, f: _sized(s, f, 1.0))
     yield Number("height-factor", "the height", lambda s, f: _sized(s, 1.0, f))
     c = scene.contact
@@ -78,6 +81,10 @@ def numbers(scene: Scene) -> Iterator[Number]:
         yield Number("friction-factor", "tan(phi) of friction", _friction)
 
 
+# What gives the same rows has one name, since a program may be wrong in either: a column knows the modulus of its waves
+# alone, and a rigid block turns by g m R / I.
+OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
+TURNS = "g m R / I of the block that turns (gravity, or one over its size or its moment of inertia)"
 BLOCK = {
     "block.density": ("density-factor", "the density"),
     "block.young": ("young-factor", "Young's modulus"),
@@ -91,7 +98,6 @@ BLOCK = {
 INPUT = {
     "input.pressure": ("load-factor", "the pressure"),
     "input.frequency": ("frequency-factor", "the input's frequency"),
-    "column.base_density": ("base-factor", "the density below the base"),
     "column.base_stiffness": ("base-springs-factor", "the stiffness of the base"),
 }
 
@@ -107,6 +113,12 @@ def _plain(scene: Scene, keys: Mapping[str, tuple[str, str]]) -> Iterator[Number
 
 def _layers(key: str) -> Callable[[Scene, float], dict[str, Any]]:
     return lambda s, f: {"column.layer": [layer | {key: layer[key] * f} for layer in s.definition()["column"]["layer"]]}
+
+
+def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return the keys by which (rho E)^(1/2), or rho c, below the base is larger by a factor."""
+    base = scene.definition()["column"]
+    return {"column.base_density": base["base_density"] * (factor if "base_speed" in base else factor**2)}
 
 
 def _sized(scene: Scene, wider: float, higher: float) -> dict[str, Any]:

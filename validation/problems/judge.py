@@ -149,7 +149,7 @@ def _without_band(name: str, held: Standard) -> str:
         return "no exact motion of this column is known"
     if not np.any(exact):
         return "it does not move in the exact motion, which leaves nothing to divide an error by"
-    return "one per cent of the scene's data changes it more than anything could be judged by, or not at all"
+    return "one per cent of the scene's data changes it more than anything could be judged by"
 
 
 def error_of(values: Array, exact: Array, band: Band) -> float:

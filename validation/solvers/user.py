@@ -178,14 +178,22 @@ def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
     if (told := factor("time", history.time, expected, scene)) is not None:
         return told
-    dda = DDA()
-    reference = None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
+    reference = _reference(scene)
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
             sound = reference.columns[name]
             if np.isfinite(sound).all() and (told := factor(name, values, sound, scene)) is not None:
                 return told
     return None
+
+
+def _reference(scene: Scene) -> History | None:
+    """Return the built-in solution, None where there is none: nobody's answer is refused for that."""
+    dda = DDA()
+    try:
+        return None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
+    except InputError:
+        return None
 
 
 def factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
