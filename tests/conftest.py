@@ -105,6 +105,8 @@ def pytest_collection(session: pytest.Session) -> None:
     worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
     if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
         for path in sorted((config.rootpath / "tests").rglob("test_*.py"), reverse=True):
+            if (path.parent / "conftest.py").exists():
+                continue  # which says from where its modules import, and is read where they are collected
             with suppress(Exception, pytest.skip.Exception):  # told where the module is collected
                 importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
 
