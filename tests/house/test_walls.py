@@ -26,9 +26,17 @@ try:
 except SystemExit:
     pass
 """
-TYPER = set(
-    ["typer", "click", "rich", "pygments", "markdown_it", "mdurl", "shellingham", "annotated_doc", "typing_extensions"]
-)
+TYPER = {
+    "typer",
+    "click",
+    "rich",
+    "pygments",
+    "markdown_it",
+    "mdurl",
+    "shellingham",
+    "annotated_doc",
+    "typing_extensions",
+}
 
 
 @cache
