@@ -4,13 +4,16 @@ import importlib
 import io
 import os
 import re
+import signal
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 
 import pytest
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices: a second thread of BLAS only waits, and counts as work
 
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
@@ -72,6 +75,24 @@ TOGETHER = (  # modules whose tests share what takes long to make
 )
 
 
+# Of these scenes the gates of the named cases are short, all others long. Of the two codes' product of four axes a
+# quarter has every value of each; of the locked sub-blocks the two differ in every value.
+SHORT_CASES = {
+    "two-codes-constant": (
+        "block.poisson=0,block.hypothesis=plane stress,time.start=zero",
+        "block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",
+    ),
+    "two-codes-average": (
+        "block.poisson=0,block.hypothesis=plane strain,time.start=consistent",
+        "block.poisson=0.25,block.hypothesis=plane stress,time.start=zero",
+    ),
+    "subblocks-locking": (
+        "contact.stiffness=1e+11,block.poisson=0,load.pressure=0,load.traction=1e+06",
+        "contact.stiffness=1e+09,block.poisson=0.25,load.pressure=5e+06,load.traction=0",
+    ),
+}
+
+
 def group_of(nodeid: str) -> str:
     """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself."""
     path, _, name = nodeid.partition("::")
@@ -105,12 +126,23 @@ def pytest_collection(session: pytest.Session) -> None:
     worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
     if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
         for path in sorted((config.rootpath / "tests").rglob("test_*.py"), reverse=True):
+            if (path.parent / "conftest.py").exists():
+                continue  # which says from where its modules import, and is read where they are collected
             with suppress(Exception, pytest.skip.Exception):  # told where the module is collected
                 importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems() -> None:
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark gates of long scenes, and let Hypothesis draw without the constants of our sources."""
+    for item in items:
+        scene, _, values = item.name.removeprefix("test_gate[").partition("[")
+        if scene in SHORT_CASES and values.partition("]")[0] not in SHORT_CASES[scene]:
+            item.add_marker(pytest.mark.long)
+    _draw_without_constants()
+
+
+def _draw_without_constants() -> None:
     """Let Hypothesis draw without the constants of our sources.
 
     They would make the examples depend on which modules a process has imported, and on any edit, for the time of
@@ -154,8 +186,17 @@ def beside(finished_cases: Path, directory: Path) -> Results:
     (finished_cases / "rows.jsonl").touch()
     directory.mkdir(exist_ok=True)
     for name in ("histories", "rows.jsonl"):
-        (directory / name).symlink_to(finished_cases / name)
+        if not (directory / name).is_symlink():
+            (directory / name).symlink_to(finished_cases / name)
     return Results(directory)
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Let SIGINT reach the processes that a test starts: they inherit that a job in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import typed
+from conftest import beside, typed
 
 from validation.advice.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
 from validation.engine.run import finish, run_study
@@ -18,19 +18,21 @@ STIFFNESS = load_scene("figures-5-6")
 STEPS = load_scene("model-form")
 
 
-def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
+def raised(scene: Scene, finished_cases: Path, directory: Path, *solvers: str) -> dict[str, Alarm]:
     study = Study("test", "", "", [scene], solvers or ("dda", "bar", "continuum"))
-    return {alarm.kind: alarm for alarm in alarms([scene], finish(study.cases(), study, Results(directory)))}
+    return {
+        alarm.kind: alarm for alarm in alarms([scene], finish(study.cases(), study, beside(finished_cases, directory)))
+    }
 
 
-def test_agreement_by_damping_is_agreement_beside_what_it_cost(tmp_path: Path) -> None:
+def test_agreement_by_damping_is_agreement_beside_what_it_cost(tmp_path: Path, finished_cases: Path) -> None:
     coarse, _, _, fine = STEPS.expand()
-    alarm = raised(coarse, tmp_path)[AGREEMENT]
+    alarm = raised(coarse, finished_cases, tmp_path)[AGREEMENT]
     assert alarm.values["agreement"] == pytest.approx(0.0081, abs=5e-5)
     assert alarm.values["removed"] > 0.9 and alarm.values["time error"] > 0.5
-    assert AGREEMENT not in raised(fine, tmp_path)  # 64 % apart: no agreement to be warned of
+    assert AGREEMENT not in raised(fine, finished_cases, tmp_path)  # 64 % apart: no agreement to be warned of
     light = load_scene("figure-9").expand()[3]  # damped by gg, which the continuum has as well
-    assert AGREEMENT not in raised(light, tmp_path)
+    assert AGREEMENT not in raised(light, finished_cases, tmp_path)
 
 
 def test_what_damping_removes_is_algorithmic() -> None:
@@ -42,17 +44,19 @@ def test_what_damping_removes_is_algorithmic() -> None:
     assert removed_motion(kinetic, 0.9) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_hidden_tension_says_when_and_for_how_long(tmp_path: Path) -> None:
-    alarm = raised(STEPS.expand()[2], tmp_path)[TENSION]
+def test_hidden_tension_says_when_and_for_how_long(tmp_path: Path, finished_cases: Path) -> None:
+    alarm = raised(STEPS.expand()[2], finished_cases, tmp_path)[TENSION]
     assert alarm.values["dda.minimum"] == pytest.approx(-0.435e6, abs=500)
     assert (alarm.values["dda.time"], alarm.values["dda.duration"]) == pytest.approx((0.002, 0.002))
-    assert TENSION not in raised(STEPS.expand()[1], tmp_path, "dda", "bar")
+    assert TENSION not in raised(STEPS.expand()[1], finished_cases, tmp_path, "dda", "bar")
 
 
-def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path) -> None:
+def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path, finished_cases: Path) -> None:
     soft, stiff, stiffest = STIFFNESS.expand()
-    assert raised(stiffest, tmp_path)[RINGING].values["root"] == pytest.approx(-0.9733, abs=5e-5)
-    assert RINGING not in raised(soft, tmp_path) and RINGING not in raised(stiff, tmp_path)
+    assert raised(stiffest, finished_cases, tmp_path)[RINGING].values["root"] == pytest.approx(-0.9733, abs=5e-5)
+    assert RINGING not in raised(soft, finished_cases, tmp_path) and RINGING not in raised(
+        stiff, finished_cases, tmp_path
+    )
 
 
 def test_refining_dt_at_a_fixed_discount_is_warned_of(tmp_path: Path) -> None:
@@ -64,8 +68,8 @@ def test_refining_dt_at_a_fixed_discount_is_warned_of(tmp_path: Path) -> None:
     assert not [a for a in alarms(rate.expand(), finish([], study, Results(tmp_path))) if a.kind == DISCOUNT]
 
 
-def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path) -> None:
-    run_study(scene_study("figures-5-6"), Results(tmp_path))
+def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path, finished_cases: Path) -> None:
+    run_study(scene_study("figures-5-6"), beside(finished_cases, tmp_path))
     verdicts = json.loads((tmp_path / "verdicts.json").read_text())
     ringing = {v["scene"] for v in verdicts if RINGING in v["alarms"]}
     assert ringing == {"figures-5-6[contact.stiffness=1e+11]"}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import OVERFLOW, SCENE, cli, refused, typed
+from conftest import OVERFLOW, SCENE, refused, typed
 
 from validation.runs.files import read_csv
 
@@ -31,7 +31,7 @@ def test_fields_are_written_for_paraview(scene_file: Path, tmp_path: Path) -> No
 def test_a_run_prints_one_table_and_keeps_everything(scene_file: Path, tmp_path: Path) -> None:
     gate = '\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [{}, {}]\nreason = "model form"\n'
     scene_file.write_text(SCENE + gate.format(0.03, 0.07))
-    passed = cli("run", scene_file, "--results", tmp_path / "r")
+    passed = typed("run", scene_file, "--results", tmp_path / "r")
     assert passed.returncode == 0, passed.stderr
     assert all(word in passed.stdout for word in ("scene", "pair", "metric", "value", "band", "verdict", "seconds"))
     assert "1 PASS, 0 FAIL, 0 NOT RUN" in passed.stdout
@@ -124,6 +124,7 @@ def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_fil
     assert "overflow: The numbers left the range of double precision." in done.stdout
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE.replace("steps = 50", "steps = 40000") + '[sweep]\n"time.gg" = [1.0, 0.9, 0.8]\n')
     command = [sys.executable, "-m", "validation", "run", str(scene_file), "--results", str(tmp_path / "r")]
@@ -137,6 +138,7 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
     assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interruption_in_a_long_call_is_told_as_well(tmp_path: Path) -> None:
     """The main thread is where it hears of no signal: what it would say is said for it, once."""
     code = (

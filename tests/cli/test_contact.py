@@ -13,7 +13,7 @@ from validation.advice import contact_page
 from validation.engine.case import Case
 from validation.engine.measure import execute
 
-SHORT = ("--set", "time.step=0.001", "--set", "time.steps=40", "--set", "contact.stiffness=1e11")
+SHORT = ("--set", "time.step=0.001", "--set", "time.steps=20", "--set", "contact.stiffness=1e11")
 
 
 def test_the_page_states_what_json_holds() -> None:
@@ -56,7 +56,7 @@ def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_s
 
 def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:
     path = tmp_path / "locked.toml"
-    path.write_text(SCENE)
+    path.write_text(SCENE.replace("steps = 50", "steps = 10"))
     assert "--set contact.law=unilateral" in refused("contact", path)
     assert typed("contact", path, "--set", "contact.law=unilateral").returncode == 0
 

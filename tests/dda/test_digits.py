@@ -62,8 +62,9 @@ def test_digits_at_extremes(scheme, start, name):
     assert_digits(model, Scheme(*scheme, 1.0, step, start))
 
 
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-@pytest.mark.parametrize(("p", "step"), [(2e9, 1e-3), (4e18, 1e-2)])
+@pytest.mark.parametrize(
+    ("p", "step", "start"), thinned([(*x, y) for x in ((2e9, 1e-3), (4e18, 1e-2)) for y in STARTS], 3)
+)
 def test_digits_of_a_general_polygon_far_away(start, p, step):
     pentagon = np.array([[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]])
     corners = pentagon + np.array([4096.0, -512.0])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, cli, refused, typed
+from conftest import SCENE, refused, typed
 
 from validation.errors import InputError
 from validation.runs.history import History
@@ -39,6 +39,7 @@ def rows_of(results: Path) -> dict[str, Row]:
     return Results(results).rows()
 
 
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGKILL])
 def test_a_run_that_is_killed_goes_on_where_it_stopped(number, long_scene, tmp_path):
     results = tmp_path / "r"
@@ -54,7 +55,7 @@ def test_a_run_that_is_killed_goes_on_where_it_stopped(number, long_scene, tmp_p
     assert all(Results(results).has(row) for row in kept.values())
     assert not list(results.glob("histories/.*")) or number == signal.SIGKILL
     before = (results / "rows.jsonl").read_bytes()
-    done = cli("run", long_scene, "--results", results)
+    done = typed("run", long_scene, "--results", results, "--jobs", "1")
     assert done.returncode == 0, done.stderr
     after = (results / "rows.jsonl").read_bytes()
     assert after.startswith(before), "finished rows are kept as they were"

@@ -57,7 +57,7 @@ def with_a_daemon_left(scene):
     return sound(scene)
 """
 needs_proc = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="finds processes in /proc")
-pytestmark = needs_proc
+pytestmark = [needs_proc, pytest.mark.usefixtures("interruptible")]
 
 
 @pytest.fixture

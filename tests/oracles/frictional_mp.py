@@ -18,11 +18,12 @@ class Rubbing(unilateral_mp.Oracle):
         self.F[0] += weight * mp.sin(beta)
         self.F[1] += weight * (1 - mp.cos(beta))
         if scheme.start == "consistent":
-            self.A = self.M**-1 * self.F
+            self.A = self.inverse * self.F
         self.mu, self.c = mpf(model.contact.friction), mpf(model.contact.cohesion)
 
     def step(self):
         """Advance by one step; return (u, v, r), N of both corners, T of both corners."""
+        self._begin()
         found = [trial for trial in map(self._tried, product((OPEN, STICK, 2, -2), repeat=2)) if trial]
         assert len(found) == 1, "the oracle needs exactly one contact state"
         D1, N, T, self.r, self.closed = found[0]
@@ -34,22 +35,27 @@ class Rubbing(unilateral_mp.Oracle):
         return found and self._agreed(*found)
 
     def _solve(self, states, shares):
-        h = self.alpha * self.dt**2
-        star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
-        S, b = self.M + h * self.K0, self.M * star + h * self.F
+        b = self.loads.copy()
         for i, state in enumerate(states):
             if state == OPEN:
                 continue
             n, s, sign = self.normal[i], self.shear[i], mpf(state) / 2
-            S += h * self.p * n.T * n
-            b -= h * self.p * self.g0 * n.T
+            b -= self.h * self.p * self.g0 * n.T
             if state == STICK:
-                S += h * self.ps * shares[i] * s.T * s
-                b += h * self.ps * shares[i] * self._reference(i) * s.T
+                b += self.h * self.ps * shares[i] * self._reference(i) * s.T
             else:  # T = -sign (mu N + c), N = -p w
-                S -= h * sign * self.mu * self.p * s.T * n
-                b += h * sign * (self.mu * self.p * self.g0 - self.c) * s.T
-        return mp.lu_solve(S, b)
+                b += self.h * sign * (self.mu * self.p * self.g0 - self.c) * s.T
+        held = (self.ps * share if state == STICK else None for state, share in zip(states, shares, strict=True))
+        return self._solved(tuple(zip(states, held, strict=True)), b)
+
+    def _matrix(self, held):
+        S = self.free.copy()
+        for n, s, (state, ps) in zip(self.normal, self.shear, held, strict=True):
+            if state == OPEN:
+                continue
+            S += self.h * self.p * n.T * n
+            S += self.h * (ps * s.T * s if state == STICK else -mpf(state) / 2 * self.mu * self.p * s.T * n)
+        return S
 
     def _agreed(self, D1, gaps, states, shares):
         N, T, r = [mpf(0)] * 2, [mpf(0)] * 2, [mpf(0)] * 2

@@ -38,9 +38,13 @@ class Oracle:
         self.D = mp.zeros(6, 1)
         self.V = mp.zeros(6, 1)
         self.V[1] = mpf(model.velocity)
-        self.A = self.M**-1 * self.F if scheme.start == "consistent" else mp.zeros(6, 1)
+        self.inverse = self.M**-1
+        self.A = self.inverse * self.F if scheme.start == "consistent" else mp.zeros(6, 1)
         self.closed = (self.g0 == 0,) * 2
         self.r = [mpf(0), mpf(0)]
+        self.h = self.alpha * self.dt**2
+        self.free = self.M + self.h * self.K0
+        self.factors = {}  # of the matrix of the step, by closed corners and their shares
 
     def _ends(self, edge):
         n = len(self.centred)
@@ -69,18 +73,25 @@ class Oracle:
 
     def step(self):
         """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
+        self._begin()
         found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
         assert len(found) == 1, "the oracle needs exactly one contact state"
         D1, N, T, self.r, self.closed = found[0]
         self._moved(D1, N, T)
         return D1[1], N, T
 
+    def _begin(self):
+        """Keep what all trials of a step have in common."""
+        self.star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
+        self.loads = self.M * self.star + self.h * self.F
+        self.before = [self.g0 + (row * self.D)[0] for row in self.normal]
+
     def _moved(self, D1, N, T):
         """Take over the end of a step: acceleration from the forces, velocity from the accelerations."""
         push = mp.zeros(6, 1)
         for c in (0, 1):
             push += N[c] * self.normal[c].T + T[c] * self.shear[c].T
-        A1 = self.M**-1 * (self.F - self.K0 * D1 + push)
+        A1 = self.inverse * (self.F - self.K0 * D1 + push)
         self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
         self.D, self.A = D1, A1
 
@@ -105,8 +116,7 @@ class Oracle:
 
     def _shares(self, gaps):
         """Return the share 1 - theta of the step's slide behind the crossing; 1 of a corner that was closed."""
-        before = [self.g0 + (row * self.D)[0] for row in self.normal]
-        pairs = zip(self.closed, before, gaps, strict=True)
+        pairs = zip(self.closed, self.before, gaps, strict=True)
         return [mpf(1) if was or w0 <= 0 else max(mpf(0), -w1) / (w0 + max(mpf(0), -w1)) for was, w0, w1 in pairs]
 
     def _reference(self, corner):
@@ -114,17 +124,29 @@ class Oracle:
         return self.r[corner] if self.closed[corner] else (self.shear[corner] * self.D)[0]
 
     def _solve(self, closed, shares):
-        h = self.alpha * self.dt**2
-        star = self.D + self.gg * self.dt * self.V + self.dt**2 * (mpf(1) / 2 - self.alpha) * self.A
-        S, b = self.M + h * self.K0, self.M * star + h * self.F
         if self.alpha == 0:
-            return star
+            return self.star
+        b = self.loads.copy()
         for c in (0, 1):
             if closed[c]:
-                n, s, ps = self.normal[c], self.shear[c], self.ps * shares[c]
-                S += h * (self.p * n.T * n + ps * s.T * s)
-                b += h * (ps * self._reference(c) * s.T - self.p * self.g0 * n.T)
-        return mp.lu_solve(S, b)
+                sticking = self.ps * shares[c] * self._reference(c)
+                b += self.h * (sticking * self.shear[c].T - self.p * self.g0 * self.normal[c].T)
+        return self._solved(tuple(self.ps * x if shut else None for x, shut in zip(shares, closed, strict=True)), b)
+
+    def _solved(self, key, b):
+        """Solve with the step's matrix, whose factors are kept: most steps have the states and shares of others."""
+        if key not in self.factors:
+            self.factors[key] = mp.LU_decomp(self._matrix(key))
+        factors, order = self.factors[key]
+        return mp.U_solve(factors, mp.L_solve(factors, b, order))
+
+    def _matrix(self, held):
+        """Return the matrix of the step from the shear stiffness of every corner, None where it is open."""
+        S = self.free.copy()
+        for n, s, ps in zip(self.normal, self.shear, held, strict=True):
+            if ps is not None:
+                S += self.h * (self.p * n.T * n + ps * s.T * s)
+        return S
 
     def _accepted(self, D1, gaps, closed, shares):
         N, T, r = [mpf(0)] * 2, [mpf(0)] * 2, [mpf(0)] * 2

@@ -15,7 +15,6 @@ from validation.report.book import build, ordered_studies
 from validation.report.front.found import found_scenes
 from validation.report.front.pages import front_pages
 from validation.report.typesetting import write_document
-from validation.runs.results import Results
 from validation.studies.catalogue import get_study, judged_studies
 
 ROOT = Path(__file__).parents[2]
@@ -39,10 +38,10 @@ def words(text: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> list[str]:
     """The first pages of a report on the scenes that they speak of, without the slow solvers."""
     directory = tmp_path_factory.mktemp("read")
-    results = Results(directory / "results")
+    results = beside(finished_cases, directory / "results")
     run_study(Study("core", "The paper", "Why.", SCENES, ("dda", "bar", "continuum")), results)
     found, studies = found_scenes(results, ["core"]), ["core"]
     out = write_document(directory / "r.pdf", lambda root: front_pages(found, results.verdicts(), studies, root))
