@@ -60,7 +60,7 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
 
 def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
     for schema, data in (("problem", ProblemData), ("submission", SubmissionData)):
-        assert json.loads((written / f"{schema}.schema.json").read_text()) == data.model_json_schema()
+        assert data.model_json_schema().items() <= json.loads((written / f"{schema}.schema.json").read_text()).items()
     page = (written / "README.md").read_text()
     assert f"version {PACK};" in page and f"`{united('rotation')}`" in page
     assert [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4][
