@@ -10,7 +10,7 @@ from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.families import numbers
 from validation.problems.judge import Word, judge
-from validation.problems.problem import problem
+from validation.problems.problem import problem, problem_of
 from validation.runs.history import History
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver
@@ -75,6 +75,16 @@ def test_what_gives_the_same_rows_has_one_name() -> None:
     names = {number.id: number.name for number in numbers(problem("rocking").scene)}
     assert "moment of inertia" in names["gravity-factor"]
     assert {number.id: number.name for number in numbers(problem("sliding").scene)}["gravity-factor"] == "gravity"
+
+
+def test_a_weight_that_is_forgotten_is_no_wrong_pressure() -> None:
+    """A weight acts at the centroid, a pressure on top: another pressure comes within the bar."""
+    values = {"load.gravity": 9.81, "load.pressure": -1.0e5, "block.young": 1e9, "time.steps": 40}
+    asked = problem_of(problem("locked").scene.with_values(values))
+    without = asked.scene.with_values(AVERAGE | {"load.gravity": 0.0, "time.step": 6.25e-5, "time.steps": 1280})
+    found = get_solver("dda").solve(without).history
+    seen = History(found.time[31::32], {name: x[31::32] for name, x in found.columns.items()})
+    assert cause(asked, seen, standard(asked)).sentence == "the weight is forgotten"
 
 
 @pytest.mark.long

@@ -236,7 +236,9 @@ def _short(one: Cause) -> str:
 
 
 def _rank(one: Cause) -> tuple[int, float]:
-    """Order causes by how usual they are, then by what they leave."""
+    """Order causes by how usual they are, then by what they leave; one without a fitted number comes first."""
+    if not one.values:
+        return -1, one.left
     return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in one.ids), one.left
 
 

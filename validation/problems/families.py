@@ -148,13 +148,26 @@ class Law:
     values: dict[str, Any]
 
 
+FORGOTTEN = {
+    "load.gravity": ("weight", {"load.gravity": 0.0, "load.slope": 0.0}),
+    "load.traction": ("traction", {"load.traction": 0.0}),
+    "load.eccentricity": ("eccentricity of the pressure", {"load.eccentricity": 0.0}),
+    "contact.gap": ("gap", {"contact.gap": 0.0}),
+    "contact.cohesion": ("cohesion", {"contact.cohesion": 0.0}),
+    "block.poisson": ("Poisson's ratio", {"block.poisson": 0.0}),
+}
 GLUED = 89.0  # deg: no block slips on such friction
 
 
 def laws(scene: Scene) -> Iterator[Law]:
-    """Yield the laws of contact that a program may have in place of a scene's."""
+    """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
     if scene.column is not None or features.ROTATION in features.of(scene):
         return
+    data = scene.definition()
+    for key, (name, values) in FORGOTTEN.items():
+        section, _, entry = key.partition(".")
+        if data[section].get(entry):
+            yield Law(f"no-{entry}", f"the {name} is forgotten".replace("the Poisson", "Poisson"), values)
     if scene.contact.law == "locked":
         yield Law("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
     elif scene.contact.friction is None:
