@@ -184,7 +184,8 @@ def _ended(problem: ProblemLine, program: ProgramLine, row: Row) -> Cell:
     """Return the cell of a run that did not complete, or that could not be judged."""
     note = row.notes[-1] if row.notes else row.outcome.sentence
     if row.outcome in WRONG:
-        why = note if row.outcome is Outcome.WRONG_UNITS else f"{row.outcome.sentence} {note}".strip()
+        sentence = row.outcome.sentence[0].lower() + row.outcome.sentence[1:].rstrip(".")
+        why = note if row.outcome is Outcome.WRONG_UNITS else f"{sentence} ({note})"
         return Cell(problem.name, program.name, FAIL, FAIL, cause=why, reason=row.outcome.sentence, key=row.key)
     absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
     word = NOT_RUN if absent else NOT_APPLICABLE
