@@ -82,9 +82,9 @@ def numbers(scene: Scene) -> Iterator[Number]:
 
 
 # What gives the same rows has one name, since a program may be wrong in either: a column knows the modulus of its waves
-# alone, and a rigid block turns by g m R / I.
+# alone, and a rigid block turns by g m R / I, of which local damping takes a part.
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
-TURNS = "g m R / I of the block that turns (gravity, or one over its size or its moment of inertia)"
+TURNS = "the moment over the inertia of the block that turns (gravity, size, moment of inertia, damping of its forces)"
 BLOCK = {
     "block.density": ("density-factor", "the density"),
     "block.young": ("young-factor", "Young's modulus"),
