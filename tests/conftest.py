@@ -59,6 +59,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_judge",
     "test_kept_numbers",
     "test_opened_chapters",
+    "test_pack",
     "test_paper_chapter",
     "test_readable",
     "test_report",
