@@ -245,11 +245,18 @@ def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
         )
     yield Family(
         "time-factor",
-        lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion",
+        lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion{_by_mass(runs.scene, rate)}",
         math.exp,
         lambda u: _moved(runs, base, dense, plain, tuple(names), math.exp(u), 0.0),
         (0.0, math.log(0.8), math.log(0.9)),
     )
+
+
+def _by_mass(scene: Scene, rate: float) -> str:
+    """Return the density that does the same: of M x'' + K x = F from rest, without weight, it sets the rate of time."""
+    if scene.column is not None or scene.load.gravity or scene.block.velocity or scene.load.base_motion:
+        return ""
+    return f", as a density of {rate**-2:.4g} times the scene's does"
 
 
 def _are(which: str) -> str:
