@@ -186,7 +186,7 @@ def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Family]:
     for number in numbers(runs.scene):
         yield Family(
             number.id,
-            lambda f, name=number.name: f"{name} is {f:.4g} times the scene's",  # type: ignore[misc]
+            lambda f, one=number: _words(runs.scene, one, f),  # type: ignore[misc]
             math.exp,
             lambda u, change=number.changed: _changed(runs, base, change, u),  # type: ignore[misc]
             starts,
@@ -250,6 +250,18 @@ def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
         lambda u: _moved(runs, base, dense, plain, tuple(names), math.exp(u), 0.0),
         (0.0, math.log(0.8), math.log(0.9)),
     )
+
+
+def _words(scene: Scene, number: Number, factor: float) -> str:
+    return f"{number.name} is {factor:.4g} times the scene's{_by_springs(scene, number.id, factor)}"
+
+
+def _by_springs(scene: Scene, number: str, factor: float) -> str:
+    """Return the springs that do the same: vertically, mass, stiffness and loads go with the width, 2 p does not."""
+    vertical = {features.UNILATERAL, features.WEIGHT, features.DEAD_BAND}
+    if number != "width-factor" or not {*features.of(scene)} <= vertical:
+        return ""
+    return f", as springs of {1 / factor:.4g} times the scene's do"
 
 
 def _by_mass(scene: Scene, rate: float) -> str:
