@@ -10,12 +10,12 @@ import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
+from validation.problems.variations import Values, friction, layers, sized, springs
 from validation.runs.history import Array, History
 from validation.scenes.scene import Scene, parse_scene
 
@@ -27,7 +27,6 @@ LEAST = 4  # rows that are judged, at least
 # A change below that is rounding of the exact motion (1e-7 in a column's) or of printed numbers (six digits).
 ROUNDED = 1e-6
 DRIVE = "what drives it"  # the datum of a motion that no other one changes
-Values = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -86,37 +85,28 @@ class Standard:
 
 
 def _springs(scene: Scene) -> Values:
-    if scene.column is not None or math.isinf(scene.contact.stiffness):
-        return {}
-    found = {"contact.stiffness": scene.contact.stiffness * (1 + UNKNOWN)}
-    if scene.contact.shear_stiffness:
-        found["contact.shear_stiffness"] = scene.contact.shear_stiffness * (1 + UNKNOWN)
-    return found
+    rigid = scene.column is not None or math.isinf(scene.contact.stiffness)
+    return {} if rigid else springs(scene, 1 + UNKNOWN)
 
 
 def _material(key: str) -> Callable[[Scene], Values]:
     def changed(scene: Scene) -> Values:
-        if scene.column is None:
-            return {f"block.{key}": getattr(scene.block, key) * (1 + UNKNOWN)}
-        layers = scene.definition()["column"]["layer"]
-        return {"column.layer": [layer | {key: layer[key] * (1 + UNKNOWN)} for layer in layers]}
+        if scene.column is not None:
+            return layers(key)(scene, 1 + UNKNOWN)
+        return {f"block.{key}": getattr(scene.block, key) * (1 + UNKNOWN)}
 
     return changed
 
 
 def _width(scene: Scene) -> Values:
     """Return a rectangle's width alone: its slenderness, by which it rocks."""
-    if scene.column is not None or scene.block.vertices is not None:
-        return {}
-    (_, _), (width, height) = scene.block.outline[0], scene.block.outline[2]
-    return {"block.width": width * (1 + UNKNOWN), "block.height": height}
+    other = scene.column is not None or scene.block.vertices is not None
+    return {} if other else sized(scene, 1 + UNKNOWN, 1.0)
 
 
 def _friction(scene: Scene) -> Values:
-    if scene.column is not None or not scene.contact.friction:
-        return {}
-    larger = math.atan((1 + UNKNOWN) * math.tan(math.radians(scene.contact.friction)))
-    return {"contact.friction": math.degrees(larger)}
+    without = scene.column is not None or not scene.contact.friction
+    return {} if without else friction(scene, 1 + UNKNOWN)
 
 
 # Not among them: loads, which scale a linear motion by themselves; the velocity, gap, tilt and slope from which a scene

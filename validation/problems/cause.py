@@ -123,8 +123,7 @@ class Search:
     def _schemes(self) -> Iterable[Cause]:
         t = self.runs.scene.time
         for base in self.runs.schemes():
-            columns = self.runs.sampled(base)
-            left = math.inf if columns is None else self.runs.apart(self.seen, columns)
+            left = self._left(self.runs.sampled(base))
             if left <= BAR:
                 values = {"alpha": base.alpha(t), "delta": base.delta(t), "step": t.step / base.every}
                 yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), left)
@@ -132,8 +131,7 @@ class Search:
     def _laws(self, base: Base) -> Iterable[Cause]:
         """Yield other laws of the contact under which a base gives the answer back."""
         for law in laws(self.runs.scene):
-            columns = self.runs.sampled(base, law.values)
-            left = math.inf if columns is None else self.runs.apart(self.seen, columns)
+            left = self._left(self.runs.sampled(base, law.values))
             if left <= BAR:
                 yield _with(law.id, law.words, {}, left, base, self.runs.scene)
 
@@ -179,8 +177,11 @@ class Search:
             lambda u: self._residual(family, float(u[0])), [start], diff_step=1e-5, x_scale=0.05, max_nfev=ROUNDS
         )
         u = float(done.x[0])
-        columns = family.of(u)
-        return u, math.inf if columns is None else self.runs.apart(self.seen, columns)
+        return u, self._left(family.of(u))
+
+    def _left(self, columns: Columns | None) -> float:
+        """Return what columns leave of the answer over the band, inf where there are none."""
+        return math.inf if columns is None else self.runs.apart(self.seen, columns)
 
 
 # ---- words ----------------------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from validation.problems.models import Base, Columns, Runs
+from validation.problems.variations import friction, layers, sized, springs
 from validation.runs.history import Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -61,24 +62,24 @@ class Number:
 def numbers(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of a scene that may be wrong by a factor, none that is zero or absent."""
     if scene.column is not None:
-        yield Number("young-factor", OF_WAVES, _layers("young"))
-        yield Number("density-factor", "the density", _layers("density"))
+        yield Number("young-factor", OF_WAVES, layers("young"))
+        yield Number("density-factor", "the density", layers("density"))
         yield from _plain(scene, INPUT)
         if scene.column.impedance is not None:
             yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
         return
     turns = {"load.gravity": ("gravity-factor", TURNS)} if features.ROTATION in features.of(scene) else {}
     yield from _plain(scene, BLOCK | turns)
-    yield Number("width-factor", "the width", lambda s, f: _sized(s, f, 1.0))
-    yield Number("height-factor", "the height", lambda s, f: _sized(s, 1.0, f))
+    yield Number("width-factor", "the width", lambda s, f: sized(s, f, 1.0))
+    yield Number("height-factor", "the height", lambda s, f: sized(s, 1.0, f))
     c = scene.contact
     if math.isfinite(c.stiffness):
-        yield Number("springs-factor", "the stiffness of the springs", _springs)
+        yield Number("springs-factor", "the stiffness of the springs", springs)
         if c.shear_stiffness and c.friction is not None:
             key = "contact.shear_stiffness"
             yield Number("shear-springs-factor", "the shear stiffness of the springs", lambda s, f: {key: c.shear * f})
     if c.friction:
-        yield Number("friction-factor", "tan(phi) of friction", _friction)
+        yield Number("friction-factor", "tan(phi) of friction", friction)
 
 
 # What gives the same rows has one name, since a program may be wrong in either: a column knows the modulus of its waves
@@ -111,32 +112,10 @@ def _plain(scene: Scene, keys: Mapping[str, tuple[str, str]]) -> Iterator[Number
             yield Number(cause, name, lambda s, f, key=key, value=value: {key: value * f})  # type: ignore[misc]
 
 
-def _layers(key: str) -> Callable[[Scene, float], dict[str, Any]]:
-    return lambda s, f: {"column.layer": [layer | {key: layer[key] * f} for layer in s.definition()["column"]["layer"]]}
-
-
 def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
     """Return the keys by which (rho E)^(1/2), or rho c, below the base is larger by a factor."""
     base = scene.definition()["column"]
     return {"column.base_density": base["base_density"] * (factor if "base_speed" in base else factor**2)}
-
-
-def _sized(scene: Scene, wider: float, higher: float) -> dict[str, Any]:
-    if scene.block.vertices is not None:
-        return {"block.vertices": [[x * wider, y * higher] for x, y in scene.block.vertices]}
-    width, height = scene.block.outline[2]
-    return {"block.width": width * wider, "block.height": height * higher}
-
-
-def _springs(scene: Scene, factor: float) -> dict[str, Any]:
-    c = scene.contact
-    found = {"contact.stiffness": c.stiffness * factor}
-    return found | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
-
-
-def _friction(scene: Scene, factor: float) -> dict[str, Any]:
-    tangent = factor * math.tan(math.radians(scene.contact.friction or 0.0))
-    return {"contact.friction": math.degrees(math.atan(tangent))}
 
 
 @dataclass(frozen=True)

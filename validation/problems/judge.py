@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import enum
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -160,8 +159,3 @@ def error_of(values: Array, exact: Array, band: Band) -> float:
     with np.errstate(over="ignore"):
         error = relative_l2(seen, wanted)
     return error if isinstance(error, float) else math.inf
-
-
-def errors(judgement: Judgement) -> Mapping[str, float]:
-    """Return the errors of the judged columns."""
-    return {column.name: column.error for column in judgement.columns if column.error is not None}

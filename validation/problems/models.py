@@ -14,6 +14,7 @@ from validation.compare.fits.fit import NAMED
 from validation.compare.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard
+from validation.problems.variations import accurate
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -22,10 +23,8 @@ from validation.scenes.tables import TimeSection
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
-AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is accurate is taken
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
-MORE_BLOCKS = 4
 ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
 AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
 Columns = Mapping[str, Array]
@@ -109,10 +108,7 @@ class Runs:
         return None
 
     def _accurate(self) -> Iterator[Base]:
-        values: dict[str, Any] = dict(AVERAGE)
-        if self.scene.column is not None:
-            layers = self.scene.definition()["column"]["layer"]
-            values["column.layer"] = [layer | {"blocks": MORE_BLOCKS * layer.get("blocks", 1)} for layer in layers]
+        values = accurate(self.scene)
         yield Base("", {})
         for every in FINER:
             if every <= LONG or features.linear(self.scene):

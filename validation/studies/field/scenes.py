@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 from validation.problems.bands import changed_scenes
 from validation.problems.problem import PREFIX, PROBLEMS, Problem, problem
+from validation.problems.variations import accurate
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.field.programs import ELEMENTS, HABIT, installed
 
 EXACT = "block-events"  # of the exact solutions the one that takes seconds, so that its motions are kept
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; a block that turns takes long
-MORE_BLOCKS = 4
 MOST_STEPS = 200  # of a scene that finite elements run at fine steps
-AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 
 
+@functools.cache
 def scene_of(name: str) -> Scene:
-    """Return the scene of a problem."""
+    """Return the scene of a problem, read once."""
     return load_scene(PREFIX + name)
 
 
@@ -55,14 +54,11 @@ def fine(name: str) -> Scene:
     """Return the scene of a problem with a scheme, a step and blocks that were chosen for accuracy."""
     scene = scene_of(name)
     times = finer(scene)
-    values: dict[str, Any] = AVERAGE | {
+    values = accurate(scene) | {
         "time.step": scene.time.step / times,
         "time.steps": scene.time.steps * times,
         "run.solvers": [HABIT, *((ELEMENTS,) if with_elements(scene) else ())],
     }
-    if scene.column is not None:
-        layers = scene.definition()["column"]["layer"]
-        values["column.layer"] = [layer | {"blocks": MORE_BLOCKS * layer.get("blocks", 1)} for layer in layers]
     return scene.with_values(values).model_copy(update={"name": fine_name(name)})
 
 
@@ -72,6 +68,7 @@ def with_elements(scene: Scene) -> bool:
     return not slow and scene.time.steps <= MOST_STEPS
 
 
+@functools.cache
 def changed(name: str) -> dict[str, Scene]:
     """Return the scenes whose exact motions set the bands of a problem: datum to scene."""
     found = {}

@@ -15,8 +15,7 @@ from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 
 STUDY = "field"
-PASS, FAIL, NOT_RUN, NOT_APPLICABLE, NOT_JUDGED = "PASS", "FAIL", "NOT RUN", "not applicable", "not judged"
-VERDICTS = (PASS, FAIL, NOT_RUN, NOT_APPLICABLE, NOT_JUDGED)
+PASS, FAIL, NOT_RUN, NOT_APPLICABLE = "PASS", "FAIL", "NOT RUN", "not applicable"
 # A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
 WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
 MISSING = "is not installed"  # what an adapter says where its program is absent
@@ -53,7 +52,7 @@ class Cell:
     problem, program
         Row and column of the table.
     verdict
-        One of `VERDICTS`.
+        PASS, FAIL, NOT RUN, not applicable or not judged.
     says
         The verdict in full: what it does not speak of is named.
     cause
