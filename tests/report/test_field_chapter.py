@@ -95,3 +95,17 @@ def test_the_sentence_counts_other_peoples_programs_only() -> None:
     )
     alone = Field(PROBLEMS, PROGRAMS[:1], {key: cell for key, cell in cells().items() if key[1] == "dda"})
     assert counted(alone).startswith("No other program is installed here")
+
+
+def test_a_program_that_gave_no_answer_is_installed_all_the_same() -> None:
+    """Each of its runs raised; it is not told to be missing, and why it has no answer is."""
+    raised = {
+        key: c if key[1] != "one" else Cell(*key, NOT_RUN, NOT_RUN, reason="raised") for key, c in cells().items()
+    }
+    field = Field(PROBLEMS, PROGRAMS, raised)
+    assert ("One", "–", "–", "–") in by_problem(field).rows
+    assert by_problem(field).notes[-1] == "Not installed: Two."
+    away = {
+        k: c if k[1] != "one" else Cell(*k, NOT_RUN, NOT_RUN, reason="it is not installed") for k, c in raised.items()
+    }
+    assert by_problem(Field(PROBLEMS, PROGRAMS, away)).notes[-1] == "Not installed: One, Two."

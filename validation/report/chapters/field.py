@@ -11,7 +11,7 @@ from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProgramLine, read
+from validation.studies.field.table import FAIL, MISSING, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProgramLine, read
 from validation.studies.field.table import Table as Field
 
 NONE = "n. a."
@@ -83,8 +83,8 @@ def by_problem(found: Field) -> Table:
 
 
 def shown(found: Field) -> list[ProgramLine]:
-    """Return the programs that were run."""
-    return [p for p in found.programs if any(cell.verdict != NOT_RUN for cell in _cells(found, p))]
+    """Return the programs that are installed; one that gave no answer at all is among them."""
+    return [p for p in found.programs if p.installed and any(MISSING not in cell.reason for cell in _cells(found, p))]
 
 
 def _cells(found: Field, program: ProgramLine) -> list[Cell]:
