@@ -9,24 +9,15 @@ from xml.etree import ElementTree
 
 import pytest
 from conftest import typed
+from oracles.submissions import STATED, submitted
 
 from validation.problems.bands import standard
-from validation.problems.data import PACK, SUBMISSION
+from validation.problems.data import PACK
 from validation.problems.pack import table_of
 from validation.problems.problem import problem, problem_of
 from validation.report.chapters import judged
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
-
-STATED = {
-    "format": SUBMISSION,
-    "pack": PACK,
-    "problem": "locked",
-    "program": "Bob's <code> & co",
-    "version": "1.0",
-    "settings": "average acceleration, 0.1 ms",
-    "who": "somebody",
-}
 
 
 @pytest.fixture(scope="module")
@@ -40,12 +31,9 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(judged, "figures", lambda *given: ())
 
 
-def submitted(place: Path, history: History, **fields: object) -> Path:
-    place.mkdir()
-    (place / "submission.json").write_text(json.dumps(STATED | fields))
+def answered(place: Path, history: History, **fields: object) -> Path:
     columns = [name for name in history.columns if f"{name}_m" not in fields.get("not_reported", ())]
-    (place / "answer.csv").write_text(table_of(history, columns))
-    return place
+    return submitted(place, table_of(history, columns), **fields)
 
 
 def scaled(history: History, factor: float) -> History:
@@ -53,7 +41,7 @@ def scaled(history: History, factor: float) -> History:
 
 
 def test_a_right_answer_passes_with_page_and_badge(tmp_path: Path, exact: History) -> None:
-    place = submitted(tmp_path / "mine", exact)
+    place = answered(tmp_path / "mine", exact)
     done = typed("judge", place)
     assert done.returncode == 0, done.stderr
     assert "Bob's <code> & co 1.0 on locked: PASS: it is at most below 1e-9 % off" in done.stdout
@@ -89,7 +77,7 @@ def test_a_right_answer_passes_with_page_and_badge(tmp_path: Path, exact: Histor
 def test_a_wrong_answer_fails(
     factor: float, said: str, badge: str, tmp_path: Path, exact: History, undrawn: None
 ) -> None:
-    place = submitted(tmp_path / "mine", scaled(exact, factor))
+    place = answered(tmp_path / "mine", scaled(exact, factor))
     done = typed("judge", place, "--out", tmp_path / "pages")
     assert done.returncode == 1
     assert said in done.stdout
@@ -101,7 +89,7 @@ def test_a_wrong_answer_fails(
 
 
 def test_plain_data(tmp_path: Path, exact: History, undrawn: None) -> None:
-    place = submitted(tmp_path / "mine", scaled(exact, 1.01))
+    place = answered(tmp_path / "mine", scaled(exact, 1.01))
     found = json.loads(typed("judge", place, "--json").stdout)
     assert (found["verdict"], found["problem"], found["pack"], found["cause"]) == ("PASS", "locked", PACK, None)
     first = found["columns"][0]
@@ -111,7 +99,7 @@ def test_plain_data(tmp_path: Path, exact: History, undrawn: None) -> None:
 
 
 def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:
-    place = submitted(tmp_path / "mine", exact, pack="1.0")
+    place = answered(tmp_path / "mine", exact, pack="1.0")
     done = typed("judge", place)
     assert done.returncode == 2 and "submission.json: pack: must be '2.0'" in done.stderr
     assert len(list(place.iterdir())) == 2
@@ -129,7 +117,7 @@ def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History
 
 
 def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History) -> None:
-    place = submitted(tmp_path / "mine", exact)
+    place = answered(tmp_path / "mine", exact)
     (place / "badge.svg").mkdir()
     done = typed("judge", place)
     assert done.returncode == 2 and "badge.svg: must be a file or nothing yet, got a directory" in done.stderr
@@ -137,7 +125,7 @@ def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History) ->
 
 
 def test_control_characters_are_written_out(tmp_path: Path, exact: History) -> None:
-    place = submitted(tmp_path / "mine", exact, program="a\x1b[31m\u202e", settings="one\n  two")
+    place = answered(tmp_path / "mine", exact, program="a\x1b[31m\u202e", settings="one\n  two")
     done = typed("judge", place)
     assert "a\\x1b[31m\\u202e 1.0 on locked: PASS" in done.stdout
     page = (place / "judged.html").read_text(encoding="utf-8")
@@ -158,6 +146,6 @@ def test_a_solver_is_judged_on_any_scene(tmp_path: Path, undrawn: None) -> None:
 def test_the_callers_own_scene(tmp_path: Path, scene_file: Path, undrawn: None) -> None:
     scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
     own = problem_of(load_scene(scene_file))
-    place = submitted(tmp_path / "mine", standard(own).exact, problem=own.name)
+    place = answered(tmp_path / "mine", standard(own).exact, problem=own.name)
     done = typed("judge", place, "--scene", scene_file)
     assert done.returncode == 0, done.stderr

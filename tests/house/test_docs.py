@@ -1,6 +1,5 @@
 """Every code block of the documentation is run, in the order in which a reader meets it."""
 
-import json
 import os
 import shlex
 import subprocess
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 from conftest import beside
 from oracles.pages import BLOCK, FEW, ROOT
+from oracles.submissions import right_answer
 
 PAGES = ("theory.md", "extending.md", "columns.md")
 # Pages that take seconds each.
@@ -32,27 +32,12 @@ def run_line(line: str, directory: Path) -> None:
     assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
 
 
-def submit(directory: Path) -> None:
-    """Write what a reader of the page has by then: an answer to a problem."""
-    from validation.problems.data import PACK, SUBMISSION
-    from validation.problems.pack import table_of
-    from validation.problems.problem import problem
-    from validation.problems.truth import exact
-
-    asked = problem("locked")
-    said = dict.fromkeys(("program", "version", "settings", "who"), "a reader's")
-    directory.mkdir()
-    stated = {"format": SUBMISSION, "pack": PACK, "problem": "locked", **said}
-    (directory / "submission.json").write_text(json.dumps(stated))
-    (directory / "answer.csv").write_text(table_of(exact(asked.scene, asked.truth), asked.scene.run.columns))
-
-
 @pytest.mark.parametrize("page", [*PAGES, *(pytest.param(page, marks=pytest.mark.long) for page in LONG)])
 def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
         beside(finished_cases, tmp_path / name)
     if page == "judge-your-code.md":
-        submit(tmp_path / "my-answer")
+        right_answer(tmp_path / "my-answer")
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     names: dict[str, object] = {}

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles.submissions import STATED, submitted
 
 from validation.errors import InputError
-from validation.problems.data import PACK, SUBMISSION, united
+from validation.problems.data import united
 from validation.problems.pack import TEMPLATE, TIME, table_of
 from validation.problems.problem import Problem, problem, problem_of
 from validation.problems.submission import FILE, read_submission
@@ -20,15 +21,6 @@ from validation.problems.truth import exact
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
 
-GOOD = {
-    "format": SUBMISSION,
-    "pack": PACK,
-    "problem": "locked",
-    "program": "Some code",
-    "version": "1.0",
-    "settings": "average acceleration, 0.1 ms",
-    "who": "somebody",
-}
 Rows = list[list[str]]
 
 
@@ -40,15 +32,6 @@ def one() -> Problem:
 @pytest.fixture(scope="module")
 def motion(one: Problem) -> History:
     return exact(one.scene, one.truth)
-
-
-def submitted(place: Path, table: str, **fields: Any) -> Path:
-    """Write a submission and return its directory."""
-    place.mkdir(exist_ok=True)
-    stated = {key: value for key, value in (GOOD | fields).items() if value is not ...}
-    (place / FILE).write_text(json.dumps(stated))
-    (place / "answer.csv").write_text(table)
-    return place
 
 
 def rows_of(table: str) -> Rows:
@@ -70,7 +53,7 @@ def refused(place: Path, own: Problem | None = None) -> str:
 def test_a_sound_submission_is_read(tmp_path: Path, one: Problem, motion: History) -> None:
     table = table_of(motion, one.scene.run.columns)
     found = read_submission(submitted(tmp_path, table))
-    assert found.problem.name == "locked" and found.data.program == "Some code"
+    assert found.problem.name == "locked" and found.data.program == STATED["program"]
     for name, values in motion.columns.items():
         np.testing.assert_array_equal(found.history.columns[name], values)
     swapped = [[row[1], row[2], row[0]] for row in rows_of(table)]  # columns go by their names
@@ -187,7 +170,7 @@ def test_what_other_programs_write_is_read(
 
 def test_a_key_that_stands_twice_is_refused(tmp_path: Path, one: Problem, motion: History) -> None:
     place = submitted(tmp_path, table_of(motion, one.scene.run.columns))
-    stated = json.dumps(GOOD)
+    stated = json.dumps(STATED)
     (place / FILE).write_text(stated.replace('{"format"', '{"pack": "1.0", "format"'))
     assert f"{FILE}: must be JSON in UTF-8: 'pack' must stand once, got it 2 times" in refused(place)
     (place / FILE).write_text(stated.replace("}", ', "not_reported": "time_s"}'))
