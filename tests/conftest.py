@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -149,11 +150,9 @@ def _draw_without_constants() -> None:
     They would make the examples depend on which modules a process has imported, and on any edit, for the time of
     parsing every source.
     """
-    if "hypothesis" in sys.modules:
-        from hypothesis.internal.conjecture import providers
-
-        if hasattr(providers, "is_local_module_file"):  # not in its older versions, which draw no such constants
-            providers.is_local_module_file = lambda path: False
+    providers: Any = sys.modules.get("hypothesis.internal.conjecture.providers")
+    if hasattr(providers, "is_local_module_file"):  # not in its older versions, which draw no such constants
+        providers.is_local_module_file = lambda path: False
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
