@@ -7,10 +7,12 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from conftest import typed
 from oracles.submissions import STATED, submitted
 
+from validation.problems import cause
 from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
@@ -86,6 +88,30 @@ def test_a_wrong_answer_fails(
     assert badge in (tmp_path / "pages/badge.svg").read_text()
     assert said in (tmp_path / "pages/judged.html").read_text(encoding="utf-8")
     assert not (place / "badge.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("why", "said"),
+    [
+        (cause.Cause(), "hat would tell: the same run at half the step"),
+        (cause.Cause("not explained: the rows ...", alike=("a", "b")), "hat would tell: an answer to another problem"),
+        (cause.Cause("it is damped", ("mass-damping",)), None),
+    ],
+)
+def test_what_is_not_explained_says_what_is_right_and_what_would_tell(
+    why: cause.Cause, said: str | None, tmp_path: Path, exact: History, undrawn: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cause, "cause", lambda *given: why)
+    wrong = {name: x * np.where(exact.time > 0.0501, 3.0, 1.0) for name, x in exact.columns.items()}
+    place = answered(tmp_path / "mine", History(exact.time, wrong))
+    done = typed("judge", place)
+    page = (place / "judged.html").read_text(encoding="utf-8")
+    assert f"cause: {why.sentence}\nIts error is within what is allowed up to 0.05 s of 0.1 s.\n" in done.stdout
+    assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s." in page
+    assert (said in done.stdout and said in page) if said else "would tell" not in done.stdout + page
+    found = json.loads(typed("judge", place, "--json").stdout)
+    assert ("would_tell" in found["cause"]) == bool(said)
+    assert found["columns"][0]["within_until_s"] == pytest.approx(0.05)
 
 
 def test_plain_data(tmp_path: Path, exact: History, undrawn: None) -> None:

@@ -50,6 +50,24 @@ def test_a_wrong_history_fails(name: str, wrong: str) -> None:
     assert word is (Word.PASS if within else Word.FAIL)
 
 
+@pytest.mark.parametrize("name", ["locked", "rocking"])
+def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_exact_from_there_on(name: str) -> None:
+    asked = short(name)
+    held = standard(asked)
+    column = next(iter(held.bands))
+    wanted, time = held.exact.columns[column], held.exact.time
+    seen = wanted * np.where(time > time[-1] / 3, 1.3, 1.0)
+    found = judge(asked, History(time, {column: seen}))
+    rows = int(np.flatnonzero(time == found.within)[0]) + 1
+    assert time[-1] / 3 < found.within < held.bands[column].until
+    for more, word in ((0, Word.PASS), (1, Word.FAIL)):
+        mended = np.where(np.arange(len(time)) < rows + more, seen, wanted)
+        assert judge(asked, History(time, {column: mended})).word is word
+    assert judge(asked, held.exact).within == pytest.approx(min(b.until for b in held.bands.values()))
+    assert judge(asked, History(time, {column: 9 + wanted})).within == 0.0
+    assert judge(asked, History(time, {column: np.where(time >= time[5], np.nan, wanted)})).within == time[4]
+
+
 @pytest.mark.parametrize("name", ALL)
 def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_changes(name: str) -> None:
     asked = short(name)

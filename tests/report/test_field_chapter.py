@@ -22,11 +22,11 @@ SAYS = "the solver says that it is not made for this scene: "
 
 def cells() -> dict[tuple[str, str], Cell]:
     found = [
-        Cell("locked", "dda", FAIL, FAIL, "numerical damping", "displacement", 0.5128, 0.0574, 0.5),
-        Cell("rocking", "dda", PASS, PASS, "", "rotation", 3.2e-6, 0.0146, 0.25),
-        Cell("locked", "one", PASS, PASS, "", "displacement", 0.00123, 0.0574, 1.5),
+        Cell("locked", "dda", FAIL, FAIL, "numerical damping", "displacement", 0.5128, 0.0574, 0.006, 0.5),
+        Cell("rocking", "dda", PASS, PASS, "", "rotation", 3.2e-6, 0.0146, 0.4, 0.25),
+        Cell("locked", "one", PASS, PASS, "", "displacement", 0.00123, 0.0574, 0.1, 1.5),
         Cell("rocking", "one", NOT_APPLICABLE, NOT_APPLICABLE, reason=f"{SAYS}it does not turn"),
-        Cell("locked", "one-default", FAIL, FAIL, "not explained", "displacement", 12.0, 0.0574, 1.0),
+        Cell("locked", "one-default", FAIL, FAIL, "not explained", "displacement", 12.0, 0.0574, 0.0123456, 1.0),
         Cell("rocking", "one-default", FAIL, FAIL, "wrong units: mm?"),
         Cell("locked", "two", NOT_RUN, NOT_RUN, reason="not installed: pip install two"),
         Cell("rocking", "two", NOT_RUN, NOT_RUN, reason="not installed: pip install two"),
@@ -53,12 +53,14 @@ def test_the_table_has_a_cell_for_every_program_that_ran() -> None:
 def test_causes_and_reasons_stand_with_program_and_problems() -> None:
     assert failures(FIELD).rows == (
         ("DDA by habit", "locked", "numerical damping"),
-        ("One, as it comes", "locked", "not explained"),
+        ("One, as it comes", "locked (0.0123 s)", "not explained"),
         ("", "rocking", "wrong units: mm?"),
     )
+    assert "at half the step" in failures(FIELD).notes[0]
     assert absent(FIELD).rows == (("One", "rocking", "it does not turn"),)
     alike = {key: cell if cell.verdict != FAIL else Cell(*key, FAIL, FAIL, "damped") for key, cell in cells().items()}
-    assert ("One, as it comes", "all", "damped") in failures(Field(PROBLEMS, PROGRAMS, alike)).rows
+    told = failures(Field(PROBLEMS, PROGRAMS, alike))
+    assert ("One, as it comes", "all", "damped") in told.rows and not told.notes
 
 
 def test_a_run_that_raised_an_error_is_told_without_its_place() -> None:

@@ -13,6 +13,7 @@ from validation.cli.damping import JsonOption
 
 if TYPE_CHECKING:
     from validation.problems.bands import Standard
+    from validation.problems.cause import Cause
     from validation.problems.problem import Problem
     from validation.report.chapters.judged import Judged
     from validation.runs.history import History
@@ -156,6 +157,7 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
             "error": one.error if one.error is None or one.error < float("inf") else "inf",
             "allowed": one.band,
             "until_s": one.until,
+            "within_until_s": one.within,
             "reason": one.reason,
         }
         for one in judged.judgement.columns
@@ -166,20 +168,28 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
         "problem": judged.problem.name,
         "program": program,
         "verdict": str(judged.judgement.word),
-        "cause": None if why is None else {"sentence": why.sentence, "ids": list(why.ids), "values": why.values},
+        "cause": None if why is None else _cause_data(why),
         "columns": columns,
         "about": dict(judged.about),
     }
 
 
+def _cause_data(why: Cause) -> dict[str, Any]:
+    told = {"sentence": why.sentence, "ids": list(why.ids), "values": why.values}
+    return told | ({"would_tell": why.would_tell} if why.would_tell else {})
+
+
 def _print(judged: Judged, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
     from validation.problems.data import united
-    from validation.report.chapters.judged import datum, headline, per_cent
+    from validation.report.chapters.judged import datum, headline, per_cent, reached
 
     typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
     if judged.cause is not None:
         typer.echo(f"cause: {judged.cause.sentence}")
+        typer.echo(reached(judged))
+        if judged.cause.would_tell:
+            typer.echo(f"what would tell: {judged.cause.would_tell}")
     typer.echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for one in judged.judgement.columns:
         why = datum(one, judged.held) or one.reason

@@ -28,6 +28,11 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 
 NOT_EXPLAINED = "not explained"
+WOULD_TELL = (
+    "the same run at half the step (an error of the integrator falls to a half or a quarter, one of the model stays), "
+    "and one without the program's own damping"
+)
+OTHERS_WOULD = "an answer to another problem of the pack, on which these differ"
 USUAL = (  # causes that give the same rows are told in this order
     *("scheme", "density-factor", "young-factor", "springs-factor", "friction-factor", "load-factor", "gravity-factor"),
     *("factor", "shift", "time-factor"),
@@ -66,6 +71,13 @@ class Cause:
     values: dict[str, float] = field(default_factory=dict)
     alike: tuple[str, ...] = ()
     left: float = math.inf
+
+    @property
+    def would_tell(self) -> str:
+        """What would tell the cause where it is not explained, nothing where it is."""
+        if self.ids:
+            return ""
+        return OTHERS_WOULD if self.alike else WOULD_TELL
 
 
 def cause(problem: Problem, history: History, held: Standard) -> Cause:

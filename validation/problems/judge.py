@@ -46,6 +46,8 @@ class Column:
         Instant up to which it is judged [s].
     reason
         Why the band ends there, or why the column is not judged.
+    within
+        Instant up to which its error is within what is allowed [s]: it would pass, were it exact from there on.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Column:
     band: float | None
     until: float
     reason: str
+    within: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,12 @@ class Judgement:
             return str(self.word)
         spoken = f"{self.word} on {', '.join(passed)}" if self.word is Word.PASS else str(self.word)
         return "; ".join([spoken, *silent])
+
+    @property
+    def within(self) -> float:
+        """Instant up to which the errors of all columns that it reports are within what is allowed [s]."""
+        judged = [column.within for column in self.columns if column.error is not None]
+        return min(judged, default=0.0)
 
     @property
     def deciding(self) -> Column | None:
@@ -139,7 +148,18 @@ def _judged(name: str, values: Array | None, held: Standard) -> Column:
         return Column(name, Word.NOT_REPORTED, None, band.high, band.until, band.reason)
     error = error_of(values, held.exact.columns[name], band)
     inside = error <= band.high * (1 + ROUNDING)
-    return Column(name, Word.PASS if inside else Word.FAIL, error, band.high, band.until, band.reason)
+    word = Word.PASS if inside else Word.FAIL
+    within = band.until if inside else _within_until(values, held.exact, name, band)
+    return Column(name, word, error, band.high, band.until, band.reason, within)
+
+
+def _within_until(values: Array, exact: History, name: str, band: Band) -> float:
+    """Return the last instant before the error alone of the rows so far is more than is allowed of all [s]."""
+    wanted = exact.columns[name][: band.rows]
+    with np.errstate(all="ignore"):
+        so_far = np.sqrt(np.cumsum((values[: band.rows] - wanted) ** 2))
+    rows = np.flatnonzero(~(so_far <= band.high * np.linalg.norm(wanted)))
+    return float(exact.time[rows[0] - 1]) if len(rows) and rows[0] else 0.0
 
 
 def _without_band(name: str, held: Standard) -> str:

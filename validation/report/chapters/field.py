@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
@@ -25,6 +26,10 @@ NOTE = (
     "Relative L2 error in per cent of the column that is worst beside its band; n. a. not applicable, the reason is "
     "told below, and why a dash stands for no answer. Time: of all answers together, with the start of the program, on "
     "this machine."
+)
+SILENT = (
+    "In brackets the instant up to which the error of an answer that is not explained is within what is allowed. What "
+    f"would tell: {WOULD_TELL}."
 )
 
 
@@ -49,7 +54,7 @@ def counted(found: Field) -> str:
     others = [cell for cell in found.cells.values() if _kind(found, cell) != "suite"]
     words = [cell.verdict for cell in others]
     failed = [cell for cell in others if cell.verdict == FAIL]
-    named = sum(not cell.cause.startswith("not explained") for cell in failed)
+    named = sum(not cell.cause.startswith(NOT_EXPLAINED) for cell in failed)
     there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in (PASS, FAIL)}
     if not there:
         return "No other program is installed here: README of examples/peers has a recipe for each."
@@ -130,9 +135,16 @@ def failures(found: Field) -> Table:
         by_cause: dict[str, list[str]] = {}
         for cell in _cells(found, program):
             if cell.verdict == FAIL:
-                by_cause.setdefault(cell.cause, []).append(cell.problem)
+                by_cause.setdefault(cell.cause, []).append(cell.problem + _so_far(cell))
         rows += _lines(found, program, by_cause)
-    return Table(titles, tuple(rows))
+    return Table(titles, tuple(rows), notes=(SILENT,) if any(row[-1] == NOT_EXPLAINED for row in rows) else ())
+
+
+def _so_far(cell: Cell) -> str:
+    """Return in brackets how far an answer is right whose failure is not explained."""
+    if cell.cause != NOT_EXPLAINED or cell.within is None:
+        return ""
+    return f" ({short(float(f'{cell.within:.3g}'))} s)"
 
 
 def absent(found: Field) -> Table:

@@ -48,6 +48,14 @@ def headline(judged: Judged) -> str:
     return f"{found.verdict}: it is at most {off}." if found.word is Word.PASS else f"{found.verdict}: it is {off}."
 
 
+def reached(judged: Judged) -> str:
+    """Return how far an answer that fails is right, in a sentence."""
+    within, until = judged.judgement.within, max(column.until for column in judged.judgement.columns)
+    if not within:
+        return "Its error is more than what is allowed from the first step on."
+    return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
+
+
 def per_cent(share: float | None) -> str:
     """Return an error in per cent."""
     if share is None:
@@ -61,7 +69,9 @@ def page(judged: Judged, directory: Path) -> list[Block]:
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(found.word, "warn")
     blocks: list[Block] = [Callout(headline(judged), tone)]  # type: ignore[arg-type]
     if judged.cause is not None:
-        blocks.append(Paragraph(f"Cause: {judged.cause.sentence}."))
+        blocks.append(Paragraph(f"Cause: {judged.cause.sentence}. {reached(judged)}"))
+        if judged.cause.would_tell:
+            blocks.append(Paragraph(f"What would tell: {judged.cause.would_tell}."))
     return [
         *blocks,
         Paragraph(f"The question: {judged.problem.asks} {judged.problem.title}."),

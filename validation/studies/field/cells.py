@@ -121,6 +121,7 @@ def metrics_of(found: Judgement, why: str) -> dict[str, Value]:
             "band": settled(deciding.band),
             BESIDE: settled(deciding.error / deciding.band),
             "reason": deciding.reason,
+            "within": settled(found.within),
         }
     for column in found.columns:
         metrics[f"{column.name}: word"] = str(column.word)

@@ -61,6 +61,8 @@ class Cell:
         The column whose error is largest beside its band; `error` and `band` are its.
     error, band
         Relative L2 error, and the upper edge of its band [1].
+    within
+        Instant up to which its error is within what is allowed [s].
     seconds
         Of the run; None where it did not complete.
     reason
@@ -79,6 +81,7 @@ class Cell:
     column: str = ""
     error: float | None = None
     band: float | None = None
+    within: float | None = None
     seconds: float | None = None
     reason: str = ""
     columns: tuple[ColumnCell, ...] = ()
@@ -172,6 +175,7 @@ def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: 
         **texts,
         error=_number(metrics.get("error")),
         band=_number(metrics.get("band")),
+        within=_number(metrics.get("within")),
         seconds=sum(row.seconds.values()) if row.seconds else None,
         columns=_columns(metrics),
         numbers=_numbers(metrics),
