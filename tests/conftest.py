@@ -15,6 +15,9 @@ from typing import Any
 import pytest
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices: a second thread of BLAS only waits, and counts as work
+# Our packages assert nothing: pytest would rewrite them, and plain Python compile them once more.
+if rewriting := [finder for finder in sys.meta_path if hasattr(finder, "_must_rewrite")]:
+    rewriting[0]._must_rewrite -= {"dda", "fem_reference", "validation"}
 
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
@@ -105,7 +108,10 @@ def group_of(nodeid: str) -> str:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """Keep groups on one worker, in the order of collection; marks do not reach pytest-xdist from pytest 9.2 on."""
+    """Keep groups on one worker, the largest first; marks do not reach pytest-xdist from pytest 9.2 on.
+
+    Single tests come last, in the order of collection, so that no worker waits for the other's last group.
+    """
     if config.getvalue("dist") != "loadgroup":
         return None
     from xdist.scheduler import LoadScopeScheduling
@@ -114,7 +120,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
         def _split_scope(self, nodeid: str) -> str:
             return group_of(nodeid)
 
-    config.option.loadscopereorder = False
+        def _assign_work_unit(self, node: object) -> None:
+            """Forget finished groups: after each test pytest-xdist counts what is pending in all of them."""
+            assigned = self.assigned_work[node]
+            self.assigned_work[node] = {name: tests for name, tests in assigned.items() if not all(tests.values())}
+            super()._assign_work_unit(node)
+
     return Groups(config, log)
 
 

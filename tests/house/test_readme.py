@@ -1,9 +1,11 @@
 """README and the pages beside those of `test_docs`: code runs, tables of scenes load, commands and options exist."""
 
+import functools
 import re
 import shlex
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
@@ -17,7 +19,11 @@ from validation.studies.catalogue import STUDIES, check_words
 
 ROOT = Path(__file__).parents[2]
 PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
-COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+
+
+@functools.cache
+def commands() -> dict[str, Any]:
+    return typer.main.get_command(app).commands  # type: ignore[attr-defined]
 
 
 def blocks(page: str, language: str) -> list[str]:
@@ -68,7 +74,7 @@ def test_the_table_of_studies_has_them_all() -> None:
 
 def test_every_command_stands_in_the_list_of_commands() -> None:
     listed = re.findall(r"dda-validate ([a-z-]+)", blocks("README.md", "sh")[2])
-    assert set(COMMANDS) - {"report"} <= set(listed) and "dda-validate report" in (ROOT / "README.md").read_text()
+    assert set(commands()) - {"report"} <= set(listed) and "dda-validate report" in (ROOT / "README.md").read_text()
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -79,5 +85,5 @@ def test_commands_and_options_of_a_page_exist(page: str) -> None:
             words = shlex.split(part)
             if not words[0].endswith("dda-validate"):
                 continue
-            known = {option for parameter in COMMANDS[words[1]].params for option in parameter.opts}
+            known = {option for parameter in commands()[words[1]].params for option in parameter.opts}
             assert {word for word in words if word.startswith("--")} <= known, line

@@ -10,6 +10,7 @@ import difflib
 import itertools
 import json
 import math
+import os
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -270,7 +271,7 @@ def _clip(value: object, width: int = 60) -> str:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
+    return sorted(name.removesuffix(".toml") for name in os.listdir(SCENE_DIRECTORY) if name.endswith(".toml"))
 
 
 def load_scene(source: str | Path) -> Scene:
