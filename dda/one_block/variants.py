@@ -175,19 +175,21 @@ def _shifted(values: Array, late: int) -> Array:
 class _Equations:
     """What the equations of a step hold apart from the motion; every array is one over the variants."""
 
-    dt: float  # length of the step [s]
+    ahead: tuple[Array, Array]  # what V and A add to x*: gg dt [s] and (1/2 - alpha) dt^2 [s2]
     e: Array  # alpha dt^2 [s2]
     half: Array  # h / 2 [m]
     free: Array  # 1 where the base has a mass of its own, 0 where it is held
     inertia: Array  # diagonal of M in (v, ey, ex, b), with the viscous damping of the step, shape (4, variants)
-    drag: Array | None  # c M, None where nothing is damped
+    drag: tuple[Array, Array] | None  # c M, and (1 - delta) dt [s]; None where nothing is damped
     load: Array  # load and weight in the row of v [N]
     base_load: Array  # weight of the base [N]
+    strain_load: Array  # load in the row of ey, over h/2 [N]
     kept: Array  # stiffness by which the gap is carried on [N/m]
-    lost: Array  # stiffness that a slip leaves out of the coupling [N/m]
-    area: Array  # S [m2]
-    kx: Array  # stiffness of the shear springs by ex [N m]
+    lost: tuple[Array, Array]  # stiffness that a slip leaves out of the coupling [N/m], and h/2 of it [N]
+    area: Array  # S by which the stress is carried on [m2]
+    kx: Array  # stiffness of the shear springs by which ex is carried on [N m]
     k: tuple[Array, Array, Array, Array, Array]  # K without the base: (v, v), (v, ey), (ey, ey), (ex, ey), (ex, ex)
+    across: Array  # e K of (ex, ey)
     kb: tuple[Array, Array, Array]  # K of the base: (v, b), (ey, b), (b, b)
     ends: tuple[Array, Array]  # M + e K of ex and of b, which are eliminated first
     onto: tuple[Array, Array, Array]  # by which b goes into the row of v and of ey, and ex into that of ey
@@ -238,11 +240,12 @@ class _Stepping:
         weights = (-self.force - inertia[0] * self.gravity, -self.strain_load * self.force * h / 2)
         load = np.array([*weights, np.zeros_like(h), np.zeros_like(h)])
         self.A = self.consistent * load / inertia
+        area, height, stiffness = self.a * self.h / (a * h), self.point * h / 2, -self.normal
         for dt in steps.tolist():
-            area = self.a * self.h / (a * h)
+            if self.moves:
+                area = self.a * self.h / (a * h)
             self._step(dt)
-            shown = self.D + self.point * h / 2 * self.Y
-            yield shown, np.where(self.on, -self.normal * self.gap, 0.0) / a, ~self.on, area
+            yield self.D + height * self.Y, np.where(self.on, stiffness * self.gap, 0.0) / a, ~self.on, area
 
     def _inertia(self) -> Array:
         """Return the diagonal of M in (v, ey, ex, b), shape (4, variants)."""
@@ -250,16 +253,18 @@ class _Stepping:
         return np.array([m, m * self.h**2 / 12, m * self.a**2 / 12, self.base])
 
     def _step(self, dt: float) -> None:
-        star = self.gg_displacement * dt * self.V + dt * dt * (0.5 - self.alpha) * self.A
+        equations = self._equations(dt)
+        star = equations.ahead[0] * self.V + equations.ahead[1] * self.A
         for _ in range(OPEN_CLOSE_ITERATIONS):
-            x, acceleration = self._solve(self._equations(dt), star)
-            gap = self.gap + x[0] - self.h / 2 * x[1] - x[3]
+            x, acceleration = self._solve(equations, star)
+            gap = self.gap + x[0] - equations.half * x[1] - x[3]
             if self.locked:
                 break
             on = np.where(self.opens, gap < np.where(self.on, self.opening, -self.closing), True)
             if np.array_equal(on, self.on):
                 break
             self.on = on
+            equations = self._equations(dt)
         self._accept(dt, x, acceleration, gap)
 
     def _equations(self, dt: float) -> _Equations:
@@ -282,20 +287,23 @@ class _Stepping:
         tx, tb = e / ends[0], e / ends[1]
         Svv, Svy = M[0] + e * (k - tb * Kvb**2), e * (Kvy - tb * Kvb * Kyb)
         Syy = M[1] + e * (Kyy - tb * Kyb**2 - tx * Kxy**2)
+        lost = (1 - self.coupling) * k * self.keeps_springs
         return _Equations(
-            dt=dt,
+            ahead=(self.gg_displacement * dt, dt * dt * (0.5 - self.alpha)),
             e=e,
             half=half,
             free=free,
             inertia=M,
-            drag=self.viscous * mass if np.any(self.viscous) else None,
+            drag=(self.viscous * mass, dt * (1 - self.delta)) if np.any(self.viscous) else None,
             load=-self.force - mass[0] * self.gravity,
             base_load=mass[3] * self.gravity,
+            strain_load=self.strain_load * self.force,
             kept=k * self.keeps_springs,
-            lost=(1 - self.coupling) * k * self.keeps_springs,
-            area=S,
-            kx=kx,
+            lost=(lost, lost * half),
+            area=S * self.keeps_stress,
+            kx=kx * self.keeps_springs,
             k=(k, Kvy, Kyy, Kxy, Kxx),
+            across=e * Kxy,
             kb=(Kvb, Kyb, Kbb),
             ends=ends,
             onto=(tb * Kvb, tb * Kyb, tx * Kxy),
@@ -305,34 +313,27 @@ class _Stepping:
     def _solve(self, q: _Equations, star: Array) -> tuple[Array, Array]:
         """Return the increments (v, ey, ex, b) and the accelerations at the end for the present contact state."""
         (k, Kvy, Kyy, Kxy, Kxx), (Kvb, Kyb, Kbb), e = q.k, q.kb, q.e
-        pressed, area = q.kept * self.gap, q.area
-        F = np.array(
-            [
-                q.load - pressed - q.lost * q.half * self.Y,
-                (pressed - self.strain_load * self.force - q.lost * self.D) * q.half
-                - area * self.sy * self.keeps_stress,
-                -area * self.sx * self.keeps_stress - q.kx * self.sheared * self.keeps_springs,
-                q.free * (pressed - self.kb * self.B - q.base_load),
-            ]
-        )
+        pressed = q.kept * self.gap
+        F = np.empty_like(star)
+        F[0] = q.load - pressed - q.lost[1] * self.Y
+        F[1] = (pressed - q.strain_load - q.lost[0] * self.D) * q.half - q.area * self.sy
+        F[2] = -(q.area * self.sx) - q.kx * self.sheared
+        F[3] = q.free * (pressed - self.kb * self.B - q.base_load)
         if q.drag is not None:
-            F = F - q.drag * (self.gg_velocity * self.V + q.dt * (1 - self.delta) * self.A)
+            F -= q.drag[0] * (self.gg_velocity * self.V + q.drag[1] * self.A)
         rv, ry, rx, rb = q.inertia * star + e * F
         (vb, yb, xy), (Svv, Svy, pivot) = q.onto, q.left
         rv, ry = rv - vb * rb, ry - yb * rb - xy * rx
         y = (ry - Svy * rv / Svv) / pivot
         v = (rv - Svy * y) / Svv
-        x = (rx - e * Kxy * y) / q.ends[0]
-        b = (rb - e * (Kvb * v + Kyb * y)) / q.ends[1]
-        internal = np.array(
-            [
-                k * v + Kvy * y + Kvb * b,
-                Kvy * v + Kyy * y + Kxy * x + Kyb * b,
-                Kxy * y + Kxx * x,
-                q.free * (Kvb * v + Kyb * y + Kbb * b),
-            ]
-        )
-        return np.array([v, y, x, b]), (F - internal) / q.inertia
+        x = (rx - q.across * y) / q.ends[0]
+        coupled = Kvb * v + Kyb * y
+        b = (rb - e * coupled) / q.ends[1]
+        F[0] -= k * v + Kvy * y + Kvb * b
+        F[1] -= Kvy * v + Kyy * y + Kxy * x + Kyb * b
+        F[2] -= Kxy * y + Kxx * x
+        F[3] -= q.free * (coupled + Kbb * b)
+        return np.array([v, y, x, b]), F / q.inertia
 
     def _accept(self, dt: float, x: Array, acceleration: Array, gap: Array) -> None:
         """Move to the end of the step."""

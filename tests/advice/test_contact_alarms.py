@@ -40,7 +40,7 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         ({"time.gg": 0.98}, {kinds.LARGE_STEP, kinds.DRAG}),
         ({"time.gg": 0.98, "time.step": 2e-3}, {kinds.HIDDEN}),
         (STIFF | AVERAGE, {kinds.LARGE_STEP, kinds.MAY_GAIN, kinds.GAINED, kinds.PENALTY}),
-        (STIFF | {"time.step": 2e-5, "time.steps": 400}, {kinds.PENALTY}),
+        (STIFF | {"time.step": 2e-5, "time.steps": 250}, {kinds.PENALTY}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-4]}, {kinds.PULLING}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-6]}, set()),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [1e-3, 0.0]}, {kinds.GAINED}),  # p (1 mm)^2 a landing

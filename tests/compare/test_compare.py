@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused, thinned, typed
+from faults import seams
 from oracles.shi_dda import Program, run, write_measured_point
 
 from dda.one_block.variants import Variant, histories
@@ -17,6 +18,7 @@ from validation.compare.diagnosis import compare
 from validation.compare.fits.fit import fit, intervals, untold
 from validation.compare.fits.rectangle import rectangle_of
 from validation.compare.fits.target import Target
+from validation.compare.other_solvers import Goal, slipped
 from validation.compare.reading import Foreign, read
 from validation.compare.sentences import span
 from validation.scenes.scene import Scene
@@ -108,10 +110,10 @@ def test_a_fit_finds_the_scheme_and_its_interval_holds_it() -> None:
 def test_what_one_settled_row_cannot_tell_is_said() -> None:
     column = rectangle_of(scene())
     assert column is not None
-    steps = np.full(400, 0.01)
+    steps = np.full(140, 0.01)
     v = Variant(0.5, 1.0, 1.0)
-    late = histories(column, [v], steps).displacement[300:, 0] * (1 + 1e-6 * np.sin(np.arange(100)))
-    target = Target(column, steps, np.arange(300, 400), late)
+    late = histories(column, [v], steps).displacement[100:, 0] * (1 + 1e-6 * np.sin(np.arange(40)))
+    target = Target(column, steps, np.arange(100, 140), late)
     (found,) = fit(target, [(v, ("alpha", "delta", "gg", "softness"))])
     assert {name for direction in untold(found) for name in direction} >= {"alpha", "delta", "gg"}
 
@@ -170,19 +172,27 @@ def test_the_example_of_ntdda(example: dict[str, object]) -> None:
     assert {row["model"] for row in ranking} == {"dda", "bar", "continuum"}
 
 
-def test_numbers_of_the_examples_readme() -> None:
+def example_target() -> Target:
     foreign, s = read(EXAMPLE / "ntdda-p1E-dt2ms_meas.m"), load_scene(EXAMPLE / "scene.toml")
     column = rectangle_of(s)
     assert column is not None
-    target = Target(column, np.full(200, 0.002), np.arange(200), foreign.displacement)
-    plain = Variant(0.5, 1.0, 1.0)
-    moving = replace(plain, updated=True)
-    heavy = replace(moving, base=10.0, softness=0.005, weight=1.0)
-    (swinging,) = fit(target, [(heavy, ("softness", "base", "weight"))], rounds=30)
+    return Target(column, np.full(200, 0.002), np.arange(200), foreign.displacement)
+
+
+@pytest.mark.long
+def test_the_swinging_base_of_the_examples_readme() -> None:
+    heavy = Variant(0.5, 1.0, 1.0, updated=True, base=10.0, softness=0.005, weight=1.0)
+    (swinging,) = fit(example_target(), [(heavy, ("softness", "base", "weight"))], rounds=30)
     assert (f"{swinging.misfit:.0e}", round(swinging.variant.base, -1)) == ("5e-07", 20)
     assert swinging.variant.weight == pytest.approx(0.943, abs=5e-4)
+
+
+def test_numbers_of_the_examples_readme() -> None:
+    plain = Variant(0.5, 1.0, 1.0)
+    moving = replace(plain, updated=True)
     found = fit(
-        target, [(plain, ()), (moving, ("softness",)), (moving, ("softness", "load")), (moving, ("softness", "weight"))]
+        example_target(),
+        [(plain, ()), (moving, ("softness",)), (moving, ("softness", "load")), (moving, ("softness", "weight"))],
     )
     assert [f"{f.misfit:.1e}" for f in found] == ["8.7e-03", "2.0e-03", "1.4e-05", "1.9e-06"]
     assert found[3].variant.weight == pytest.approx(0.970, abs=5e-4)
@@ -192,7 +202,7 @@ def test_numbers_of_the_examples_readme() -> None:
     ("program", "opened"),
     thinned(
         [
-            (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0), None),
+            (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0, steps=40), None),
             (Program(dt=1e-3, p=1e9, g=9.81), [1, 2]),
             (Program(dt=5e-4, p=1e10, gg=0.98, g=9.81, rho=2300.0), None),
             (Program(dt=2e-4, p=5e8, steps=100, g=9.81), None),
@@ -244,8 +254,7 @@ def test_a_polygon_is_compared_with_the_linear_models() -> None:
 
 
 def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) -> None:
-    s = scene()
-    exact = solve(s, "dda")
+    exact = solve(scene(time__steps=30), "dda")
     table = np.column_stack([1e3 * exact.time, -1e3 * exact.displacement])
     path = tmp_path / "theirs.csv"
     path.write_text("t;uy\n" + "\n".join(f"{t:.7g};{u:.7g}" for t, u in table))
@@ -267,12 +276,20 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert "cannot be read" in refused("compare", "figures-3-4", tmp_path / "none.csv", "--set", "time.step=0.002")
 
 
+def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
+    s = scene(time__steps=20).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
+    run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")
+    seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor": "block.young"})
+    (found,) = slipped(s, "fem", Goal(np.arange(20), run_.displacement, run_.contact_pressure))
+    assert (found.slip, found.amount) == ("young-factor", pytest.approx(0.9, rel=1e-6))
+    assert found.misfit < 1e-9
+
+
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("changes", "cause", "factor"),
-    [
-        ({"block.young": 0.9e9}, "young-factor", 0.9),
-        pytest.param({"contact.stiffness": 5e8}, "springs-factor", 0.5, marks=pytest.mark.long),
-    ],
+    [({"block.young": 0.9e9}, "young-factor", 0.9), ({"contact.stiffness": 5e8}, "springs-factor", 0.5)],
 )
 def test_a_slip_in_finite_elements_is_that_slip(changes: dict[str, float], cause: str, factor: float) -> None:
     """A softer spring is near a softer block: on the scene's own mesh the right one leaves nothing."""

@@ -1,7 +1,10 @@
 """Columns of blocks: waves in them against closed forms, the system of blocks, and the laws of joints and bases."""
 
+from itertools import product
+
 import numpy as np
 import pytest
+from conftest import thinned
 
 import dda
 from dda.column.column import Column, Layer, Motion, Spring
@@ -53,16 +56,19 @@ def wavenumber(
     return complex(2 * np.arcsin(half_sine) / HEIGHT), complex(exact)
 
 
-@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
-@pytest.mark.parametrize(("count", "courant"), [(8, 0.25), (10, 0.25), (10, 0.5), (10, 1), (20, 0.25)])
-def test_waves_in_welded_blocks(count: float, courant: float, scheme: tuple[float, float]) -> None:
-    found, exact = wavenumber(count, courant, scheme)
+WELDED = [(8, 0.25), (10, 0.25), (10, 0.5), (10, 1), (20, 0.25)]  # blocks a wavelength, Courant's number
+GLUED = [(1, 20), (10, 8), (100, 8), (1e4, 8), (1e12, 8)]  # glue over E / h, passes of the wave
+
+
+@pytest.mark.parametrize(("wave", "scheme"), thinned(product(WELDED, [CONSTANT, AVERAGE]), 3))
+def test_waves_in_welded_blocks(wave: tuple[float, float], scheme: tuple[float, float]) -> None:
+    found, exact = wavenumber(*wave, scheme)
     assert abs(found - exact) < 1e-10 * abs(exact)
 
 
-@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
-@pytest.mark.parametrize(("ratio", "passes"), [(1, 20), (10, 8), (100, 8), (1e4, 8), (1e12, 8)])
-def test_waves_in_glued_blocks(ratio: float, passes: int, scheme: tuple[float, float]) -> None:
+@pytest.mark.parametrize(("glue", "scheme"), thinned(product(GLUED, [CONSTANT, AVERAGE]), 3))
+def test_waves_in_glued_blocks(glue: tuple[float, int], scheme: tuple[float, float]) -> None:
+    ratio, passes = glue
     found, exact = wavenumber(10, 0.5, scheme, ratio=ratio, passes=passes)
     assert abs(found - exact) < 1e-10 * abs(exact)
 
@@ -143,7 +149,7 @@ def test_alpha_zero_is_the_same_code() -> None:
     column = Column([Layer(4.0, DENSITY, YOUNG, 0.0, 8)], impedance=(DENSITY * YOUNG) ** 0.5)
     histories = []
     for alpha, step in ((0.0, 1e-5), (0.25, 1e-5)):
-        time = step * np.arange(3001)
+        time = step * np.arange(2001)
         histories.append(solve_column(column, dda.Scheme(alpha, 0.5, 1.0, step), ricker(time, 200.0)).columns)
     for name, values in histories[0].items():
         assert np.abs(values - histories[1][name]).max() < 1e-3 * np.abs(values).max()

@@ -57,14 +57,14 @@ def test_a_history_tends_to_that_of_its_events(name, steps, time, scheme, band):
     assert band[0] < order(name, steps, time, scheme) < band[1]
 
 
-@pytest.mark.parametrize(("name", "time"), [("rubbing", 0.01), ("pulled", 0.03), ("incline", 0.05)])
+@pytest.mark.parametrize(("name", "time"), thinned([("rubbing", 0.01), ("pulled", 0.03), ("incline", 0.05)], 2))
 def test_a_history_is_near_that_of_its_events(name, time):
     coarse, fine = error(name, 300, time), error(name, 900, time)
     assert fine < coarse / 4  # second order: a ninth, but for where a switch falls within its step
     assert fine < 3e-4 * np.linalg.norm(KNOWN[name].at[time])
 
 
-@pytest.mark.parametrize(("seed", "scheme"), thinned(cases(500), 60))
+@pytest.mark.parametrize(("seed", "scheme"), thinned(cases(500), 100))
 def test_law_momentum_and_energy_hold_to_rounding(seed, scheme):
     held(seed, scheme, 150)
 
@@ -75,7 +75,7 @@ def test_the_random_scenes_stick_slip_and_open():
     assert {-2, 2} <= set(np.concatenate(states))
 
 
-@pytest.mark.parametrize("seeds", thinned([range(10), range(10, 80)], 2))
+@pytest.mark.parametrize("seeds", thinned([range(4), range(4, 80)], 2))
 @pytest.mark.parametrize("gg", [1.0, 0.97])
 def test_no_step_gains_energy_at_delta_one(seeds, gg):
     steps = 0
@@ -106,7 +106,7 @@ def test_a_mirrored_block_moves_as_its_image(seed):
     assert np.array_equal(one.closed, other.closed[::-1])
 
 
-@pytest.mark.parametrize("seed", thinned(range(30), 10))
+@pytest.mark.parametrize("seed", thinned(range(30), 15))
 def test_twice_the_loads_move_it_twice_as_far(seed):
     model, scheme = rubbing_model(seed), Scheme(0.25, 0.5, 0.99, DT, "consistent")
     law = replace(model.contact, gap=2 * model.contact.gap, cohesion=2 * model.contact.cohesion)
@@ -144,7 +144,7 @@ def test_a_rising_base_is_a_falling_block():
         assert np.max(np.abs(way - thrown.columns["displacement"])) < 1e-12
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+@pytest.mark.parametrize("seed", thinned(range(4), 2))
 def test_energy_is_kept_on_a_base_that_shakes(seed):
     model = replace(rubbing_model(seed), motion=shaken(np.random.default_rng(seed)))
     result = solve_unilateral(model, Scheme(0.3025, 0.6, 0.98, DT), 200, options=ENERGIES)
@@ -173,7 +173,7 @@ def test_a_base_that_has_moved_before_the_start_is_refused():
         replace(KNOWN["incline"].model, motion=away)
 
 
-@pytest.mark.parametrize("turned", [50.0, -30.0])
+@pytest.mark.parametrize("turned", thinned([50.0, -30.0], 2))
 def test_a_polygon_on_any_edge_slides_as_it_does_on_a_level_one(turned):
     corners = np.array([[0.0, 0.0], [1.6, 0.0], [2.1, 0.9], [1.2, 1.7], [0.1, 1.2]])
     angle = np.radians(turned)
@@ -231,7 +231,7 @@ def test_cohesion_holds_what_friction_does_not():
     assert ways[0] > 0.2 and ways[1] == 0
 
 
-@pytest.mark.parametrize("seed", thinned(range(40), 10))
+@pytest.mark.parametrize("seed", thinned(range(40), 20))
 def test_steps_without_slip_are_made_at_once(seed):
     model, scheme = rubbing_model(seed), Scheme(0.5, 1.0, 0.999, 1e-4)
     once, singly = (solve_unilateral(model, scheme, 300, options=options) for options in (ENERGIES, SINGLY))
@@ -244,9 +244,9 @@ def test_steps_without_slip_are_made_at_once(seed):
 
 
 def test_a_block_that_comes_to_rest_is_no_longer_stepped():
-    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-4)
-    rubs = solve_unilateral(model, scheme, 5000)
-    assert sum(part.steps for part in rubs.history.glides) > 2500 and rubs.step_solves.sum() < 5300
+    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 2e-4)
+    rubs = solve_unilateral(model, scheme, 2500)
+    assert sum(part.steps for part in rubs.history.glides) > 1250 and rubs.step_solves.sum() < 2650
     assert np.max(np.abs(rubs.shear) - model.contact.friction * rubs.normal) <= 1e-11 * np.max(rubs.normal)
     late = replace(model, contact=replace(model.contact, rules="lagged"))
     assert not solve_unilateral(late, scheme, 100).history.glides

@@ -41,7 +41,9 @@ def test_a_history_of_a_program_is_met_step_by_step():
     )
 
 
-@pytest.mark.parametrize(("dt", "program"), [(1e-2, 1.0e-3), (2e-3, 2.2e-3), (1e-3, 5.2e-3)])
+@pytest.mark.parametrize(
+    ("dt", "program"), [(1e-2, 1.0e-3), (2e-3, 2.2e-3), pytest.param(1e-3, 5.2e-3, marks=pytest.mark.long)]
+)
 def test_a_stable_block_creeps_the_more_the_smaller_the_step(dt, program):
     assert creep(stable(30), dt)[-1] == pytest.approx(program, rel=0.02)  # given to two digits
 

@@ -20,16 +20,24 @@ SCHEMES = [(0.25, 0.5, 2.0), (0.5, 1.0, 1.0), (0.3025, 0.6, 1.0)]
 CASES = {"glued": (0.6, 4e6), "frictionless": (0.15, 0.0)}  # tilt [rad], shear stiffness [N/m]
 
 
+def truth(name):
+    """Return centroid, angle and strain at T by DOP853."""
+    tilt, shear = CASES[name]
+    outline = np.array([complex(*point) for point in OUTLINE])
+    block = RollingBlock(outline, 2000.0, MATERIAL.elasticity(), P, shear, -9.81j)
+    q0 = [*place(0.0, tilt), tilt, 0, 0, 0]
+    reference = [0.0 if shear else None, None, None, None]
+    return block.motion(q0, np.zeros(6), np.array([T]), reference)[-1][:6]
+
+
 @pytest.fixture(scope="module")
-def truths():
-    made = {}
-    for name, (tilt, shear) in CASES.items():
-        outline = np.array([complex(*point) for point in OUTLINE])
-        block = RollingBlock(outline, 2000.0, MATERIAL.elasticity(), P, shear, -9.81j)
-        q0 = [*place(0.0, tilt), tilt, 0, 0, 0]
-        reference = [0.0 if shear else None, None, None, None]
-        made[name] = block.motion(q0, np.zeros(6), np.array([T]), reference)[-1][:6]
-    return made
+def glued():
+    return truth("glued")
+
+
+@pytest.fixture(scope="module")
+def frictionless():
+    return truth("frictionless")
 
 
 def model(name):
@@ -57,35 +65,35 @@ def errors(name, alpha, delta, truth, steps):
     ("alpha", "delta", "order"),
     [SCHEMES[0], *(pytest.param(*scheme, marks=pytest.mark.long) for scheme in SCHEMES[1:])],
 )
-def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(truths, alpha, delta, order):
-    found = errors("glued", alpha, delta, truths["glued"], (150, 300))
+def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(glued, alpha, delta, order):
+    found = errors("glued", alpha, delta, glued, (150, 300))
     assert abs(math.log2(found[0] / found[1]) - order) < 0.1  # the next order at these steps
 
 
 @pytest.mark.long
 @pytest.mark.parametrize(("alpha", "delta", "order"), SCHEMES)
-def test_contact_that_opens_and_closes_keeps_the_order(truths, alpha, delta, order):
+def test_contact_that_opens_and_closes_keeps_the_order(frictionless, alpha, delta, order):
     """A switch falls anywhere within a step, which moves the error of one step length by some of its size."""
-    found = errors("frictionless", alpha, delta, truths["frictionless"], (150, 300, 600, 1200))
+    found = errors("frictionless", alpha, delta, frictionless, (150, 300, 600, 1200))
     fitted = math.log2(found[0] / found[-1]) / 3
     assert order - (0.5 if order == 2 else 0.1) < fitted < order + 0.1
 
 
 @pytest.mark.long
-def test_average_acceleration_needs_the_directions_of_the_end_of_a_step(truths):
+def test_average_acceleration_needs_the_directions_of_the_end_of_a_step(glued):
     """With those of the chord, which delta = 1 needs, its error falls with the first power of the step in the end."""
     with patch.object(step, step.late_share.__name__, lambda delta: 0.0):
-        found = errors("glued", 0.25, 0.5, truths["glued"], (240, 480))
+        found = errors("glued", 0.25, 0.5, glued, (240, 480))
     assert math.log2(found[0] / found[1]) < 1.4
 
 
 def test_delta_one_needs_the_directions_of_the_chord():
     """With those of the end of the step a block gains energy as it falls over its corner."""
-    scheme = Scheme(0.5, 1.0, 1.0, 2e-3)
+    scheme = Scheme(0.5, 1.0, 1.0, 4e-3)
     heavy = RollingModel(Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e9, 1e9), Load(gravity=9.81), tilt=0.5)
 
     def rise():
-        e = solve_rolling(heavy, scheme, 150).energies
+        e = solve_rolling(heavy, scheme, 75).energies
         return np.max(np.diff(sum(e[name] for name in ("kinetic", "strain", "springs", "load"))))
 
     assert rise() < 1e-7

@@ -1,6 +1,7 @@
 """The printed recursion: what it agrees with, what it loses, what it leaves out."""
 
 import pytest
+from conftest import thinned
 from oracles import mp_reference
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve, solve_textbook, textbook_applicable
@@ -14,16 +15,19 @@ def square(ratio, mu=0.0, side=2.0):
 
 @pytest.mark.parametrize(
     ("alpha", "delta", "ratio", "low", "high"),
-    [  # an order of magnitude either side of what an independent program measured
-        (0.5, 1.0, 1e0, 0.0, 4e-15),
-        (0.5, 1.0, 1e8, 3e-10, 3e-8),
-        (0.5, 1.0, 1e12, 2e-6, 2e-4),
-        (0.5, 1.0, 1e15, 4e-3, 4e-1),
-        (0.25, 0.5, 1e0, 0.0, 1e-13),
-        (0.25, 0.5, 1e8, 7e-9, 7e-7),
-        (0.25, 0.5, 1e12, 9e-5, 9e-3),
-        (0.25, 0.5, 1e15, 0.13, 13.0),
-    ],
+    thinned(
+        [  # an order of magnitude either side of what an independent program measured
+            (0.5, 1.0, 1e0, 0.0, 4e-15),
+            (0.5, 1.0, 1e8, 3e-10, 3e-8),
+            (0.5, 1.0, 1e12, 2e-6, 2e-4),
+            (0.5, 1.0, 1e15, 4e-3, 4e-1),
+            (0.25, 0.5, 1e0, 0.0, 1e-13),
+            (0.25, 0.5, 1e8, 7e-9, 7e-7),
+            (0.25, 0.5, 1e12, 9e-5, 9e-3),
+            (0.25, 0.5, 1e15, 0.13, 13.0),
+        ],
+        3,
+    ),
 )
 def test_it_loses_digits_with_stiff_springs(alpha, delta, ratio, low, high):
     model, scheme = square(ratio), Scheme(alpha, delta, 1.0, 1e-3)

@@ -77,7 +77,7 @@ def test_no_step_gains_energy_at_delta_one(alpha, glued, gg, seeds):
 
 
 def test_average_acceleration_gains_energy_by_opening():
-    gains = [np.min(np.diff(run(random_model(s), 0.25, 0.5, energies=True).energies["switching"])) for s in SEEDS]
+    gains = [np.min(np.diff(run(random_model(s), 0.25, 0.5, energies=True).energies["switching"])) for s in SEEDS[:4]]
     assert np.min(gains) < 0  # the theorem above is one of delta = 1, not of the bookkeeping
 
 
@@ -149,8 +149,7 @@ def test_the_first_step_opens_below_the_closed_formula(alpha, delta, p):
         assert above.closed_m[0] and above.normal_force_m[0] > 0
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("p", [1e9, 1e11, 1e15, np.inf])
+@pytest.mark.parametrize(("scheme", "p"), thinned(product(SCHEMES, [1e9, 1e11, 1e15, np.inf]), 5))
 def test_frictionless_contacts_take_two_and_three_solves_at_most(scheme, p):
     alpha, delta, gg, start = scheme
     for dt in (1e-4, 1e-3, 1e-2):
@@ -257,7 +256,7 @@ def test_cutting_ends_at_a_hundredth_with_the_named_outcome(monkeypatch):
 def test_glued_states_that_disagree_are_cut_and_the_run_goes_on():
     """Long steps and stiff glued corners: some steps have no single state; cutting finds one that loses energy."""
     cuts = 0
-    for seed in range(30):
+    for seed in range(12):
         model = random_model(seed, glued=True)
         result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 8e-3), 60, options=UnilateralOptions(energies=True))
         assert np.all(np.diff(sums(result)[0]) < 1e-13 * size(result))
@@ -275,9 +274,10 @@ def test_a_dead_band_holds_tension_and_delays_closing():
     assert np.min(result.normal_force_m) >= -1e11 * band[1]
 
 
+@pytest.mark.parametrize("seeds", thinned([range(2), range(2, 6)], 2))
 @pytest.mark.parametrize("dt", [1e-5, 2e-4])
-def test_the_implicit_contact_rule_never_gains_and_keeps_the_bulk(dt):
-    for seed in range(6):
+def test_the_implicit_contact_rule_never_gains_and_keeps_the_bulk(dt, seeds):
+    for seed in seeds:
         model = random_model(seed)
         options = UnilateralOptions(rule="implicit", energies=True)
         result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, dt, "consistent"), 300, options=options)

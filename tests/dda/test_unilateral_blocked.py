@@ -1,9 +1,11 @@
 """Steps at once between switches: equal to steps one by one, with the digits of these, and where they are not used."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles import unilateral_mp
 from oracles.unilateral_checks import apart, random_model
 
@@ -37,12 +39,9 @@ def differences(one, other):
 
 # Rounding of a few thousand steps, multiplied by each landing: of two glued corners by up to some thousand at p = 100E.
 @pytest.mark.parametrize(
-    "scheme",
-    [CONSTANT, AVERAGE, pytest.param(Scheme(0.3025, 0.6, 0.9998, 3e-5), marks=pytest.mark.long)],
-    ids=lambda s: f"{s.delta}",
+    ("eccentricity", "shear", "scheme"),
+    thinned(product([0.0, 0.3], [0.0, 0.4], [CONSTANT, AVERAGE, Scheme(0.3025, 0.6, 0.9998, 3e-5)]), 5),
 )
-@pytest.mark.parametrize("shear", [0.0, 0.4])
-@pytest.mark.parametrize("eccentricity", [0.0, 0.3])
 @pytest.mark.parametrize("p", [1e9, pytest.param(1e11, marks=pytest.mark.long)])
 def test_steps_at_once_are_the_steps_one_by_one(p, eccentricity, shear, scheme, monkeypatch):
     model = replace(PAPER, contact=Unilateral(p, shear * p), eccentricity=eccentricity, gravity=3.0)

@@ -98,7 +98,7 @@ LONG = pytest.mark.long
 )
 @pytest.mark.parametrize(("options", "order", "scatter"), [(CONSERVING, 2.0, 0.15), (IMPLICIT, 1.0, 0.1)])
 def test_the_order_in_dt_through_switches(problem, options, order, scatter):
-    end, errors, counts = 0.03, [], [300, 600, 1200, 2400]
+    end, errors, counts = 0.03, [], [200, 400, 800, 1600]
     motion = exact_motion(problem, end)
     block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, problem.poisson))
     model = UnilateralModel(block, Unilateral(1e9), 5e6, eccentricity=problem.eccentricity)

@@ -41,7 +41,7 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.compare import decision, diagnosis, reading, readings, search
+from validation.compare import decision, diagnosis, other_solvers, reading, readings, search
 from validation.compare.fits import bar
 from validation.engine import origin
 from validation.runs import provenance
@@ -177,6 +177,7 @@ DECISION_ACCEPTED = Seam(decision, decision.accepted)
 DIAGNOSIS_OPENED = Seam(diagnosis, diagnosis._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)
+RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)

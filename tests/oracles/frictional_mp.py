@@ -2,8 +2,11 @@
 
 from itertools import product
 
+import numpy as np
 from mpmath import mp, mpf
 from oracles import unilateral_mp
+from oracles.mp_reference import decimal
+from oracles.unilateral_mp import HALF, ZERO, exact
 
 OPEN, STICK = 0, 1  # and 2, -2 for slip
 
@@ -14,12 +17,12 @@ class Rubbing(unilateral_mp.Oracle):
     def __init__(self, model, scheme):
         super().__init__(model, scheme)
         beta = mpf(model.slope) * mp.pi / 180
-        weight = self.M[0, 0] * mpf(model.gravity)
-        self.F[0] += weight * mp.sin(beta)
-        self.F[1] += weight * (1 - mp.cos(beta))
+        weight = self.M[0, 0] * exact(model.gravity)
+        self.F[0] += weight * decimal(mp.sin(beta))
+        self.F[1] += weight * decimal(1 - mp.cos(beta))
         if scheme.start == "consistent":
-            self.A = self.inverse * self.F
-        self.mu, self.c = mpf(model.contact.friction), mpf(model.contact.cohesion)
+            self.A = self.inverse @ self.F
+        self.mu, self.c = exact(model.contact.friction), exact(model.contact.cohesion)
 
     def step(self):
         """Advance by one step; return (u, v, r), N of both corners, T of both corners."""
@@ -39,12 +42,12 @@ class Rubbing(unilateral_mp.Oracle):
         for i, state in enumerate(states):
             if state == OPEN:
                 continue
-            n, s, sign = self.normal[i], self.shear[i], mpf(state) / 2
-            b -= self.h * self.p * self.g0 * n.T
+            n, s, sign = self.normal[i], self.shear[i], state * HALF
+            b -= self.h * self.p * self.g0 * n
             if state == STICK:
-                b += self.h * self.ps * shares[i] * self._reference(i) * s.T
+                b += self.h * self.ps * shares[i] * self._reference(i) * s
             else:  # T = -sign (mu N + c), N = -p w
-                b += self.h * sign * (self.mu * self.p * self.g0 - self.c) * s.T
+                b += self.h * sign * (self.mu * self.p * self.g0 - self.c) * s
         held = (self.ps * share if state == STICK else None for state, share in zip(states, shares, strict=True))
         return self._solved(tuple(zip(states, held, strict=True)), b)
 
@@ -53,20 +56,20 @@ class Rubbing(unilateral_mp.Oracle):
         for n, s, (state, ps) in zip(self.normal, self.shear, held, strict=True):
             if state == OPEN:
                 continue
-            S += self.h * self.p * n.T * n
-            S += self.h * (ps * s.T * s if state == STICK else -mpf(state) / 2 * self.mu * self.p * s.T * n)
+            S += self.h * self.p * np.outer(n, n)
+            S += self.h * (ps * np.outer(s, s) if state == STICK else -state * HALF * self.mu * self.p * np.outer(s, n))
         return S
 
     def _agreed(self, D1, gaps, states, shares):
-        N, T, r = [mpf(0)] * 2, [mpf(0)] * 2, [mpf(0)] * 2
+        N, T, r = [ZERO] * 2, [ZERO] * 2, [ZERO] * 2
         for i, (state, w) in enumerate(zip(states, gaps, strict=True)):
             if (w < 0) != (state != OPEN):
                 return None
             if state == OPEN:
                 continue
-            N[i], s = -self.p * w, (self.shear[i] * D1)[0]
+            N[i], s = -self.p * w, self.shear[i] @ D1
             moved, limit = shares[i] * (s - self._reference(i)), self.mu * N[i] + self.c
-            T[i] = -self.ps * moved if state == STICK else -mpf(state) / 2 * limit
+            T[i] = -self.ps * moved if state == STICK else -state * HALF * limit
             if state == STICK and abs(T[i]) > limit:
                 return None
             if state != STICK and state * (moved + T[i] / self.ps) < 0:

@@ -1,8 +1,11 @@
 """The two-block model in high-precision arithmetic: plain Newmark in D, from the doubles of the data.
 
 Independent of the package's matrices: areas, springs, loads and the step are written again here, in
-the textbook unknowns and with the textbook order of operations, which many digits make harmless.
+the textbook unknowns and with the textbook order of operations, which many digits make harmless. Matrices are those of
+mpmath; the steps are made with `decimal`, whose numbers of as many digits are compiled.
 """
+
+from decimal import Context, Decimal, localcontext
 
 from mpmath import mp, mpf
 
@@ -69,38 +72,43 @@ def matrices(model):
     return M, K, F, pressure
 
 
+def decimal(x):
+    """Return a number of mpmath as a decimal one, with more digits than it has."""
+    return Decimal(mp.nstr(x, DIGITS + 5))
+
+
 def _apply(rows, x):
     """Return a matrix, kept as lists of (column, entry), times a list."""
-    return [mp.fsum(value * x[j] for j, value in row) for row in rows]
+    return [sum(value * x[j] for j, value in row) for row in rows]
 
 
 def _rows(matrix):
     """Return a matrix as lists of its non-zero (column, entry)."""
-    return [[(j, matrix[i, j]) for j in range(6) if matrix[i, j]] for i in range(6)]
+    return [[(j, decimal(matrix[i, j])) for j in range(6) if matrix[i, j]] for i in range(6)]
 
 
 def history(model, scheme, steps):
     """Return v of the centroid and the contact pressure of every step, as lists of mpf."""
-    with mp.workdps(DIGITS):
+    with mp.workdps(DIGITS), localcontext(Context(prec=DIGITS)):
         M, K, F, pressure = matrices(model)
-        alpha, delta, gg, dt = (mpf(x) for x in (scheme.alpha, scheme.delta, scheme.gg, scheme.step))
-        S_inverse = (M + alpha * dt**2 * K) ** -1
-        SM, SK, SF = _rows(S_inverse * M), _rows(alpha * dt**2 * S_inverse * K), alpha * dt**2 * S_inverse * F
-        M_inverse = M**-1
-        MK, MF = _rows(M_inverse * K), M_inverse * F
-        D, V = [mpf(0)] * 6, [mpf(0)] * 6
-        A = list(MF) if scheme.start == "consistent" else [mpf(0)] * 6
+        h = mpf(scheme.alpha) * mpf(scheme.step) ** 2
+        S_inverse, M_inverse = (M + h * K) ** -1, M**-1
+        SM, SK, MK = _rows(S_inverse * M), _rows(h * S_inverse * K), _rows(M_inverse * K)
+        SF, MF, pressure = (list(map(decimal, given)) for given in (h * S_inverse * F, M_inverse * F, pressure))
+        alpha, delta, gg, dt = (Decimal(float(x)) for x in (scheme.alpha, scheme.delta, scheme.gg, scheme.step))
+        D, V = [Decimal(0)] * 6, [Decimal(0)] * 6
+        A = list(MF) if scheme.start == "consistent" else [Decimal(0)] * 6
         displacement, contact = [], []
         for _ in range(steps):
-            ahead = [gg * dt * v + dt**2 * (mpf(1) / 2 - alpha) * a for v, a in zip(V, A, strict=True)]
+            ahead = [gg * dt * v + dt**2 * (Decimal("0.5") - alpha) * a for v, a in zip(V, A, strict=True)]
             moved, held = _apply(SM, ahead), _apply(SK, D)
             D = [d + m - k + f for d, m, k, f in zip(D, moved, held, SF, strict=True)]
             A1 = [f - x for f, x in zip(MF, _apply(MK, D), strict=True)]
             V = [gg * v + dt * ((1 - delta) * a + delta * b) for v, a, b in zip(V, A, A1, strict=True)]
             A = A1
             displacement.append(D[1])
-            contact.append(mp.fsum(p * d for p, d in zip(pressure, D, strict=True)))
-        return displacement, contact
+            contact.append(sum(p * d for p, d in zip(pressure, D, strict=True)))
+        return [mpf(str(v)) for v in displacement], [mpf(str(p)) for p in contact]
 
 
 def lost(values, exact):

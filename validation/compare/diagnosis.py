@@ -131,16 +131,15 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
-    others: list[Rival] = []
+    theirs: RivalVerdict | None = None
     if not (verdict.explained or verdict.reached) and scene.contact.law == "locked":
         names = RIVALS if scene.block.poisson == 0 else ("fem",)
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case))
         verdict = paired(case.target, own, verdict)
-    if scene.contact.law == "locked":
-        others = _others(scene, case, verdict)
-    return _answer(case, verdict, others)
+    linear = scene.contact.law == "locked"
+    return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
 
 
 # ---- reading --------------------------------------------------------------------------------------------------------
@@ -176,7 +175,7 @@ def _best(
     return min(tried, key=lambda pair: pair[1].best.fit.misfit)
 
 
-def _others(scene: Scene, case: Case, verdict: Verdict) -> list[Rival]:
+def _others(scene: Scene, case: Case, verdict: Verdict, known: Sequence[Rival]) -> list[Rival]:
     """Return the other solvers' best answers, for the ranking."""
     v, steps = verdict.best.fit.variant, case.reading.stepping.steps
     names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
@@ -184,7 +183,7 @@ def _others(scene: Scene, case: Case, verdict: Verdict) -> list[Rival]:
         return []
     schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
     r = case.reading
-    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes)
+    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, known)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------

@@ -38,7 +38,11 @@ class Rival:
 
 
 def rivals(
-    scene: Scene, solvers: Sequence[str], goal: Goal, schemes: Iterable[tuple[float, float]] = NAMED.values()
+    scene: Scene,
+    solvers: Sequence[str],
+    goal: Goal,
+    schemes: Iterable[tuple[float, float]] = NAMED.values(),
+    known: Sequence[Rival] = (),
 ) -> list[Rival]:
     """Return the solvers that apply to the scene, under the scene's own and other schemes.
 
@@ -52,15 +56,21 @@ def rivals(
         The history.
     schemes
         Pairs (alpha, delta), the likeliest first; by default the named ones.
+    known
+        What was found before for the same scene and the same history.
     """
     t, found = scene.time, []
+    before = {(r.model, r.alpha, r.delta): r for r in known}
     every = dict.fromkeys([(t.alpha, t.delta), *schemes])
     for name in solvers:
         if name == "continuum" and t.discount != 1:  # the damped one takes minutes over long histories
             continue
         pairs = list(every)[: SCHEMES_OF.get(name, len(every))]
         for alpha, delta in pairs:
-            rival = _fitted(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
+            scheme = (None, None) if name == "continuum" else (alpha, delta)
+            rival = before.get((name, *scheme))
+            if rival is None:
+                rival = _fitted(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
             if rival is not None:
                 found.append(rival)
     return sorted(found, key=lambda r: r.misfit)
@@ -151,8 +161,8 @@ def _best_factor(
     answer: Callable[[float], tuple[Array, Array]], wanted: Array, starts: Sequence[float]
 ) -> tuple[float, tuple[Array, Array]]:
     """Return the factor whose answer is nearest, by trial and Gauss and Newton's method."""
-    factor = min(starts, key=lambda f: float(np.linalg.norm(wanted - answer(f)[0])))
-    best = answer(factor)
+    tried = [(f, answer(f)) for f in starts]
+    factor, best = min(tried, key=lambda pair: float(np.linalg.norm(wanted - pair[1][0])))
     for _ in range(ROUNDS):
         slope = (answer(factor * (1 + NUDGE))[0] - best[0]) / NUDGE
         change = float(slope @ (wanted - best[0])) / (float(slope @ slope) or 1.0)

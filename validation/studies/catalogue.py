@@ -84,8 +84,9 @@ def _of_suite(scene: Scene, part: Callable[[Study], Iterable[T]], case_of: Calla
         return ()
     names = {case.name for case in scene.expand()}
     found: list[T] = []
-    for study in judged_studies():
-        found += [item for item in part(get_study(study)) if case_of(item) in names]
+    for study in map(get_study, judged_studies()):
+        if any((of if isinstance(of, str) else of.name).partition("[")[0] == scene.name for of in study.scenes):
+            found += [item for item in part(study) if case_of(item) in names]
     return tuple(found)
 
 
