@@ -92,15 +92,14 @@ def places(data: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 
 
 def changed(data: JSON, at: tuple[Any, ...], value: Any) -> JSON:
-    """Return data with another value at a place; `...` takes it away."""
-    found = copy.deepcopy(data)
-    holder = found
-    for key in at[:-1]:
-        holder = holder[key]
-    if value is ...:
-        del holder[at[-1]]
+    """Return data with another value at a place, copied on the way there only; `...` takes it away."""
+    found = copy.copy(data)
+    if len(at) > 1:
+        found[at[0]] = changed(data[at[0]], at[1:], value)
+    elif value is ...:
+        del found[at[0]]
     else:
-        holder[at[-1]] = value
+        found[at[0]] = value
     return found
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import beside
+from matplotlib.figure import Figure
 
 from validation.advice import budget
 from validation.engine.run import run_study
@@ -75,13 +76,16 @@ def test_the_register_lists_every_claim() -> None:
     assert "1 is confirmed, 1 holds under a condition" in conclusion({"C1": {"verdict": 2.0}, "C6": {"verdict": 1.0}})
 
 
-def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(tmp_path: Path, finished_cases: Path) -> None:
+def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
+    tmp_path: Path, finished_cases: Path, drawn: dict[str, Figure]
+) -> None:
     scene = load_scene("figures-5-6")
     study = scene_study("figures-5-6")
     kept = beside(finished_cases, tmp_path / "results")
     run_study(Study(study.name, study.title, study.purpose, [scene], ("dda", "bar", "continuum")), kept)
     blocks = chapter_of("figures-5-6")(kept, kept.manifest("figures-5-6"), tmp_path)
     captions = [block.caption for block in blocks if isinstance(block, FigureBlock)]
+    assert len(captions) == len(drawn) > 1
     assert any("Damping budget" in caption and "1.052 to 1.102 times" in caption for caption in captions)
     _, table = alarm_table(found_scenes(kept, ["figures-5-6"]))
     assert isinstance(table, Table)

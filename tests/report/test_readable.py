@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 from conftest import beside
+from matplotlib.figure import Figure
 from pypdf import PdfReader
 
 from validation.engine.run import run_study
 from validation.engine.study import Study
 from validation.report.book import build, ordered_studies
+from validation.report.figures import histories
 from validation.report.front.found import found_scenes
 from validation.report.front.pages import front_pages
 from validation.report.typesetting import write_document
@@ -37,6 +39,13 @@ def words(text: str) -> str:
     return re.sub(r"\s+", " ", re.sub(r"-\n", "", text))
 
 
+def blank(figure: Figure, path: Path) -> Path:
+    """Write an empty figure of the same size: no page that is read depends on what a figure shows."""
+    width, height = 72 * figure.get_size_inches()
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt"/>')
+    return path
+
+
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> list[str]:
     """The first pages of a report on the scenes that they speak of, without the slow solvers."""
@@ -44,7 +53,9 @@ def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> lis
     results = beside(finished_cases, directory / "results")
     run_study(Study("core", "The paper", "Why.", SCENES, ("dda", "bar", "continuum")), results)
     found, studies = found_scenes(results, ["core"]), ["core"]
-    out = write_document(directory / "r.pdf", lambda root: front_pages(found, results.verdicts(), studies, root))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(histories, "save", blank)
+        out = write_document(directory / "r.pdf", lambda root: front_pages(found, results.verdicts(), studies, root))
     return [words(page.extract_text()) for page in PdfReader(out).pages]
 
 

@@ -179,9 +179,17 @@ def all_text(blocks):
     return json.dumps([vars(block) for block in blocks], default=vars, ensure_ascii=False)
 
 
+@pytest.fixture
+def no_solver(monkeypatch):
+    """Let every import of a package of solvers fail, where a module asks for it when it is called."""
+    packages = ("dda", "fem_reference", "skfem", "dolfinx")
+    for name in {*packages, *(name for name in sys.modules if name.partition(".")[0] in packages)}:
+        monkeypatch.setitem(sys.modules, name, None)
+
+
 @pytest.mark.parametrize("which", ["small", pytest.param("results", marks=pytest.mark.long)])
-def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path):
-    """Of the small one the title is text and never evaluated."""
+def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path, no_solver):
+    """Of the small one the title is text and never evaluated; no solver is imported."""
     results = request.getfixturevalue(which)
     (tmp_path / "out").mkdir()
     before = sorted(p.name for p in results.directory.rglob("*"))
@@ -192,7 +200,7 @@ def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path):
     assert sorted(p.name for p in results.directory.rglob("*")) == before
 
 
-def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch):
+def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, drawn):
     out = tmp_path / "report.pdf"
     out.write_bytes(b"old")
 
@@ -205,6 +213,7 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch):
     assert out.read_bytes() == b"old"
 
 
+@pytest.mark.long
 def test_the_report_imports_no_solver(small, tmp_path):
     code = (
         "import sys; from pathlib import Path; from validation.report.book import build\n"
@@ -221,7 +230,7 @@ def front_of(results, studies, directory):
     return front_pages(found_scenes(results, studies), results.verdicts(), studies, directory)
 
 
-def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_band_and_reason(results, tmp_path):
+def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_band_and_reason(results, tmp_path, drawn):
     blocks = front_of(results, ["core"], tmp_path)
     assert Callout("3 gates: 1 passed, 1 failed, 1 not run.", "fail") in blocks
     assert Callout("One gate fails.", "fail") in blocks

@@ -21,10 +21,24 @@ from validation.runs.results import Results
 from validation.studies.work import record as work_record
 from validation.studies.work import study as work_study
 from validation.studies.work.points import cheapest, floor, front, points
-from validation.studies.work.study import WORK_PRECISION, order, study_cases
+from validation.studies.work.study import WORK_PRECISION, order
 
 ROOT = Path(__file__).parents[2]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
+LEVELS = 2  # of the first scene, the coarsest ones: as the record has them
+FIRST = WORK_PRECISION.scenes[0].model_copy(
+    update={"sweep": {key: x if key == "mode" else x[:LEVELS] for key, x in WORK_PRECISION.scenes[0].sweep.items()}}
+)
+FEW = replace(COARSE, scenes=[FIRST], gates=tuple, derived=tuple)
+PAIRS = tuple((case.scene.name, case.solver) for case in FEW.cases())
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory, finished_cases):
+    """Return the results of the coarsest levels of one scene, by all four solvers."""
+    kept = beside(finished_cases, tmp_path_factory.mktemp("few"))
+    run_study(FEW, kept)
+    return kept
 
 
 @pytest.fixture(scope="module")
@@ -84,11 +98,11 @@ def test_front_and_cheapest(results):
     assert all(p.seconds >= best.seconds for p in found if max(p.errors.values()) <= 0.1)
 
 
-def test_rows_and_any_pair_of_columns(results, tmp_path):
-    where = ["--results", str(results.directory)]
+def test_rows_and_any_pair_of_columns(few, tmp_path):
+    where = ["--results", str(few.directory)]
     assert CliRunner().invoke(app, ["rows", "work-precision", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
     lines = table(tmp_path / "a.csv")
-    assert len(lines) == len(COARSE.cases())
+    assert len(lines) == len(PAIRS) == 4 * LEVELS
     assert {"seconds.setup", "work.solves", "continuum:displacement.l2", "estimate"} <= set(lines[0])
     pair = ["--x", "work.solves", "--y", "bar:pressure.max", "--out", str(tmp_path / "a.svg")]
     assert CliRunner().invoke(app, ["plot", "work-precision", *pair, *where]).exit_code == 0
@@ -98,10 +112,11 @@ def test_rows_and_any_pair_of_columns(results, tmp_path):
     assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
 
 
-def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_path, monkeypatch):
-    finished = finish(COARSE.cases(), COARSE, results)
-    now = work_record.measured(finished, study_cases())
-    then = work_record.load()["cases"]
+def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(few, tmp_path, monkeypatch):
+    finished = finish(FEW.cases(), FEW, few)
+    now = work_record.measured(finished, PAIRS)
+    then = {name: entry for name, entry in work_record.load()["cases"].items() if name in now}
+    assert len(then) == len(PAIRS)
     found = work_record.ratios(now, then)
     assert all(1 - slack <= found[part] <= 1 + slack for part, slack in work_record.SLACK.items())
     worse = json.loads(json.dumps(then))
@@ -112,13 +127,13 @@ def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(results, tmp_pat
     assert found["errors"] == pytest.approx(1.1, rel=0.03) and found["work"] > 1.15
     monkeypatch.setattr(work_record, "PATH", tmp_path / "record.json")
     with pytest.raises(InputError, match=r"^--reason: "):
-        work_record.update(finished, study_cases(), " ")
-    work_record.update(finished, study_cases(), "a test")
+        work_record.update(finished, PAIRS, " ")
+    work_record.update(finished, PAIRS, "a test")
     assert work_record.load()["reasons"] == ["a test"]
     assert work_record.ratios(now, work_record.load()["cases"])["work"] == 1
 
 
-def test_what_is_missing_is_not_as_good_as_recorded(results):
+def test_what_is_missing_is_not_as_good_as_recorded():
     then = work_record.load()["cases"]
     name = next(name for name in then if name.endswith("fem"))
     now = {name: json.loads(json.dumps(then[name]))}
@@ -132,13 +147,14 @@ def test_what_is_missing_is_not_as_good_as_recorded(results):
 @pytest.mark.parametrize(
     ("text", "words"), [(None, "No such file"), ("{", "must be JSON"), ('{"cases": {}}', "nothing was compared")]
 )
-def test_the_command_refuses_to_compare_with_nothing(results, tmp_path, monkeypatch, text, words):
+def test_the_command_refuses_to_compare_with_nothing(few, tmp_path, monkeypatch, text, words):
     path = tmp_path / "record.json"
     if text is not None:
         path.write_text(text)
     monkeypatch.setattr(work_record, "PATH", path)
-    monkeypatch.setattr(work_study, "WORK_PRECISION", COARSE)
-    done = CliRunner().invoke(app, ["record", "--results", str(results.directory)])
+    monkeypatch.setattr(work_study, "WORK_PRECISION", FEW)
+    monkeypatch.setattr(work_study, "study_cases", lambda: PAIRS)
+    done = CliRunner().invoke(app, ["record", "--results", str(few.directory)])
     assert isinstance(done.exception, InputError) and words in str(done.exception)
     assert "worst ratio" not in done.output
 
@@ -150,8 +166,8 @@ def test_the_wheel_holds_the_record():
 
 
 def test_a_study_of_timings_repeats_and_keeps_the_spread(tmp_path):
-    first = next(scene for scene in WORK_PRECISION.scenes if scene.name == "work-h-degree-1")
-    small = replace(WORK_PRECISION, scenes=[first], gates=tuple, derived=tuple)
+    one = FIRST.model_copy(update={"sweep": {}})
     kept = Results(tmp_path)
-    run_study(small, kept, jobs=2)
+    run_study(replace(FEW, scenes=[one], timed=True), kept, jobs=2)
+    assert len(kept.rows()) == 4
     assert all("least seconds of 3 repeats, spread" in row.notes[-1] for row in kept.rows().values())

@@ -121,7 +121,6 @@ def _history(run: Run, case: str, solver: str) -> History:
 
 def _with_cause(problem: Problem, history: History, about: tuple[tuple[str, str], ...], progress: Any) -> Judged:
     from validation.problems.bands import standard
-    from validation.problems.cause import cause
     from validation.problems.judge import Word
     from validation.problems.judge import judge as judgement_of
     from validation.report.chapters.judged import Judged
@@ -129,8 +128,12 @@ def _with_cause(problem: Problem, history: History, about: tuple[tuple[str, str]
     progress(1, 3, "the exact motion and the bands")
     held: Standard = standard(problem)
     found = judgement_of(problem, history, held)
-    progress(2, 3, "the cause")
-    why = cause(problem, history, held) if found.word is Word.FAIL else None
+    why = None
+    if found.word is Word.FAIL:
+        from validation.problems.cause import cause
+
+        progress(2, 3, "the cause")
+        why = cause(problem, history, held)
     return Judged(problem, history, held, found, why, about)
 
 

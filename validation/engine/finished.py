@@ -46,12 +46,20 @@ class Finished:
     rows: dict[tuple[str, str], Row]
     results: Results
     derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
+    _computed: dict[tuple[str, str], Row] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def row(self, scene: str, name: str) -> Row | None:
-        """Return the row of a case, or compute the derived row of that name."""
+        """Return the row of a case, or the derived row of that name, which is computed once: many gates may ask."""
         recipe = self.derived.get((scene, name))
         if recipe is None or (scene, name) in self.rows:
             return self.rows.get((scene, name))
+        if (scene, name) not in self._computed:
+            self._computed[scene, name] = self._derive(recipe)
+        return self._computed[scene, name]
+
+    def _derive(self, recipe: Derived) -> Row:
+        """Compute a derived row; whatever happens in it ends as a named outcome."""
+        scene, name = recipe.scene, recipe.name
         for need in recipe.needs:
             row = self.rows.get(need)
             if row is None or row.outcome is not Outcome.COMPLETED:

@@ -52,15 +52,23 @@ def drawn(scene: GalleryScene, most: int) -> list[GalleryCase]:
     `most` is the number of curves of a scene; at least `FEWEST` cases are drawn all the same.
     """
     with_lines = [case for case in scene.cases if lines(case)]
-    count = max(FEWEST, most // max(map(lines, with_lines), default=1))
-    chosen = np.unique(np.linspace(0, max(len(with_lines) - 1, 0), count).round().astype(int))
-    return [with_lines[i] for i in chosen] if len(with_lines) > count else with_lines
+    return [with_lines[i] for i in _chosen([lines(case) for case in with_lines], most)]
+
+
+def _chosen(counts: Sequence[int], most: int) -> list[int]:
+    """Return which of the cases are drawn, by the number of curves of each."""
+    count = max(FEWEST, most // max(counts, default=1))
+    if len(counts) <= count:
+        return [*range(len(counts))]
+    places: list[int] = np.unique(np.linspace(0, len(counts) - 1, count).round().astype(int)).tolist()
+    return places
 
 
 def most_lines(scenes: Sequence[GalleryScene]) -> int:
     """Return how many curves each scene may have, so that there are `MOST_LINES` in all."""
-    most = max((sum(map(lines, scene.cases)) for scene in scenes), default=1)
-    while most > 1 and all_lines(scenes, most) > MOST_LINES:
+    counts = [[count for case in scene.cases if (count := lines(case))] for scene in scenes]
+    most = max(map(sum, counts), default=1)
+    while most > 1 and sum(each[i] for each in counts for i in _chosen(each, most)) > MOST_LINES:
         most = int(0.95 * most)
     return most
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from validation.problems.bands import Standard
-from validation.problems.cause import Cause
 from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
@@ -15,9 +15,11 @@ from validation.problems.told import Told
 from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
 from validation.report.blocks import Column as TableColumn
 from validation.report.chapters.text import DASH, bounded, plain, short
-from validation.report.figures import histories, motion
 from validation.report.figures.curves import EXACT, Panel
 from validation.runs.history import History
+
+if TYPE_CHECKING:
+    from validation.problems.cause import Cause
 
 ANSWER = "answer"
 ALLOWED = (
@@ -84,6 +86,8 @@ def page(judged: Judged, directory: Path) -> list[Block]:
 
 def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
     """Draw every column that is judged, with the exact one."""
+    from validation.report.figures import histories, motion  # which load matplotlib; a verdict alone needs none
+
     drawn = []
     for name in judged.history.columns:
         rows = len(judged.held.exact.time)

@@ -89,7 +89,7 @@ def gates() -> Mapping[str, tuple[str, Gate]]:
 def applying() -> Mapping[str, tuple[str, Gate]]:
     """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone."""
     own = {gate.id: (START.name, gate) for gate in START.gates()}
-    return {name: found for name, found in gates().items() if _applies(*found)} | own
+    return {name: found for name, found in gates().items() if applies(*found)} | own
 
 
 @functools.cache
@@ -104,7 +104,7 @@ def recipes(study: str) -> Mapping[tuple[str, str], Derived]:
     return study_of(study).recipes()
 
 
-def _applies(study: str, gate: Gate) -> bool:
+def applies(study: str, gate: Gate) -> bool:
     """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history.
 
     What a user's solver has no way to report, such as the solves of a step, is not asked of it.
