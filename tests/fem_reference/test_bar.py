@@ -89,6 +89,15 @@ def test_wave_numbers_to_the_last_digits(kappa):
             )
 
 
+@pytest.mark.parametrize("kappa", [1e-9, 1.0, 1e9])
+def test_wave_numbers_settle_in_few_steps(kappa, monkeypatch):
+    """A root that Newton's method has found is the end of its bracket, and not bisected away from again."""
+    steps, arctan2 = [], np.arctan2
+    monkeypatch.setattr(np, "arctan2", lambda y, x: (steps.append(len(x)), arctan2(y, x))[1])
+    wave_numbers(kappa, 500)
+    assert len(steps) <= 6
+
+
 @pytest.mark.parametrize("kappa", [1e-6, 0.3, 2.0, 55.0, 1e9])
 @pytest.mark.parametrize("column", ["displacement", "contact_pressure"])
 def test_shares_sum_to_one(kappa, column):
