@@ -105,6 +105,7 @@ def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, f
         assert (speed[-1] == 0) == (expected == 0)
 
 
+@pytest.mark.long  # the short ones: a shaken base as a turned one, a base that rises, a base that all points stick to
 def test_a_base_that_starts_to_move_carries_the_block_along():
     """A base at the speed V under a block at rest: friction gives it that speed over a way V^2 / (2 tan g)."""
     V, begin, g, tan = 0.5, 0.3, 9.81, np.tan(np.radians(25.0))

@@ -41,7 +41,7 @@ class Brute:
     def tried(self, states, ahead):
         """D1, N, T and the references from which the points slide, or None where the states do not hold."""
         closing, phi = (states != 0) & ~self.closed, np.where((states != 0) & ~self.closed, 0.5, 1.0)
-        for _ in range(200):
+        for _ in range(60):  # halves: 1e-14 after 47
             D, N, T = self.solved(states, ahead, phi)
             w, s = self.Bn @ D, self.Bt @ D
             crossed = np.where(closing, np.clip(w / np.where(closing, w - self.w, 1.0), 0, 1), 1.0)

@@ -70,10 +70,10 @@ def test_no_scene_is_worse_than_it_says(scenes):
     assert worst <= 1  # 300 scenes of this kind gave 0.15 at worst
 
 
-RATIOS, SCHEMES = [1e-3, 1.0, 1e4, 1e8, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
+RATIOS, SCHEMES = [1e8, 1e-3, 1.0, 1e4, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
 
 
-@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 7))
+@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 10))
 def test_nine_digits_whatever_the_springs(ratio, scheme):
     from validation import load_scene
     from validation import solve as run_scene

@@ -94,7 +94,7 @@ def random_glued(rng, n):
 @pytest.mark.parametrize("n", [1, 2, 4])
 def test_glued_points_obey_their_law(n):
     rng, closings = np.random.default_rng(n), 0
-    for _ in range(80):
+    for _ in range(50):
         base = random_glued(rng, n)
         found = found_of(base, 6)
         if found.trial is None:
@@ -121,7 +121,7 @@ def test_glued_bases_without_a_unique_set_of_states_say_so():
     none, several = "no consistent contact state", "several consistent contact states"
     assert {"", none} <= {found_of(random_glued(rng, 2), 6).failure for _ in range(40)}
     # an iteration that stops at once leaves the choice to the trial of all states
-    assert {"", none, several} <= {found_of(random_glued(rng, 2), 1).failure for _ in range(120)}
+    assert {"", none, several} <= {found_of(random_glued(rng, 2), 1).failure for _ in range(60)}
     many = [found_of(random_glued(rng, 9), 2) for _ in range(10)]
     assert (none, 2) in {(found.failure, found.solves) for found in many}
 
