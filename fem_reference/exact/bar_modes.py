@@ -24,7 +24,7 @@ def wave_numbers(kappa: float, count: int) -> Array:
         low, high = np.where(miss < 0, theta, low), np.where(miss >= 0, theta, high)
         slope = 1 + kappa / (b * b + kappa * kappa) if kappa < 1 else 1 + 1 / (b * b / kappa + kappa)
         proposed = theta - miss / slope
-        inside = (proposed > low) & (proposed < high)
+        inside = (proposed >= low) & (proposed <= high)  # with its ends, one of which is theta: it may have settled
         following = np.where(inside, proposed, (low + high) / 2)
         settled = np.all(np.abs(following - theta) <= 2 * np.finfo(float).eps * theta)
         theta = following

@@ -78,9 +78,9 @@ def history(column: str, times: Array, kappa: float, a: float, undamped: Undampe
     tail = MODES * abs(shares(column, b, kappa)[MODES // 4])
     size = min(1.0, float(slowest(times, b[0], a).max(initial=0.0)))
     near = live & (distance * MODES < REACH) & (np.exp(-np.minimum(a * times, DEAD)) * tail > NOTHING * size)
+    _check_waves(times[near])
     result[arrived] = _away(column, times, kappa, a, begin)[arrived]
     if near.any():
-        _check_waves(times[near])
         result[near] = _near(column, times[near], kappa, a, undamped)
     return result
 

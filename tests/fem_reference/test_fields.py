@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
 import meshio
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import INCLINED, make
 
 import fem_reference
@@ -89,9 +91,7 @@ SHAPES: dict[str, dict[str, object]] = {
 }
 
 
-@pytest.mark.parametrize("suffix", [".vtu", ".xdmf"])
-@pytest.mark.parametrize("load", LOADS)
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("shape", "load", "suffix"), thinned(product(SHAPES, LOADS, [".vtu", ".xdmf"]), 5))
 def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, load: str, suffix: str) -> None:
     """In every cell of every frame of linear elements, read from the file alone."""
     problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))  # type: ignore[arg-type]
@@ -108,8 +108,7 @@ def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, 
             assert np.abs(frame.stress[:, 2]).max() > 1e-4 * scale  # there is shear to be seen
 
 
-@pytest.mark.parametrize("load", LOADS)
-@pytest.mark.parametrize("shape", ["half", "whole, plane strain", "triangles"])
+@pytest.mark.parametrize(("shape", "load"), thinned(product(["half", "whole, plane strain", "triangles"], LOADS), 4))
 def test_the_mean_stress_at_rest_is_that_of_the_forces(tmp_path: Path, shape: str, load: str) -> None:
     """Volume times the mean of (sxx, syy, sxy) is the sum of force times place, for linear fields exactly.
 
@@ -150,9 +149,12 @@ def trapezoid_of_products(x: Array, f: Array, g: Array) -> float:
     return float(np.sum(h * ends / 6))
 
 
-@pytest.mark.parametrize("degree", [1, 2])
-@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
-@pytest.mark.parametrize("shape", [{}, {"vertices": INCLINED, "base": 1, "top": 3}, {"cells": "triangles"}], ids=str)
+OUTLINES: list[dict[str, object]] = [{}, {"vertices": INCLINED, "base": 1, "top": 3}, {"cells": "triangles"}]
+
+
+@pytest.mark.parametrize(
+    ("shape", "hypothesis", "degree"), thinned(product(OUTLINES, ["plane stress", "plane strain"], [1, 2]), 5)
+)
 def test_a_linear_displacement_has_its_stress_in_every_cell(
     tmp_path: Path, shape: dict[str, object], hypothesis: str, degree: int
 ) -> None:
@@ -194,9 +196,13 @@ def test_a_quadratic_displacement_has_the_stress_of_the_middle_of_a_cell(tmp_pat
         assert np.abs(frame.stress - expected).max() <= 1e-11 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("solver_side", [False, True], ids=["package", "scene"])
-@pytest.mark.parametrize("degree", [1, 2])
-@pytest.mark.parametrize(("poisson", "load"), [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})])
+LATERAL: list[tuple[float, dict[str, float]]] = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
+
+
+@pytest.mark.parametrize(
+    ("poisson", "load", "degree", "solver_side"),
+    thinned([(*case, degree, side) for case in LATERAL for degree in (1, 2) for side in (False, True)], 5),
+)
 def test_the_frames_are_the_history(
     tmp_path: Path, scene_file: Path, poisson: float, load: dict[str, float], degree: int, solver_side: bool
 ) -> None:
@@ -254,7 +260,7 @@ def test_a_moved_base_carries_the_field(tmp_path: Path) -> None:
     assert np.abs(last.stress).max() <= 1e9 * 1e-10
 
 
-@pytest.mark.parametrize(("steps", "stride"), [(1, 1), (200, 1), (201, 2), (399, 2), (400, 2), (403, 3)])
+@pytest.mark.parametrize(("steps", "stride"), thinned([(1, 1), (399, 2), (201, 2), (400, 2), (403, 3), (200, 1)], 2))
 def test_a_series_has_every_stride_and_the_last_step(tmp_path: Path, steps: int, stride: int) -> None:
     path = tmp_path / "block.xdmf"
     fem_reference.solve(make(elements=1, degree=1), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), steps, fields=path)

@@ -76,7 +76,9 @@ def duration(problem: BlockProblem, travels: float) -> float:
     return travels * problem.height * math.sqrt(problem.density / problem.young)
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(12) for moved in (False, True)], 11))
+@pytest.mark.parametrize(
+    ("seed", "moved"), thinned([(i, moved) for i in (*range(1, 12), 0) for moved in (False, True)], 15)
+)
 def test_an_independent_integration_agrees(seed: int, moved: bool) -> None:
     problem = slipping_problem(seed, moved)
     end = duration(problem, 5)

@@ -53,12 +53,12 @@ def check_law(step, found):
 @pytest.mark.parametrize("n", thinned([1, 2, 4, 7], 2))
 def test_points_obey_their_law(n):
     rng, slid, met = np.random.default_rng(n), 0, 0
-    for _ in range(60):
+    for _ in range(40):
         step, states = random_step(rng, n)
         found = sheared(step, states, 6)
         if found.trial is not None:
             slid, met = slid + check_law(step, found), met + 1
-    assert slid > 10 and met > 35
+    assert slid > 6 and met > 22
 
 
 def holding(step):
@@ -75,7 +75,7 @@ def holding(step):
 def test_few_points_try_all_states():
     rng = np.random.default_rng(4)
     outcomes = set()
-    for _ in range(60):
+    for _ in range(40):
         step, states = random_step(rng, 2, 5.0)
         found, sets = sheared(step, states, 1), holding(step)
         if found.solves == 1:

@@ -35,7 +35,7 @@ PATCH = {"poisson": 0.3, "hypothesis": "plane strain", "foundation": "patch", "p
 )
 def test_the_history_is_that_of_the_steps(change, scheme):
     problem = make(**{"elements": 8, "degree": 2, **change})
-    steps = 800
+    steps = 400
     result = solve(problem, scheme, steps)
     assert result.notes[-1].endswith("Krylov vectors") and result.notes[-1].startswith("blocked")
     assert result.factorisations == 1
@@ -45,9 +45,10 @@ def test_the_history_is_that_of_the_steps(change, scheme):
     assert off <= result.estimate
 
 
-def test_no_scene_is_worse_than_it_says():
+@pytest.mark.parametrize("scenes", thinned([6, 20], 2))
+def test_no_scene_is_worse_than_it_says(scenes):
     rng, worst, spaces = np.random.default_rng(5), 0.0, 0
-    for _ in range(20):
+    for _ in range(scenes):
         problem = make(
             p=1e9 * 10 ** rng.uniform(-3, 6),
             poisson=float(rng.uniform(0, 0.45)),
@@ -65,20 +66,20 @@ def test_no_scene_is_worse_than_it_says():
             spaces += 1
             steps = run(stepper, model, 200, COLUMNS, None)
             worst = max(worst, error(found.history, steps) / found.estimate)
-    assert spaces > 5
+    assert spaces > scenes // 4
     assert worst <= 1  # 300 scenes of this kind gave 0.15 at worst
 
 
-RATIOS, SCHEMES = [1e-3, 1.0, 1e4, 1e8, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
+RATIOS, SCHEMES = [1e8, 1e-3, 1.0, 1e4, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
 
 
-@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 7))
+@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 10))
 def test_nine_digits_whatever_the_springs(ratio, scheme):
     from validation import load_scene
     from validation import solve as run_scene
 
     values = {"contact.stiffness": ratio * 1e9, "fem.elements": 4, "fem.degree": 1, "time.step": 2e-3}
-    values |= dict(zip(("time.alpha", "time.delta", "time.start"), scheme, strict=True)) | {"time.steps": 200}
+    values |= dict(zip(("time.alpha", "time.delta", "time.start"), scheme, strict=True)) | {"time.steps": 100}
     scene = load_scene("poisson").with_values(values)
     if scene.sweep:
         scene = scene.expand()[0]

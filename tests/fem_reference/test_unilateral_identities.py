@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
@@ -53,17 +54,19 @@ def check_laws(model, state):
     assert np.abs(N - np.maximum(0, -model.stiffness * gap)).max() <= 1e-14 * N.max(initial=0)
 
 
+SCHEMES = [CONSTANT, AVERAGE, Scheme(0.3025, 0.6, 1, 2e-4, "consistent"), Scheme(0.5625, 1, 1, 3e-4)]
+
+
 @pytest.mark.parametrize(
-    "scheme",
-    [CONSTANT, AVERAGE, Scheme(0.3025, 0.6, 1, 2e-4, "consistent"), Scheme(0.5625, 1, 1, 3e-4)],
+    ("scheme", "p"),
+    thinned([(scheme, p) for i, scheme in enumerate(SCHEMES) for p in ((1e9, 1e11), (1e11, 1e9))[i % 2]], 2),
 )
-@pytest.mark.parametrize("p", [1e9, 1e11])
 def test_each_step_keeps_energy_momentum_and_the_laws_of_contact(scheme, p):
     problem = replace(make(elements=4, eccentricity=0.3, poisson=0.25, p=p), gravity=9.81, traction=2e5)
     model = build(problem)
     stepper, gap = ContactStepper(model, scheme), 1e-5
     state, switches, rises = stepper.start(gap, -0.1), 0, []
-    for number in range(200):
+    for number in range(150):
         new, _ = stepper.advance(state)
         switches += np.count_nonzero(new.closed != state.closed)
         check_laws(model, new)
@@ -84,7 +87,8 @@ def test_each_step_keeps_energy_momentum_and_the_laws_of_contact(scheme, p):
 @pytest.mark.parametrize("p", [1e9, 1e11])
 def test_glued_springs_gain_no_energy_either(p):
     problem = make(elements=4, eccentricity=0.3, poisson=0.25, p=p, shear=0.4 * p)
-    run = solve_unilateral(problem, replace(CONSTANT, step=2e-4), 300, GLUED)
+    scheme, columns = replace(CONSTANT, step=2e-4), (*ENERGIES, "open_share", "base_shear")
+    run = solve_unilateral(problem, scheme, 200, GLUED, columns=columns)
     assert np.any(run.columns["open_share"] > 0) and np.any(run.columns["base_shear"] != 0)
     total = np.sum([run.columns[name] for name in ENERGIES], axis=0)
     assert np.diff(total).max() <= 1e-12 * run.columns["strain_energy"].max()
@@ -95,7 +99,7 @@ def test_glued_points_bear_their_stretch_from_where_they_closed():
     model = build(problem)
     stepper, k_t = ContactStepper(model, replace(CONSTANT, step=1e-4), "glued"), model.shear_stiffness
     state, again, wider = stepper.start(), 0, 0.0
-    for _ in range(400):
+    for _ in range(250):
         new, _ = stepper.advance(state)
         assert new is not None  # every step has its contact at once
         closed, size = new.closed, np.abs(new.slip).max()
@@ -144,20 +148,20 @@ def test_what_is_stored_and_what_is_lost_add_up_to_the_start(scheme, contact):
     if contact.limit == 2:
         problem = replace(problem, elements=8, degree=2, eccentricity=0.5)
     problem = replace(problem, gravity=9.81, traction=2e5)
-    run = solve_unilateral(problem, scheme, 200, replace(contact, gap=1e-4, velocity=-0.5))
+    run = solve_unilateral(problem, scheme, 120, replace(contact, gap=1e-4, velocity=-0.5))
     stored = np.sum([run.columns[name] for name in ENERGIES], axis=0)
     lost = np.array([run.columns[name] for name in LOSSES])
     begun = 2700.0 * 4 * 0.5**2 / 2
     size = np.abs([run.columns[name] for name in ENERGIES]).max()
     assert run.outcome == "completed"
-    # of the rounding of the energies: squares of what two hundred solutions have rounded
+    # of the rounding of the energies: squares of what a hundred solutions have rounded
     assert np.abs(stored + lost.sum(axis=0) - begun).max() <= 1e-10 * size
     assert np.abs(lost[2]).max() > 1e-3 * begun and np.any(run.columns["open_share"] > 0)
     assert (lost[1].max() > 0) == (scheme.gg < 1)
     if scheme.delta == 1 or contact.rule == "implicit":
         assert np.diff(lost[0] + lost[2])[1:].min() >= -1e-12 * size
     if contact.rule == "implicit":
-        plain = solve_unilateral(problem, scheme, 200, replace(contact, gap=1e-4, velocity=-0.5, rule="newmark"))
+        plain = solve_unilateral(problem, scheme, 120, replace(contact, gap=1e-4, velocity=-0.5, rule="newmark"))
         assert np.diff(plain.columns["algorithmic_loss"] + plain.columns["switching_loss"]).min() < -1e-3 * size
     assert run.columns["cuts"].max() > 0 or contact.limit > 2
 
