@@ -7,6 +7,7 @@ A scene holds problem data only; no solver is imported here. Every defect of a s
 from __future__ import annotations
 
 import difflib
+import functools
 import itertools
 import json
 import math
@@ -270,7 +271,12 @@ def _clip(value: object, width: int = 60) -> str:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
+    return list(_built_in())
+
+
+@functools.cache
+def _built_in() -> tuple[str, ...]:
+    return tuple(sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml")))
 
 
 def load_scene(source: str | Path) -> Scene:
@@ -287,7 +293,7 @@ def load_scene(source: str | Path) -> Scene:
         The file cannot be read, is not TOML, or states something that is not allowed.
     """
     path = Path(source)
-    if path.suffix != ".toml" and str(source) in scene_names():
+    if path.suffix != ".toml" and str(source) in _built_in():
         path = SCENE_DIRECTORY / f"{source}.toml"
     data = _read_toml(path)
     if "name" in data:
