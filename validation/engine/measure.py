@@ -13,8 +13,7 @@ import numpy as np
 from validation.engine import horizon, origin, stability
 from validation.engine.case import Case
 from validation.errors import InputError
-from validation.metrics import catalogue
-from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES
+from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import KEPT
@@ -166,7 +165,7 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     parts = _measures(case, run)
-    needs = frozenset[str]().union(*(metric.needs for metric in catalogue.asked(parts, case.only)))
+    needs = frozenset[str]().union(*(metric.needs for metric in measured_by(parts, case.only)))
     linear, history = features.linear(case.scene), run.history or History(np.zeros(0), {})
     static = _reported(prepared.static, None, failed) if linear and STATIC in needs else None
     assumed = prepared.assumed_static() if linear and static is None and STATIC in needs else static or {}
@@ -191,7 +190,7 @@ def _solo(seen: Measurable, parts: set[str], only: Collection[str] | None, faile
     found: dict[str, Value] = {}
     for part in sorted(parts):
         try:
-            found |= catalogue.solo(seen, (part,), only)
+            found |= solo(seen, (part,), only)
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {said(error)}")
     return found

@@ -147,7 +147,7 @@ CATALOGUE = SOLO | PAIRS
 METRICS = tuple(CATALOGUE)  # the ids
 
 
-def asked(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
+def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
     """Return the metrics of one run that the parts of a study's `measures` ask for, or those of them that are named."""
     found = [metric for metric in (*SOLO.values(), KIND) if metric.measure in measures]
     return found if only is None else [metric for metric in found if metric.id in only]
@@ -156,9 +156,9 @@ def asked(measures: Collection[str], only: Collection[str] | None = None) -> lis
 def solo(
     m: Measurable, measures: Collection[str] = ("history", "modes"), only: Collection[str] | None = None
 ) -> dict[str, Value]:
-    """Return the metrics of one run that are `asked` for; none of them is ever NaN."""
+    """Return the metrics of one run that are asked for; none of them is ever NaN."""
     with np.errstate(all="ignore"):
-        return {metric.id: finite(metric.function(m)) for metric in asked(measures, only)}
+        return {metric.id: finite(metric.function(m)) for metric in measured_by(measures, only)}
 
 
 def pair(metric: str, history: History, reference: History, run: Mapping[str, Value] | None = None) -> Value:
