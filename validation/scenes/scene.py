@@ -7,7 +7,6 @@ A scene holds problem data only; no solver is imported here. Every defect of a s
 from __future__ import annotations
 
 import difflib
-import functools
 import itertools
 import json
 import math
@@ -271,12 +270,7 @@ def _clip(value: object, width: int = 60) -> str:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return list(_built_in())
-
-
-@functools.cache
-def _built_in() -> tuple[str, ...]:
-    return tuple(sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml")))
+    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
 
 
 def load_scene(source: str | Path) -> Scene:
@@ -293,7 +287,7 @@ def load_scene(source: str | Path) -> Scene:
         The file cannot be read, is not TOML, or states something that is not allowed.
     """
     path = Path(source)
-    if path.suffix != ".toml" and str(source) in _built_in():
+    if path.suffix != ".toml" and str(source) in scene_names():
         path = SCENE_DIRECTORY / f"{source}.toml"
     data = _read_toml(path)
     if "name" in data:
