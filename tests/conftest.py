@@ -7,7 +7,7 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
@@ -80,29 +80,63 @@ TOGETHER = (  # modules whose tests share what takes long to make
 )
 
 
-# Of these scenes the gates of the named cases are short, all others long. Of the two codes' product of four axes a
-# quarter has every value of each; of the locked sub-blocks the two differ in every value.
+GATE = "test_gate["  # with which the names of gates begin
+
+# Of a scene those gates are short whose cases together have every value of each axis and every kind of gate; of these
+# scenes, whose axes change together or whose cases take long, the gates of the named cases.
 SHORT_CASES = {
-    "two-codes-constant": (
-        "block.poisson=0,block.hypothesis=plane stress,time.start=zero",
-        "block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",
+    "two-codes-constant": ("block.poisson=0,block.hypothesis=plane stress,time.start=zero",),
+    "two-codes-average": ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",),
+    "subblocks-locking": ("contact.stiffness=1e+09,block.poisson=0.25,load.pressure=5e+06,load.traction=0",),
+    "subblocks-axial": ("block.pattern=triangles,block.subdivide=4x4",),
+    "subblocks-rocking": ("block.pattern=triangles,block.subdivide=4x4",),
+    "stiff-contact": (
+        "time.alpha=0.5,contact.stiffness=1e+10",
+        "time.alpha=0.5,contact.stiffness=1e+16",
+        "time.alpha=0.5625,contact.stiffness=1e+13",
     ),
-    "two-codes-average": (
-        "block.poisson=0,block.hypothesis=plane strain,time.start=consistent",
-        "block.poisson=0.25,block.hypothesis=plane stress,time.start=zero",
-    ),
-    "subblocks-locking": (
-        "contact.stiffness=1e+11,block.poisson=0,load.pressure=0,load.traction=1e+06",
-        "contact.stiffness=1e+09,block.poisson=0.25,load.pressure=5e+06,load.traction=0",
-    ),
+    "corner-springs": ("fem.elements=4", "fem.elements=32"),
+    "rocking-release": ("block.height=4",),
+    "rocking-swing": ("block.height=2,block.tilt=22.5",),
+    "rocking-pulse": ("block.width=1.1128737204581363", "block.width=0.9945715989724925"),
+    "slope-base": ("contact.stiffness=1e+10,contact.shear_stiffness=4e+09",),
+    "unlocked": ("contact.stiffness=1e+08", "contact.stiffness=1e+11"),
+    "unlocked-ledger": ("contact.stiffness=1e+09", "contact.stiffness=1e+11"),
+    "impact": ("contact.stiffness=1e+08", "contact.stiffness=1e+11", "contact.stiffness=1e+21"),
+    "bouncing-bar": ("contact.stiffness=450", "contact.stiffness=450000"),
 }
+
+
+def short_gates(names: Sequence[str]) -> set[str]:
+    """Return the gates of the short tests among those of these ids: some cases of each scene."""
+    cases: dict[str, dict[str, set[str]]] = {}
+    for name in names:
+        scene, values, kind = parts_of(name)
+        cases.setdefault(scene, {}).setdefault(values, {*values.split(",")}).add(kind)
+    short = {scene: {"", *(SHORT_CASES.get(scene) or _covering(marks))} for scene, marks in cases.items()}
+    return {name for name in names if parts_of(name)[1] in short[parts_of(name)[0]]}
+
+
+def parts_of(name: str) -> tuple[str, str, str]:
+    """Return the scene of a gate's id, the values of its case, and what it asks for of which solvers."""
+    scene, values, kind = re.fullmatch(r"([^\[:]+)(?:\[([^\]]*)\])?:(.+)", name).groups(default="")
+    return scene, values, re.sub(r"\(.*?\)", "", kind)  # a case that it is held against is named in brackets
+
+
+def _covering(marks: Mapping[str, set[str]]) -> list[str]:
+    """Return few cases that have all marks of any, the one with the most new ones first."""
+    left, found = set().union(*marks.values()), []
+    while left:
+        found.append(max(marks, key=lambda case: len(marks[case] & left)))
+        left -= marks[found[-1]]
+    return found
 
 
 def group_of(nodeid: str) -> str:
     """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself."""
     path, _, name = nodeid.partition("::")
-    if name.startswith("test_gate["):
-        return re.split(r"[\[:]", name.removeprefix("test_gate["))[0]
+    if name.startswith(GATE):
+        return re.split(r"[\[:]", name.removeprefix(GATE))[0]
     return path if Path(path).stem in TOGETHER else nodeid
 
 
@@ -147,11 +181,10 @@ def pytest_collection(session: pytest.Session) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark gates of long scenes, and let Hypothesis draw without the constants of our sources."""
-    for item in items:
-        scene, _, values = item.name.removeprefix("test_gate[").partition("[")
-        if scene in SHORT_CASES and values.partition("]")[0] not in SHORT_CASES[scene]:
-            item.add_marker(pytest.mark.long)
+    """Mark the gates of all but a few cases as long, and let Hypothesis draw without the constants of our sources."""
+    gates = {item.name.removeprefix(GATE).removesuffix("]"): item for item in items if item.name.startswith(GATE)}
+    for name in gates.keys() - short_gates([*gates]):
+        gates[name].add_marker(pytest.mark.long)
     _draw_without_constants()
 
 

@@ -5,18 +5,20 @@ With ``--dda-solver module:attribute`` that solver takes the place of `dda`, and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status, Verdict
 from validation.runs.case_name import scene_of
 from validation.runs.results import Results
-from validation.studies.own_solver.gates import applying, cases, gates, recipes, study_of
+from validation.studies.own_solver.gates import applying, asked, cases, gates, recipes, study_of
 from validation.studies.own_solver.session import Session, plain
 
 
@@ -63,7 +65,13 @@ def _verdict(name: str, finished: Finished) -> Verdict:
     study, gate = gates()[name]
     missing = [pair for pair in study_of(study).needs(gate) if pair not in finished.rows]
     if missing:
-        cases_of = cases(study)
-        found = finish([cases_of[pair] for pair in missing], study_of(study), finished.results)
+        kept = finished.results.rows()
+        found = finish([_asked(cases(study)[pair], kept) for pair in missing], study_of(study), finished.results)
         finished.rows.update(found.rows)
     return evaluate(gate, Finished(finished.rows, finished.results, recipes(study)))
+
+
+def _asked(case: Case, kept: Container[str]) -> Case:
+    """Return a case with the metrics that gates ask for, or with all of them where a row holds them already."""
+    only = asked().get((case.scene.name, case.solver), frozenset())
+    return case if case.key() in kept else replace(case, only=only)

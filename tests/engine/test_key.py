@@ -73,7 +73,9 @@ def test_what_is_measured_enters_the_key(scene: Scene) -> None:
         ("history", "modes", "stability"),
         ("history", "modes", "limit"),
     ]
-    assert len({Case(scene, "dda", measures=some).key() for some in measures}) == len(measures)
+    named = [None, frozenset[str](), frozenset({"pressure.final"}), frozenset({"pressure.final", "pressure.peak"})]
+    cases = [Case(scene, "dda", measures=some) for some in measures] + [Case(scene, "dda", only=some) for some in named]
+    assert len({case.key() for case in cases}) == len(cases) - 1  # no names: all that the usual measures hold
 
 
 def test_the_content_of_a_record_enters_the_key(scene: Scene, tmp_path: Path) -> None:

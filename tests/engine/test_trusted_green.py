@@ -283,10 +283,10 @@ def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(
 ) -> None:
     sound = measure.solo
 
-    def fails_in_modes(seen: Measurable, parts: tuple[str, ...]) -> dict[str, Value]:
+    def fails_in_modes(seen: Measurable, parts: tuple[str, ...], only: frozenset[str] | None) -> dict[str, Value]:
         if "modes" in parts:
             raise np.linalg.LinAlgError("no convergence")
-        return sound(seen, parts)
+        return sound(seen, parts, only)
 
     monkeypatch.setattr(measure, "solo", fails_in_modes)
     row, history = measure.execute(Case(scene, "dda"), "k", "test")

@@ -38,6 +38,7 @@ class Case:
     ranks: int = 1  # of the solvers that can be distributed
     measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "energy", "limit"
     repeats: int = 0  # of a timed case, after a run that warms up
+    only: frozenset[str] | None = None  # the metrics that are measured, all that `measures` name where None
 
     @property
     def full(self) -> bool:
@@ -57,6 +58,7 @@ class Case:
             "full": self.full,
             "scene": self._read(solver),
             "measures": sorted(self.measures),
+            "only": None if self.only is None else sorted(self.only),
             "sources": {name: source_digest(name) for name in (*solver.sources, *SOURCES)},
             "versions": {**library_versions(), **solver.versions()},
         }

@@ -28,6 +28,8 @@ class Derived:
         The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
     compute
         Function of the finished cases that returns metrics.
+    reads
+        The metrics of these cases that it reads beside their histories.
     linear
         Whether it has a meaning for linear scenes only; gates on it do not exist for others.
     """
@@ -36,6 +38,7 @@ class Derived:
     name: str
     needs: tuple[tuple[str, str], ...]
     compute: Callable[[Finished], Mapping[str, Value]]
+    reads: tuple[str, ...] = ()
     linear: bool = False
 
 

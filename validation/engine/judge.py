@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from validation.engine.finished import Finished
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate, Status, Verdict, judge, rounded
 from validation.metrics.catalogue import CATALOGUE, PAIRS, pair
 from validation.metrics.values import UNDEFINED, finite, ratio
@@ -19,6 +19,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import rank
 
+HORIZON = "horizon.time"  # up to which histories are compared
 ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 
@@ -82,6 +83,19 @@ def _linear_only(gate: Gate, finished: Finished) -> bool:
     return any(derived) or (gate.metric in CATALOGUE and CATALOGUE[gate.metric].linear)
 
 
+def reads(gate: Gate, derived: Mapping[tuple[str, str], Derived]) -> Iterator[tuple[tuple[str, str], str]]:
+    """Yield what `evaluate` reads of rows: a case and solver with a metric, those behind derived rows included."""
+    for name in gate.cases:
+        recipe = derived.get(name)
+        if recipe is not None:
+            yield from itertools.product(recipe.needs, recipe.reads)
+        else:
+            yield name, HORIZON if gate.metric in PAIRS else gate.metric
+    quantity, _, kind = gate.metric.partition(".")
+    if gate.metric in PAIRS and kind == "scaled":
+        yield gate.cases[0], f"{quantity}.static"
+
+
 def evaluate(gate: Gate, finished: Finished) -> Verdict:
     """Measure what a gate asks for and judge it."""
     names = gate.cases
@@ -105,7 +119,7 @@ def _judged_anyway(gate: Gate, row: Row) -> bool:
 
 def compared_until(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> float | None:
     """Return the time up to which two histories are compared [s]: the gate's, or the horizon of either if earlier."""
-    horizons = [row.metrics.get("horizon.time") for row in map(finished.rows.get, names) if row is not None]
+    horizons = [row.metrics.get(HORIZON) for row in map(finished.rows.get, names) if row is not None]
     limits = [gate.until, *(value for value in horizons if isinstance(value, float))]
     return min((limit for limit in limits if limit is not None), default=None)
 
@@ -113,8 +127,10 @@ def compared_until(gate: Gate, names: list[tuple[str, str]], finished: Finished)
 def _shortened(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> str:
     """Say up to when two histories were compared, where that is less than the gate asks for."""
     until = compared_until(gate, names, finished) if gate.metric in PAIRS else None
+    if until is None:
+        return ""
     ends = [float(h.time[-1]) for h in (finished.history(*name) for name in names) if h is not None and len(h.time)]
-    if until is None or until >= min([*ends, gate.until or math.inf]) * (1 - 1e-9):
+    if until >= min([*ends, gate.until or math.inf]) * (1 - 1e-9):
         return ""
     return f"compared up to {until:.4g} s, where the switches of the contact have amplified rounding to 1e-6"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -13,7 +13,7 @@ import numpy as np
 from validation.engine import horizon, origin, stability
 from validation.engine.case import Case
 from validation.errors import InputError
-from validation.metrics.catalogue import solo
+from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import KEPT
@@ -164,34 +164,33 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
 
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
-    asked = _measures(case, run)
-    if not asked:
-        return {}
+    parts = _measures(case, run)
+    needs = frozenset[str]().union(*(metric.needs for metric in measured_by(parts, case.only)))
     linear, history = features.linear(case.scene), run.history or History(np.zeros(0), {})
-    static = _reported(prepared.static, None, failed) if linear and {"history", "energy"} & asked else None
-    assumed = prepared.assumed_static() if linear and static is None and "history" in asked else static or {}
+    static = _reported(prepared.static, None, failed) if linear and STATIC in needs else None
+    assumed = prepared.assumed_static() if linear and static is None and STATIC in needs else static or {}
     seen = Measurable(
         history,
         case.scene.time.step,
         assumed,
-        _reported(prepared.modes, (), failed) if linear and {"modes", "energy"} & asked else (),
+        _reported(prepared.modes, (), failed) if linear and MODES in needs else (),
         static is not None,
-        _reported(prepared.diagnostics, {}, failed) if linear and "stability" in asked else {},
+        _reported(prepared.diagnostics, {}, failed) if linear and DIAGNOSTICS in needs else {},
         run.outcome,
-        _reported(prepared.switches, None, failed) if "switches" in asked else None,
-        _reported(prepared.contact_record, None, failed) if "switches" in asked else None,
+        _reported(prepared.switches, None, failed) if SWITCHES in needs else None,
+        _reported(prepared.contact_record, None, failed) if CONTACT in needs else None,
         lambda: horizon.shadow(solver, case.scene, case.full),
         lambda: stability.limit(solver, case.scene),
     )
-    return _solo(seen, asked, failed)
+    return _solo(seen, parts, case.only, failed)
 
 
-def _solo(seen: Measurable, asked: set[str], failed: list[str]) -> dict[str, Value]:
+def _solo(seen: Measurable, parts: set[str], only: Collection[str] | None, failed: list[str]) -> dict[str, Value]:
     """Return the metrics of the parts that are asked for; a part whose arithmetic fails is noted and has none."""
     found: dict[str, Value] = {}
-    for part in sorted(asked):
+    for part in sorted(parts):
         try:
-            found |= solo(seen, (part,))
+            found |= solo(seen, (part,), only)
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {said(error)}")
     return found

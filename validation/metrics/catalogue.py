@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -147,11 +147,18 @@ CATALOGUE = SOLO | PAIRS
 METRICS = tuple(CATALOGUE)  # the ids
 
 
-def solo(m: Measurable, measures: Iterable[str] = ("history", "modes")) -> dict[str, Value]:
-    """Return the metrics of one run that the parts of a study's `measures` ask for; none of them is ever NaN."""
-    asked = [metric for metric in (*SOLO.values(), KIND) if metric.measure in set(measures)]
+def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
+    """Return the metrics of one run that the parts of a study's `measures` ask for, or those of them that are named."""
+    found = [metric for metric in (*SOLO.values(), KIND) if metric.measure in measures]
+    return found if only is None else [metric for metric in found if metric.id in only]
+
+
+def solo(
+    m: Measurable, measures: Collection[str] = ("history", "modes"), only: Collection[str] | None = None
+) -> dict[str, Value]:
+    """Return the metrics of one run that are asked for; none of them is ever NaN."""
     with np.errstate(all="ignore"):
-        return {metric.id: finite(metric.function(m)) for metric in asked}
+        return {metric.id: finite(metric.function(m)) for metric in measured_by(measures, only)}
 
 
 def pair(metric: str, history: History, reference: History, run: Mapping[str, Value] | None = None) -> Value:

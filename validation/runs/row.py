@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from validation.runs.run import Outcome
@@ -35,7 +35,7 @@ class Row:
 
     def line(self) -> str:
         """Return the row as one line of JSON, with a digest of what it says."""
-        data = asdict(self)
+        data = dict(vars(self))
         return json.dumps(data | {"digest": _digest(data)}, allow_nan=False)
 
     @classmethod

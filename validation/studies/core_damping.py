@@ -18,6 +18,7 @@ from validation.scenes.scene import Scene
 from validation.studies.bands import OWN, about, cases
 
 NAME = "damping"
+READS = tuple(f"mode1.{part}" for part in ("frequency", "spectral_radius", "damping", "measured_damping"))
 SOLVERS = ("dda", "fem", "bar")
 UNDAMPED = 1e-12
 # Damping ratio of DDA over that of the elements, minus one, where no closed form holds: case -> (value, half band).
@@ -45,7 +46,7 @@ def derived(scenes: tuple[str, ...]) -> tuple[Derived, ...]:
     found = []
     for scene in cases(*scenes):
         needs = tuple((scene.name, solver) for solver in solvers(scene))
-        found.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene)))
+        found.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene), READS))
     return tuple(found)
 
 

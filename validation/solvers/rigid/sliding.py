@@ -29,7 +29,12 @@ class Slide:
 
 
 def rigid_slide(scene: Scene, smooth: bool = False) -> Slide:
-    """Return how a rigid mass in the place of a scene's block slides, at the end of each step.
+    """Return how a rigid mass in the place of a scene's block slides, at the end of each step; see `rigid_motion`."""
+    return _reported(rigid_motion(scene, smooth), scene.time.step * np.arange(1.0, scene.time.steps + 1))
+
+
+def rigid_motion(scene: Scene, smooth: bool = False) -> SlidingMotion:
+    """Return the motion of a rigid mass in the place of a scene's block.
 
     Its base follows the scene's record, linear between rows; what presses it down is its weight. Such a base jumps in
     velocity at every row, which springs do not pass on: a smooth one has the accelerations of the rows' second
@@ -54,8 +59,7 @@ def rigid_slide(scene: Scene, smooth: bool = False) -> Slide:
     else:
         time, x = _from_start(record.time, record.x)
         base = recorded(time, _accelerations(time, x)) if smooth else moved(time, x)
-    t = scene.time.step * np.arange(1.0, scene.time.steps + 1)
-    return _reported(_motion(block_of(scene), base, float(t[-1])), t)
+    return _motion(block_of(scene), base, scene.time.duration)
 
 
 @functools.lru_cache(maxsize=4)

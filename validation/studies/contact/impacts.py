@@ -181,8 +181,8 @@ def bouncing_bar_gates() -> Iterator[Gate]:
 def derived() -> tuple[Derived, ...]:
     """Return the row of the bouncing bar's times, extrapolated to a rigid wall."""
     softer, stiffer = tuple(cases("bouncing-bar"))[-2:]
-    needs = ((softer.name, BAR), (stiffer.name, BAR))
-    return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, softer, stiffer)),)
+    needs, reads = ((softer.name, BAR), (stiffer.name, BAR)), tuple(f"switches.{switch}" for switch in SWITCHES)
+    return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, softer, stiffer), reads),)
 
 
 def rigid(softer: Scene, stiffer: Scene, finished: Finished) -> Mapping[str, Value]:

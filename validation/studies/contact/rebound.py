@@ -27,6 +27,7 @@ KINDS = ("constant", "average", "implicit", "conserving")
 IMPACTS = tuple(f"rebound-{kind}" for kind in KINDS)
 MAPS = tuple(f"contact-map-{kind}" for kind in KINDS)
 MAP = "restitution map"
+READS = ("contact.restitution",)  # of each case, by the map
 EXACT_SWITCHES = {1.0: 21, 10.0: 108, 100.0: 156}  # p/E -> switches of each corner in 0.2 s, by an independent program
 # Scheme -> mean, least, greatest and mean square of e on a rigid contact, and half a unit of the last digit.
 STIFF: Mapping[tuple[float, float], tuple[tuple[float, ...], float]] = {
@@ -68,7 +69,7 @@ def expected(scene: Scene) -> float:
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    rows = [Derived(name, MAP, tuple((c.name, "dda") for c in cases(name)), compared(name)) for name in IMPACTS]
+    rows = [Derived(name, MAP, tuple((c.name, "dda") for c in cases(name)), compared(name), READS) for name in IMPACTS]
     statistics = [Derived(MAP, label(scheme), (), functools.partial(stiff, scheme)) for scheme in STIFF]
     return (*rows, *statistics)
 
@@ -89,7 +90,7 @@ def _compared(scenes: tuple[Scene, ...], finished: Finished) -> Mapping[str, Val
 
 
 def _restitution(finished: Finished, scene: Scene) -> float:
-    value = finished.rows[scene.name, "dda"].metrics.get("contact.restitution")
+    value = finished.rows[scene.name, "dda"].metrics.get(*READS)
     return value if isinstance(value, float) else math.nan
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from validation.engine.case import Case
 from validation.engine.finished import Derived
+from validation.engine.judge import reads
 from validation.engine.study import Study
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
@@ -96,6 +97,16 @@ def applying() -> Mapping[str, tuple[str, Gate]]:
 def cases(study: str) -> Mapping[tuple[str, str], Case]:
     """Return the cases of a study by scene and solver."""
     return {(case.scene.name, case.solver): case for case in study_of(study).cases()}
+
+
+@functools.cache
+def asked() -> Mapping[tuple[str, str], frozenset[str]]:
+    """Return the metrics that the gates read of each case, by scene and solver."""
+    found: dict[tuple[str, str], set[str]] = {}
+    for study, gate in gates().values():
+        for case, metric in reads(gate, recipes(study)):
+            found.setdefault(case, set()).add(metric)
+    return {case: frozenset(metrics) for case, metrics in found.items()}
 
 
 @functools.cache

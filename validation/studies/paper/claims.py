@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
+from validation.engine.judge import HORIZON
 from validation.gates.gate import Gate, said
+from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
@@ -24,6 +26,7 @@ from validation.scenes.scene import Scene
 from validation.studies.bands import cases
 
 REGISTER = "claims"  # the name under which gates find the register's rows
+READ = tuple(metric for metric in SOLO if metric != HORIZON)  # what claims may read: no two codes are compared
 Needs = tuple[tuple[str, str], ...]
 
 
@@ -117,7 +120,7 @@ class Claim:
 
     def row(self) -> Derived:
         """Return the derived row that holds the verdict and the measured numbers."""
-        return Derived(REGISTER, self.id, self.needs, self._compute)
+        return Derived(REGISTER, self.id, self.needs, self._compute, READ)
 
     def _compute(self, finished: Finished) -> Mapping[str, Value]:
         numbers = self.measure(Evidence(finished))

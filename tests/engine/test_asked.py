@@ -1,0 +1,85 @@
+"""Rows of the metrics that gates read, and no others: gates judge them as they judge whole rows."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from validation.engine import horizon
+from validation.engine.case import Case
+from validation.engine.finished import Derived, Finished
+from validation.engine.judge import evaluate, reads
+from validation.engine.measure import execute
+from validation.engine.run import finish
+from validation.engine.study import Study
+from validation.gates.gate import Gate, Verdict
+from validation.runs.results import Results
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+
+MEASURED = "mode1.measured_damping"
+
+
+def pencil(finished: Finished) -> Mapping[str, Value]:
+    return {"ratio": finished.rows["small", "dda"].metrics.get(MEASURED)}
+
+
+def opening(scene: Scene, name: str = "opening", stiffness: float = 1e11) -> Scene:
+    """Return the scene on springs that open, on which switches amplify rounding before the last step."""
+    values = {"contact.law": "unilateral", "contact.stiffness": stiffness, "time.steps": 100}
+    return scene.with_values(values | {"time.alpha": 0.25, "time.delta": 0.5}).model_copy(update={"name": name})
+
+
+def study_of(scene: Scene) -> Study:
+    """Return a study with a gate of every kind: of one run, of two, of histories, on a derived row."""
+    kinds = (
+        ("small", ("dda",), "mode1.damping"),
+        ("small", ("dda", "bar"), "displacement.static"),
+        ("small", ("dda", "bar"), "pressure.scaled"),
+        ("small", ("pencil",), "ratio"),
+        ("opening", ("dda",), "energy.imbalance"),
+    )
+    gates = [Gate(*kind, 0.0, 1.0, "as measured") for kind in kinds]
+    gates += [Gate("opening", ("dda", "dda"), "displacement.max", 0.0, 1.0, "as measured", against="other")]
+    row = Derived("small", "pencil", (("small", "dda"),), pencil, (MEASURED,))
+    return Study(
+        "s",
+        "S",
+        "?",
+        [scene, opening(scene), opening(scene, "other", 1.001e11)],
+        ("dda", "bar"),
+        gates=lambda: tuple(gates),
+        derived=lambda: (row,),
+    )
+
+
+def judged(study: Study, gate: Gate, cases: list[Case], directory: Path) -> Verdict:
+    return evaluate(gate, finish(cases, study, Results(directory)))
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_what_a_gate_reads_is_enough_to_judge_it(scene: Scene, tmp_path: Path, number: int) -> None:
+    study = study_of(scene)
+    gate = study.gates()[number]
+    asked = list(reads(gate, study.recipes()))
+    whole = [case for case in study.cases() if (case.scene.name, case.solver) in study.needs(gate)]
+    some = [
+        replace(case, only=frozenset(metric for of, metric in asked if of == (case.scene.name, case.solver)))
+        for case in whole
+    ]
+    found = judged(study, gate, some, tmp_path / "some")
+    assert found == judged(study, gate, whole, tmp_path / "whole") and isinstance(found.value, float)
+    assert ("compared up to" in found.why) == (number == 5)  # the horizon is among what is read
+
+
+def test_only_what_is_asked_for_is_measured(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    def solved_again(*_: object) -> None:
+        raise AssertionError("nobody asks for the horizon")
+
+    monkeypatch.setattr(horizon, "shadow", solved_again)
+    case = Case(opening(scene), "dda", only=frozenset({"energy.rise", "pressure.final"}))
+    row, _ = execute(case, case.key(), "s")
+    assert set(row.metrics) == {"energy.rise", "pressure.final"} and not any("measured" in note for note in row.notes)
+    none, history = execute(replace(case, only=frozenset()), "k", "s")
+    assert not none.metrics and history is not None
