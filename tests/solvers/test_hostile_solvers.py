@@ -34,6 +34,7 @@ needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the
 
 @pytest.fixture
 def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    monkeypatch.setattr(worker, "_kept", {})  # what other tests have started has no mark
     with new_mark() as name:
         monkeypatch.setenv(MARK, name)
         yield name
@@ -127,7 +128,6 @@ FATAL = [  # to the process
 @needs_linux
 def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str) -> None:
     """Each is a row with a name, and what it has left disturbs neither the next scene nor the end."""
-    worker.close_all()  # what another test has left there has no mark
     used = set()
     for target, outcome, said in SURVIVED:
         row = row_of(scene.with_values({"title": target}), "named:Named")
