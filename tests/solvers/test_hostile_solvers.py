@@ -34,7 +34,7 @@ needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the
 
 @pytest.fixture
 def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    monkeypatch.setattr(worker, "_kept", {})  # what other tests have started has no mark
+    monkeypatch.setattr(worker, "kept", {})  # what other tests have started has no mark
     with new_mark() as name:
         monkeypatch.setenv(MARK, name)
         yield name
@@ -132,7 +132,7 @@ def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str)
     for target, outcome, said in SURVIVED:
         row = row_of(scene.with_values({"title": target}), "named:Named")
         assert told(row, outcome, said), (target, row.outcome, row.notes)
-        used.update(worker._kept.values())
+        used.update(worker.kept.values())
     assert len(used) == 1, "the processes that have answered"
     worker.close_all()
     assert left(mark) == []
