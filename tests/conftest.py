@@ -63,6 +63,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_judge",
     "test_kept_numbers",
     "test_opened_chapters",
+    "test_own_solver",
     "test_pack",
     "test_paper_chapter",
     "test_readable",
@@ -75,6 +76,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_subblocks_chapter",
     "test_submissions",
     "test_turning_chapter",
+    "test_user_solvers",
     "test_walls",
     "test_work_precision",
 )

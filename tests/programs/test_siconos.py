@@ -84,7 +84,7 @@ SLOWER = [
     ("given", "below"),
     [
         (scene("locked", time__steps=20), 2e-3),
-        (scene("opening", time__steps=30), 2e-3),
+        pytest.param(scene("opening", time__steps=30), 2e-3, marks=pytest.mark.long),
         *(pytest.param(*given, marks=pytest.mark.long) for given in SLOWER),
     ],
     ids=["locked", "opening", "gap", "glued", "off-centre", "creep", "rocking", "column"],
@@ -95,6 +95,7 @@ def test_settings_for_accuracy_come_near_to_the_exact_motion(program, given, bel
     assert max(found.values()) < below, found
 
 
+@pytest.mark.long
 def test_its_own_rigid_contact_rocks(program):
     assert differences(scene("rocking"), siconos.AsItComes())["rotation"] < 1e-2
 

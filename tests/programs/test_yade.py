@@ -128,7 +128,7 @@ def test_the_default_integrator_is_the_leapfrog_with_forces_changed_by_a_fifth()
 @pytest.mark.parametrize(
     ("scene", "most"),
     [
-        (scene_of("opening", time={"steps": 20}), 5e-4),
+        pytest.param(scene_of("opening", time={"steps": 20}), 5e-4, marks=pytest.mark.long),
         pytest.param(scene_of("creep", time={"steps": 20}), 1e-3, marks=pytest.mark.long),
         pytest.param(scene_of("column", column={"motion": "shear"}), 2e-3, marks=pytest.mark.long),
     ],

@@ -32,6 +32,7 @@ CASES = [
     ("fem", {"damping.floor": 0.9} | AVERAGE),
     ("fem", {"block.poisson": 0.3, "load.traction": 1e6, "fem.elements": 2} | AVERAGE),
 ]
+SOLVERS = ["dda", pytest.param("fem", marks=pytest.mark.long)]
 
 
 def columns(scene: Scene, solver: str) -> dict[str, np.ndarray]:
@@ -71,7 +72,7 @@ def test_histories_are_those_of_the_printed_scheme_with_the_rule(solver: str, va
         assert np.max(np.abs(found[COLUMNS[3]] + expected[4])) <= 1e-8 * found[COLUMNS[3]][-1]
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("solver", SOLVERS)
 def test_rest_is_the_static_solution(solver: str) -> None:
     scene = BLOCK.with_values({"block.poisson": 0.2, "time.steps": 600} | AVERAGE)
     static = get_solver(solver).prepare(scene.with_values({"damping.kinetic": "constant"})).static()
@@ -91,7 +92,7 @@ def test_with_floor_one_nothing_is_damped(solver: str) -> None:
     assert np.all(found["discount"] == 1) and np.all(found["kinetic_damping_loss"] == 0)
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("solver", SOLVERS)
 def test_twice_the_load_is_twice_the_history_but_loads_do_not_superpose(solver: str) -> None:
     scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2})
     one, two = (columns(scene.with_values({"load.pressure": q}), solver) for q in (5e6, 1e7))

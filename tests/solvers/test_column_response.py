@@ -61,7 +61,7 @@ def check(seed: int) -> bool:
     column, ground, elements, numbers = draw(rng)
     at_top, degree = bool(rng.random() < 0.5), int(rng.integers(1, 3))
     w = rng.uniform(0.1, 1.5) / numbers["step"]
-    steps = 3000
+    steps = 2000
     t = numbers["step"] * np.arange(steps + 1.0)
     wave, rate, turn = np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)
     still = np.zeros_like(t)

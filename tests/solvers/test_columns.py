@@ -66,6 +66,11 @@ BASES = {
     "rigid": {"column.base": "rigid"},
     "springs": {"column.base": "springs", "column.base_stiffness": 4e8},
 }
+BASES_AND_ENDS = [
+    pytest.param(base, top, marks=[pytest.mark.long] * (top is not bool(b % 2)))
+    for b, base in enumerate(BASES)
+    for top in (False, True)
+]
 
 
 @pytest.fixture
@@ -84,8 +89,7 @@ def standing(site: Scene, base: str) -> Scene:
     return parse_scene(data | {"column": data["column"] | {k[7:]: v for k, v in BASES[base].items()}}, base)
 
 
-@pytest.mark.parametrize("top", [False, True])
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
 def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) -> None:
     scene = standing(site, base).with_values({"time.alpha": 0.4, "time.delta": 0.7, "time.gg": 0.99})
     if top:
@@ -175,8 +179,7 @@ def test_a_pressure_that_vibrates_on_the_top(site: Scene, solver: str) -> None:
         assert abs(seen - values[0]) < 1e-8 * abs(values[0]), name
 
 
-@pytest.mark.parametrize("top", [False, True])
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
 def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: bool) -> None:
     layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
     scene = standing(site, base).with_values({"column.layer": layers, "time.gg": 0.99})

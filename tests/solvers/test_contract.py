@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from faults import seams
+from oracles.processes import answer_here
 
 from validation.engine.measure import completed
 from validation.engine.run import run_study
@@ -62,6 +63,7 @@ def test_every_other_solver_refuses_the_scene_by_name(jointed: Scene) -> None:
 def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed: Scene, tmp_path, monkeypatch) -> None:
     (tmp_path / "plain.py").write_text("def solve(scene):\n    raise RuntimeError('was run')\n")
     monkeypatch.syspath_prepend(str(tmp_path))
+    answer_here(monkeypatch)
     run = completed(get_solver("plain:solve"), jointed)
     assert run.outcome is Outcome.NOT_APPLICABLE and JOINTS in run.notes[-1]
 

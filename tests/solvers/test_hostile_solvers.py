@@ -20,19 +20,21 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.processes import worker
-from validation.solvers.user import VARIABLE, words
+from validation.solvers.user import VARIABLE, UserSolver, words
 
 HERE = Path(__file__).parent / "user_solvers"
 MANY = (
-    "forks leaves_a_thread leaves_an_exit_hook leaves_a_daemon prints ignores_signals kills_its_guard kills_its_group "
-    "closes_everything interrupts raises_half_a_character odd_names SubnormalStatic sound"
+    "deadly:forks leaves_a_thread leaves_an_exit_hook leaves_a_daemon prints deadly:ignores_signals "
+    "deadly:kills_its_guard deadly:kills_its_group deadly:closes_everything interrupts raises_half_a_character "
+    "odd_names SubnormalStatic sound"
 )
-HUNG = "no history within 1.75 s, the time limit for 50 steps"
+HUNG = "s, the time limit for 50 steps"
 needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the solver finds its pipes in /proc")
 
 
 @pytest.fixture
 def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    monkeypatch.setattr(worker, "kept", {})  # what other tests have started has no mark
     with new_mark() as name:
         monkeypatch.setenv(MARK, name)
         yield name
@@ -44,96 +46,148 @@ def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     return load_scene(scene_file)
 
 
-def row_of(scene: Scene, attribute: str) -> Row:
+def row_of(scene: Scene, solver: str) -> Row:
     """Return the row of a case, and see that it can be written and read again."""
-    row, _ = execute(Case(scene, f"hostile:{attribute}"), "key", "study")
+    row, _ = execute(Case(scene, solver), "key", "study")
     again = Row.parse(row.line())
     assert again is not None and again.outcome is row.outcome
     "; ".join(row.notes).encode("utf-8")
     return row
 
 
-CASES = [
-    ("forks", Outcome.COMPLETED, ""),
-    ("forks_and_stays", Outcome.COMPLETED, ""),
-    ("leaves_a_thread", Outcome.COMPLETED, ""),
-    ("leaves_an_exit_hook", Outcome.COMPLETED, ""),
-    ("leaves_a_daemon", Outcome.COMPLETED, ""),
-    ("exits_in_a_thread", Outcome.COMPLETED, ""),
-    ("prints", Outcome.COMPLETED, ""),
-    ("prints_without_end", Outcome.COMPLETED, ""),
-    ("changes_directory", Outcome.COMPLETED, ""),
-    ("collects_itself", Outcome.COMPLETED, ""),
-    pytest.param("writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("drips", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("writes_garbage", Outcome.RAISED, "crashed: no answer but", marks=needs_linux),
-    pytest.param("writes_a_list", Outcome.RAISED, "crashed: no answer but '[1, 2]'", marks=needs_linux),
-    pytest.param("answers_another_request", Outcome.COMPLETED, "", marks=needs_linux),
-    ("closes_everything", Outcome.RAISED, "crashed: the process ended with status"),
-    ("closes_and_sleeps", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("sleeps", Outcome.TIMEOUT, HUNG),
-    ("spins", Outcome.TIMEOUT, HUNG),
-    ("ignores_signals", Outcome.TIMEOUT, HUNG),
-    ("stops_itself", Outcome.TIMEOUT, HUNG),
-    ("stops_its_guard", Outcome.TIMEOUT, HUNG),
-    ("kills_its_guard", Outcome.RAISED, "crashed: the process ended with status -9"),
-    ("terminates_its_guard", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("kills_its_group", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("kills_itself", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("interrupts", Outcome.RAISED, "KeyboardInterrupt"),
-    ("ends_a_generator", Outcome.RAISED, "GeneratorExit: no more"),
-    ("raises_what_has_no_text", Outcome.RAISED, "Nameless, whose text raises RuntimeError"),
-    ("raises_half_a_character", Outcome.RAISED, r"half \udc80 of \ud800 a character, \x1b[31mred"),
-    ("raises_a_book", Outcome.RAISED, "ValueError: xxx"),
-    ("recurses", Outcome.RAISED, "RecursionError: "),
-    ("wants_memory", Outcome.RAISED, "Unable to allocate"),
-    ("not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 1"),
-    ("infinite", Outcome.OVERFLOW, "displacement at step 1"),
-    ("texts", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of <U5"),
-    ("complex_numbers", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of complex128"),
-    ("dates", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of datetime64"),
-    ("nothing_in_it", Outcome.NOT_A_NUMBER, "displacement at step 1"),
-    ("scalar", Outcome.WRONG_SHAPE, "displacement has shape (), not (50,)"),
-    ("square", Outcome.WRONG_SHAPE, "displacement has shape (50, 50), not (50,)"),
-    ("ragged", Outcome.RAISED, "ValueError: setting an array element with a sequence"),
-    ("odd_names", Outcome.COMPLETED, ""),
-    ("names_of_half_characters", Outcome.WRONG_SHAPE, r"no column displacement, got \udc80"),
-    ("Static", Outcome.COMPLETED, ""),
-    ("SubnormalStatic", Outcome.COMPLETED, "static: must be zero or a normal number, got -1e-320 for displacement"),
-    ("LeastStatic", Outcome.COMPLETED, ""),
-    ("UndefinedStatic", Outcome.COMPLETED, "static: must be zero or a normal number, got nan for displacement"),
-    ("TextStatic", Outcome.RAISED, "could not convert string to float"),
-    ("OddModes", Outcome.COMPLETED, ""),
+def told(row: Row, outcome: Outcome, said: str) -> bool:
+    """Whether a row has an outcome and says why, in no more than a few lines."""
+    return row.outcome is outcome and said in "; ".join(row.notes) and sum(map(len, row.notes)) < 1000
+
+
+SURVIVED = [  # by the process; the last one leaves it fit for little
+    ("deadly:forks", Outcome.COMPLETED, ""),
+    ("deadly:forks_and_stays", Outcome.COMPLETED, ""),
+    ("hostile:leaves_a_thread", Outcome.COMPLETED, ""),
+    ("hostile:leaves_an_exit_hook", Outcome.COMPLETED, ""),
+    ("hostile:leaves_a_daemon", Outcome.COMPLETED, ""),
+    ("hostile:exits_in_a_thread", Outcome.COMPLETED, ""),
+    ("hostile:prints", Outcome.COMPLETED, ""),
+    ("hostile:prints_without_end", Outcome.COMPLETED, ""),
+    ("hostile:changes_directory", Outcome.COMPLETED, ""),
+    ("deadly:answers_another_request", Outcome.COMPLETED, ""),
+    ("hostile:interrupts", Outcome.RAISED, "KeyboardInterrupt"),
+    ("hostile:ends_a_generator", Outcome.RAISED, "GeneratorExit: no more"),
+    ("hostile:raises_what_has_no_text", Outcome.RAISED, "Nameless, whose text raises RuntimeError"),
+    ("hostile:raises_half_a_character", Outcome.RAISED, r"half \udc80 of \ud800 a character, \x1b[31mred"),
+    ("hostile:raises_a_book", Outcome.RAISED, "ValueError: xxx"),
+    ("hostile:recurses", Outcome.RAISED, "RecursionError: "),
+    ("hostile:wants_memory", Outcome.RAISED, "Unable to allocate"),
+    ("hostile:not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 1"),
+    ("hostile:infinite", Outcome.OVERFLOW, "displacement at step 1"),
+    ("hostile:texts", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of <U5"),
+    (
+        "hostile:complex_numbers",
+        Outcome.RAISED,
+        "TypeError: displacement must hold real numbers, got an array of complex128",
+    ),
+    ("hostile:dates", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of datetime64"),
+    ("hostile:nothing_in_it", Outcome.NOT_A_NUMBER, "displacement at step 1"),
+    ("hostile:scalar", Outcome.WRONG_SHAPE, "displacement has shape (), not (50,)"),
+    ("hostile:square", Outcome.WRONG_SHAPE, "displacement has shape (50, 50), not (50,)"),
+    ("hostile:ragged", Outcome.RAISED, "ValueError: setting an array element with a sequence"),
+    ("hostile:odd_names", Outcome.COMPLETED, ""),
+    ("hostile:names_of_half_characters", Outcome.WRONG_SHAPE, r"no column displacement, got \udc80"),
+    ("hostile:Static", Outcome.COMPLETED, ""),
+    (
+        "hostile:SubnormalStatic",
+        Outcome.COMPLETED,
+        "static: must be zero or a normal number, got -1e-320 for displacement",
+    ),
+    ("hostile:LeastStatic", Outcome.COMPLETED, ""),
+    ("hostile:UndefinedStatic", Outcome.COMPLETED, "static: must be zero or a normal number, got nan for displacement"),
+    ("hostile:TextStatic", Outcome.RAISED, "could not convert string to float"),
+    ("hostile:OddModes", Outcome.COMPLETED, ""),
+    ("hostile:collects_itself", Outcome.COMPLETED, ""),
+]
+FATAL = [  # to the process
+    pytest.param("deadly:writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),
+    pytest.param("deadly:drips", Outcome.TIMEOUT, HUNG, marks=needs_linux),
+    pytest.param("deadly:writes_garbage", Outcome.RAISED, "crashed: no answer but", marks=needs_linux),
+    pytest.param("deadly:writes_a_list", Outcome.RAISED, "crashed: no answer but '[1, 2]'", marks=needs_linux),
+    ("deadly:closes_everything", Outcome.RAISED, "crashed: the process ended with status"),
+    ("deadly:closes_and_sleeps", Outcome.RAISED, "crashed: the process ended with status 137"),
+    ("deadly:sleeps", Outcome.TIMEOUT, HUNG),
+    ("deadly:spins", Outcome.TIMEOUT, HUNG),
+    ("deadly:ignores_signals", Outcome.TIMEOUT, HUNG),
+    ("deadly:stops_itself", Outcome.TIMEOUT, HUNG),
+    ("deadly:stops_its_guard", Outcome.TIMEOUT, HUNG),
+    ("deadly:kills_its_guard", Outcome.RAISED, "crashed: the process ended with status -9"),
+    ("deadly:terminates_its_guard", Outcome.RAISED, "crashed: the process ended with status 137"),
+    ("deadly:kills_its_group", Outcome.RAISED, "crashed: the process ended with status 137"),
+    ("deadly:crashes", Outcome.RAISED, "crashed: the process ended with status 139: segmentation fault"),
+    ("deadly:kills_itself", Outcome.RAISED, "crashed: the process ended with status 137"),
 ]
 
 
-@pytest.mark.parametrize(("attribute", "outcome", "said"), thinned(CASES, 3))
-def test_a_hostile_solver_is_a_row_with_a_name(
-    scene: Scene, mark: str, attribute: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(VARIABLE, "1.5" if outcome is Outcome.TIMEOUT else "60")
-    row = row_of(scene, attribute)
-    assert row.outcome is outcome, row.notes
-    assert said in "; ".join(row.notes)
-    assert sum(map(len, row.notes)) < 1000
-    if outcome is Outcome.COMPLETED:
-        assert row_of(scene, attribute).outcome is outcome, "what it has left does not disturb the next scene"
+@needs_linux
+def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str) -> None:
+    """Each is a row with a name, and what it has left disturbs neither the next scene nor the end."""
+    used = set()
+    for target, outcome, said in SURVIVED:
+        row = row_of(scene.with_values({"title": target}), "named:Named")
+        assert told(row, outcome, said), (target, row.outcome, row.notes)
+        used.update(worker.kept.values())
+    assert len(used) == 1, "the processes that have answered"
     worker.close_all()
     assert left(mark) == []
 
 
-@pytest.mark.parametrize("attribute", thinned(["forks_and_stays", "forks"], 2))
-def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, attribute: str) -> None:
+@pytest.fixture
+def at_once(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start workers that know no scenes, and wait shortly for those that have closed their output."""
+    monkeypatch.setattr(UserSolver, "command", lambda self: [sys.executable, str(HERE / "bare.py"), self.target])
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
+    monkeypatch.setattr(worker, "ENDING", 0.1)
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize(("target", "outcome", "said"), thinned(FATAL, 2))
+def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
+    scene: Scene, mark: str, target: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert UserSolver(target, target).about() == {}, "the process has started"
+    monkeypatch.setenv(VARIABLE, "0.05" if outcome is Outcome.TIMEOUT else "60")
+    if target.endswith("stops_its_guard"):  # for which one waits in vain
+        monkeypatch.setattr(worker, "PATIENCE", 0.1)
+    row = row_of(scene, target)
+    assert told(row, outcome, said), (row.outcome, row.notes)
+    worker.close_all()
+    assert left(mark) == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("target", "outcome", "said"), [*SURVIVED, *FATAL])
+def test_a_hostile_solver_is_a_row_with_a_name(
+    scene: Scene, mark: str, target: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(VARIABLE, "1.5" if outcome is Outcome.TIMEOUT else "60")
+    row = row_of(scene, target)
+    assert told(row, outcome, said), (row.outcome, row.notes)
+    if outcome is Outcome.COMPLETED:
+        assert row_of(scene, target).outcome is outcome, "what it has left does not disturb the next scene"
+    worker.close_all()
+    assert left(mark) == []
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("target", ["deadly:forks_and_stays", pytest.param("deadly:forks", marks=pytest.mark.long)])
+def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, target: str) -> None:
     for _ in range(4):
-        assert row_of(scene, attribute).metrics["displacement.final"] == -1e-3
+        assert row_of(scene, target).metrics["displacement.final"] == -1e-3
         time.sleep(0.2)
 
 
 def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:
     """More than a pipe holds: the solver's process has stopped, and nobody takes the request."""
     blind = [sys.executable, "-c", "import time; time.sleep(60)"]
-    with pytest.raises(worker.WorkerHangs, match="no answer within 1 s"):
-        worker.ask(blind, os.environ, {"much": "x" * 10_000_000}, 1.0)
+    with pytest.raises(worker.WorkerHangs, match=r"no answer within 0\.2 s"):
+        worker.ask(blind, os.environ, {"much": "x" * 1_000_000}, 0.2)
 
 
 def test_an_answer_without_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,7 +214,8 @@ def test_a_study_of_hostile_solvers_ends_with_every_row(mark: str, tmp_path: Pat
     """Through the command line, on two workers: every case a row, no traceback."""
     names = MANY.split()
     path = tmp_path / "all.toml"
-    solvers = ", ".join(f'"hostile:{name}"' for name in names)
+    names = [name if ":" in name else f"hostile:{name}" for name in names]
+    solvers = ", ".join(f'"{name}"' for name in names)
     path.write_text(SCENE + f"[run]\nsolvers = [{solvers}]\n")
     done = subprocess.run(
         [sys.executable, "-m", "validation", "run", str(path), "--results", str(tmp_path / "r"), "--jobs", "2"],
@@ -171,5 +226,5 @@ def test_a_study_of_hostile_solvers_ends_with_every_row(mark: str, tmp_path: Pat
     )
     assert b"Traceback" not in done.stderr + done.stdout, done.stderr.decode(errors="replace")
     rows = Results(tmp_path / "r").rows().values()
-    assert sorted(row.solver for row in rows) == sorted(f"hostile:{name}" for name in names)
+    assert sorted(row.solver for row in rows) == sorted(names)
     assert left(mark) == []

@@ -5,11 +5,13 @@ Each expectation is statics, a symmetry or the superposition of a linear model.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 import dda
@@ -41,6 +43,16 @@ PRESSED = [
 ]
 
 
+def in_turn(*others: object) -> list[object]:
+    """Return every model with every value of another axis; short are each model with one of them, all in turn."""
+    found = []
+    for m, model in enumerate(EVERY):
+        for o, other in enumerate(others):
+            marks = [*model.marks, *[pytest.mark.long] * (o != m % len(others))]
+            found.append(pytest.param(*model.values, other, id=f"{other}-{model.id}", marks=marks))
+    return found
+
+
 @pytest.fixture
 def scene(scene_file) -> Scene:  # type: ignore[no-untyped-def]
     return load_scene(scene_file).with_values({"run.columns": COLUMNS, "time.steps": 20})
@@ -64,8 +76,7 @@ def test_a_pull_is_the_negative_of_a_pressure(scene: Scene, solver: str, values:
         assert static["contact_pressure"] == pytest.approx(-Q, rel=1e-11)
 
 
-@pytest.mark.parametrize(("solver", "values"), EVERY)
-@pytest.mark.parametrize("g", [9.81, -3.0])
+@pytest.mark.parametrize(("solver", "values", "g"), in_turn(9.81, -3.0))
 def test_weight_alone_is_carried(scene: Scene, solver: str, values: dict[str, object], g: float) -> None:
     """Pressure rho g h; v = -rho g h W / 2 p - (strain from 0 at the top to rho g h / E at the base over h / 2).
 
@@ -83,8 +94,7 @@ def test_weight_alone_is_carried(scene: Scene, solver: str, values: dict[str, ob
     assert run["displacement"][-1] == pytest.approx(static["displacement"], rel=1e-8)
 
 
-@pytest.mark.parametrize(("solver", "values"), EVERY)
-@pytest.mark.parametrize("way", ["x", "y"])
+@pytest.mark.parametrize(("solver", "values", "way"), in_turn("x", "y"))
 def test_a_record_moves_what_the_pressure_does_not_reach(
     scene: Scene,
     tmp_path,
@@ -115,8 +125,7 @@ def test_nothing_acts_and_nothing_moves(scene: Scene, solver: str, values: dict[
         assert modes[0].frequency == pytest.approx(pressed[0].frequency, rel=1e-12)
 
 
-@pytest.mark.parametrize(("solver", "values"), EVERY)
-@pytest.mark.parametrize("turn", [1, 2, 3])
+@pytest.mark.parametrize(("solver", "values", "turn"), in_turn(1, 2, 3))
 def test_it_does_not_matter_where_the_outline_begins(
     scene: Scene, solver: str, values: dict[str, object], turn: int
 ) -> None:
@@ -136,9 +145,10 @@ def test_it_does_not_matter_where_the_outline_begins(
         np.testing.assert_allclose(other[name], first[name], rtol=0, atol=1e-11 * np.abs(first[name]).max())
 
 
-@pytest.mark.parametrize("side", [1, 3])
-@pytest.mark.parametrize("e", [0.0, 0.3, -0.3])
-@pytest.mark.parametrize("foundation", ["block", "sub-blocks", "corner"])
+@pytest.mark.parametrize(
+    ("side", "e", "foundation"),
+    thinned(itertools.product([1, 3], [0.0, 0.3, -0.3], ["block", "sub-blocks", "corner"]), 5),
+)
 def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None:
     """A vertical pressure and a horizontal traction on a wall of a rigid block: force, moment over p a^2 / 2.
 

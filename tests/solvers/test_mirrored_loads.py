@@ -19,12 +19,21 @@ MODELS = {  # all symmetric about the middle line; 0.31 ends the pressed part in
     "sub-blocks": ("dda", SUBDIVIDED, 0.31),
     "fem": ("fem", {"fem.elements": 4, "fem.degree": 1}, 0.31),
     "fem of degree 2": ("fem", {"fem.elements": 3, "fem.degree": 2}, 0.31),
+    "fenicsx": ("fenicsx", {"fem.elements": 4}, 0.25),
 }
-WORKER = pytest.param(("fenicsx", {"fem.elements": 4}, 0.25), id="fenicsx", marks=pytest.mark.fenicsx)
+IN_TURN = [  # short are each model with one load
+    pytest.param(
+        model,
+        load,
+        id=f"{load}-{name}",
+        marks=[*[pytest.mark.fenicsx] * (name == "fenicsx"), *[pytest.mark.long] * (m % 2 != n)],
+    )
+    for m, (name, model) in enumerate(MODELS.items())
+    for n, load in enumerate(("eccentricity", "traction"))
+]
 
 
-@pytest.mark.parametrize("model", [*(pytest.param(model, id=name) for name, model in MODELS.items()), WORKER])
-@pytest.mark.parametrize("load", ["eccentricity", "traction"])
+@pytest.mark.parametrize(("model", "load"), IN_TURN)
 def test_left_is_the_mirror_image_of_right(
     scene_file: Path, model: tuple[str, dict[str, object], float], load: str
 ) -> None:

@@ -14,7 +14,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from conftest import SCENE
+from oracles.processes import answer_here
 
+from validation import plugin
 from validation.engine.measure import completed
 from validation.gates import closed_forms
 from validation.gates.gate import Gate
@@ -22,7 +24,9 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers import user
 from validation.solvers.processes.guard import GRACE
+from validation.solvers.processes.worker import WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
 from validation.studies.own_solver import evidence, gates
@@ -61,6 +65,7 @@ def test_the_first_group_that_fails_is_where_the_slip_is(
     slip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.syspath_prepend(str(ORACLES))
+    answer_here(monkeypatch)
     session = Session(f"plain_dda:{slip}", Results(tmp_path))
     told = [session.judge(name)[1] for name in few()]
     judged = [t for t in told if t.status != "NOT RUN"]
@@ -155,6 +160,13 @@ def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
     assert "not tried, since 2 scenes" in shown if author == "hangs" else "not tried" not in shown
 
 
+def test_a_word_that_names_no_solver_is_refused() -> None:
+    options = SimpleNamespace(addinivalue_line=lambda *_: None, getoption=lambda *_: "my_solver.py")
+    with pytest.raises(pytest.UsageError, match=r"^--dda-solver: must be module:attribute, or a name"):
+        plugin.pytest_configure(options)  # type: ignore[arg-type]
+
+
+@pytest.mark.long
 def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: Path) -> None:
     shown = through_the_gates("my_solver.py", tmp_path)
     assert "ERROR: --dda-solver: must be module:attribute, or a name that `dda-validate list` shows" in shown
@@ -233,6 +245,7 @@ def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.syspath_prepend(str(ORACLES))
+    answer_here(monkeypatch)
     session = Session("plain_dda:sound", Results(tmp_path))
     names = [name for name in gates.applying() if name.startswith("long-run")]
     assert names and {session.judge(name)[0].why for name in names} == {"the solver does not report modes(scene)"}
@@ -246,6 +259,7 @@ def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(
 def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     monkeypatch.syspath_prepend(str(ORACLES))
     monkeypatch.chdir(ORACLES)
+    answer_here(monkeypatch)
     return load_scene(scene_file)
 
 
@@ -261,7 +275,23 @@ def test_a_scene_that_is_not_for_the_solver_is_not_run(scene: Scene) -> None:
     assert run.outcome is Outcome.NOT_APPLICABLE and "rectangle of Poisson's ratio 0 only" in run.notes[0]
 
 
-def test_the_time_limit_grows_with_the_steps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_time_limit_grows_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """20 steps have 0.1 s beside what is set, and 6000 have 30 s."""
+    limits = []
+
+    def ask(command: object, environment: object, request: object, limit: float) -> dict[str, object]:
+        limits.append(limit)
+        raise WorkerHangs
+
+    monkeypatch.setattr(user, "ask", ask)
+    monkeypatch.setenv(VARIABLE, "7")
+    small, solver = parse_scene(tomllib.loads(SCENE), "small"), get_solver("sleepy:solve")
+    runs = [completed(solver, small.with_values({"time.steps": steps})) for steps in (20, 6000)]
+    assert limits == pytest.approx([7.1, 37.0]) and {run.outcome for run in runs} == {Outcome.TIMEOUT}
+
+
+@pytest.mark.long
+def test_a_solver_has_the_time_of_its_steps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     code = "import time, plain_dda\ndef solve(s):\n    time.sleep(1)\n    return plain_dda.sound(s)\n"
     (tmp_path / "sleepy.py").write_text(code)
     monkeypatch.syspath_prepend(str(ORACLES))

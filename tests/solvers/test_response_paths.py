@@ -6,6 +6,7 @@ from typing import NoReturn
 import numpy as np
 import pytest
 import scipy.linalg
+from conftest import thinned
 from oracles.stepped_vibration import fit
 
 import dda.system.response
@@ -34,7 +35,7 @@ def moving(path: Path, scene: Scene, along: tuple[float, float], w: float) -> Sc
     return scene.with_values({"load.base_motion": str(path), "load.pressure": 0.0})
 
 
-@pytest.mark.parametrize(("solver", "values", "along"), MOVING)
+@pytest.mark.parametrize(("solver", "values", "along"), thinned(MOVING, 2))
 def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(
     tmp_path: Path, solver: str, values: dict[str, object], along: tuple[float, float]
 ) -> None:
@@ -67,7 +68,10 @@ def test_the_direction_of_a_base_is_that_of_its_record_towards_plus(tmp_path: Pa
         response(BLOCK.with_values({"load.base_motion": str(path)}), 1.0, "dda")
 
 
-@pytest.mark.parametrize("damped", [{}, {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}])
+@pytest.mark.parametrize(
+    "damped",
+    [{"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}, pytest.param({}, marks=pytest.mark.long)],
+)
 def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatch, damped: dict[str, object]) -> None:
     size = {"block.subdivide": [4, 4], "fem.elements": 4}
     scene = BLOCK.with_values(size | {"block.poisson": 0.3, "load.traction": 1e6} | damped)
@@ -104,13 +108,13 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(target, refuse)
     eliminations, own = [], scipy.linalg.solve_banded
     monkeypatch.setattr(scipy.linalg, "solve_banded", lambda *a, **k: eliminations.append(1) or own(*a, **k))
-    size = {"block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 200]}
-    scene = BLOCK.with_values(size | {"fem.elements": 200})
-    found = response(scene, np.linspace(0.1, 200.0, 100), "dda")
+    size = {"block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 100]}
+    scene = BLOCK.with_values(size | {"fem.elements": 100})
+    found = response(scene, np.linspace(0.1, 200.0, 30), "dda")
     assert np.all(np.isfinite(found.table()))
-    assert len(eliminations) == 100
+    assert len(eliminations) == 30
     for solver in ("fem", "bar", "continuum"):
-        assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 100), solver).table()))
+        assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 30), solver).table()))
 
 
 def test_fine_elements_answer_as_the_bar() -> None:

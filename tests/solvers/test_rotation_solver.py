@@ -31,8 +31,8 @@ stiffness = 1.0e9
 gravity = 9.81
 
 [time]
-step = 5.0e-3
-steps = 600
+step = 1.0e-2
+steps = 300
 
 [run]
 solvers = ["dda"]
@@ -113,7 +113,7 @@ def test_what_does_not_go_with_updated_geometry_is_refused(scene, values, word):
 def test_a_base_that_moves_goes_with_updated_geometry(scene, tmp_path):
     (tmp_path / "push.csv").write_text("time,x\n0,0\n0.1,0.02\n")
     path = tmp_path / "pushed.toml"
-    path.write_text(TOPPLING.replace("gravity = 9.81", 'gravity = 9.81\nbase_motion = "push.csv"').replace("600", "20"))
+    path.write_text(TOPPLING.replace("gravity = 9.81", 'gravity = 9.81\nbase_motion = "push.csv"').replace("300", "20"))
     still, moved = solve(scene.with_values({"time.steps": 20}), "dda"), solve(load_scene(path), "dda")
     assert not np.allclose(still.history.columns["rotation"], moved.history.columns["rotation"])
 

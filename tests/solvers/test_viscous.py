@@ -72,15 +72,15 @@ def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
 @pytest.mark.parametrize("values", [{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}])
 def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
     errors = []
-    for step in (4e-4, 2e-4, 1e-4):
-        scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.06 / step)} | values)
+    for step in (4e-4, 1e-4):
+        scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.03 / step)} | values)
         bar, exact = (solve(scene, solver).history for solver in ("bar", "continuum"))
         errors.append([np.max(np.abs(bar.columns[c] - exact.columns[c])) for c in COLUMNS])
-    assert np.all(np.log2(np.divide(errors[0], errors[2])) > 2.8)  # of two halvings, each of order two or nearly so
+    assert np.all(np.log2(np.divide(*errors)) > 2.8)  # of two halvings, each of order two or nearly so
 
 
 def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
-    long = {"time.step": 1e-3, "time.steps": 60, "damping.stiffness": 0.0}
+    long = {"time.step": 4e-3, "time.steps": 15, "damping.stiffness": 0.0}
     viscous_ = solve(BLOCK.with_values(long | {"damping.mass": 25.0}), "continuum").history
     kinetic = solve(BLOCK.with_values(long | {"damping.mass": 0.0, "time.gg_rate": 25.0}), "continuum").history
     for column in COLUMNS:

@@ -145,7 +145,7 @@ def base_limit() -> float:
 
 def words(text: str) -> str:
     """Return a user's text as one line of a note: no half characters, none that a terminal obeys, not a book."""
-    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())
+    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())[: MOST_WORDS + 1]
     said = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
     return said if len(said) <= MOST_WORDS else f"{said[:MOST_WORDS]} ..."
 

@@ -126,9 +126,8 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def main(name: str, paths: list[str]) -> None:
-    """Answer requests with one solver."""
-    sys.path[:] = paths + [path for path in sys.path if path not in paths]
+def answering(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Return what answers requests with one solver, which the first of them imports."""
     kept: list[Any] = []
     place = os.getcwd()
 
@@ -145,7 +144,13 @@ def main(name: str, paths: list[str]) -> None:
         except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
             return {"raised": text_of(error), "at": place_of(error, Path(place))}
 
-    serve(answer)
+    return answer
+
+
+def main(name: str, paths: list[str]) -> None:
+    """Answer requests with one solver."""
+    sys.path[:] = paths + [path for path in sys.path if path not in paths]
+    serve(answering(name))
 
 
 if __name__ == "__main__":

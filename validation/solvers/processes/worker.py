@@ -208,14 +208,14 @@ def _read(stream: IO[bytes]) -> bytes | None:
         return None
 
 
-_kept: dict[tuple[int, tuple[str, ...]], Worker] = {}
+kept: dict[tuple[int, tuple[str, ...]], Worker] = {}  # the workers, by process and command
 
 
 @atexit.register
 def close_all() -> None:
     """End the workers of this process."""
-    for key in [key for key in _kept if key[0] == os.getpid()]:
-        _kept.pop(key).close()
+    for key in [key for key in kept if key[0] == os.getpid()]:
+        kept.pop(key).close()
 
 
 def ask(
@@ -229,12 +229,12 @@ def ask(
         There is no answer; the next request starts another worker.
     """
     key = (os.getpid(), tuple(command))  # a forked process must not share its parent's pipes
-    if key not in _kept:
-        _kept[key] = Worker(command, environment)
+    if key not in kept:
+        kept[key] = Worker(command, environment)
     try:
-        return _kept[key].ask(request, limit)
+        return kept[key].ask(request, limit)
     except BaseException:
-        worker = _kept.pop(key)  # dead, hanging, or interrupted with an answer on its way
+        worker = kept.pop(key)  # dead, hanging, or interrupted with an answer on its way
         worker.kill()
         worker.close()
         raise
