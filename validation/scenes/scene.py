@@ -10,6 +10,7 @@ import difflib
 import itertools
 import json
 import math
+import os
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -20,12 +21,7 @@ from pydantic import Field, ValidationError, model_validator
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.kinds import SceneTables
-from validation.scenes.tables import (
-    GateSection,
-    RunSection,
-    Section,
-    TimeSection,
-)
+from validation.scenes.tables import GateSection, RunSection, Section, TimeSection
 
 SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
@@ -270,7 +266,7 @@ def _clip(value: object, width: int = 60) -> str:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return sorted(path.stem for path in SCENE_DIRECTORY.glob("*.toml"))
+    return sorted(name.removesuffix(".toml") for name in os.listdir(SCENE_DIRECTORY) if name.endswith(".toml"))
 
 
 def load_scene(source: str | Path) -> Scene:
