@@ -126,7 +126,8 @@ def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_fil
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("steps = 50", "steps = 40000") + '[sweep]\n"time.gg" = [1.0, 0.9, 0.8]\n')
+    long = SCENE.replace("steps = 50", "steps = 40000") + '[run]\nsolvers = ["dda-textbook"]\n'
+    scene_file.write_text(long + '[sweep]\n"time.gg" = [1.0, 0.9]\n"time.steps" = [10, 1000000]\n')
     command = [sys.executable, "-m", "validation", "run", str(scene_file), "--results", str(tmp_path / "r")]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
         rows = tmp_path / "r" / "rows.jsonl"
