@@ -141,7 +141,7 @@ def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
     assert covers("fenicsx", "fenicsx:2") and covers("fem", "fem:full") and covers("fem", "fem")
     assert not covers("fem", "fem-60") and not covers("fenicsx:2", "fenicsx")
     core = get_study("core")
-    damping = Gate("figures-3-4", ("damping",), "operator", 0.0, 1.0, "a derived row of the elements")
+    damping = Gate("figures-3-4[time.step=0.01]", ("damping",), "operator", 0.0, 1.0, "a derived row of the elements")
     run = Judged(core, [Verdict(damping, None, Status.NOT_RUN)], {})
     assert list(wanting([run], ["fem"])) == ["--require fem: 1 of 1 gates on it are NOT RUN"]
 

@@ -49,8 +49,9 @@ def rows_of(results: Path) -> dict[str, Row]:
     return Results(results).rows()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("interruptible")
-@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_path, monkeypatch):
     (tmp_path / "waiting_solver.py").write_text(WAITING)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
