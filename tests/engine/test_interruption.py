@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from multiprocessing import Process
+from multiprocessing import Barrier, Process
 from pathlib import Path
 
 import numpy as np
@@ -96,13 +96,18 @@ def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
     assert Results(results).studies() == ["other", "scene"]
 
 
-def write_again_and_again(directory: Path, study: str) -> None:
+def write_again_and_again(directory: Path, study: str, start: Barrier) -> None:
+    """Write verdicts, of which those before must still be there."""
+    start.wait(60)
     for i in range(40):
+        kept = Results(directory).read_json("verdicts.json", [], list[dict[str, str]])
+        assert [verdict["id"] for verdict in kept if verdict["study"] == study] == [str(i - 1)] * (i > 0)
         Results(directory).write_verdicts(study, [{"study": study, "id": str(i)}])
 
 
 def test_verdicts_of_two_studies_written_at_once_are_both_kept(tmp_path):
-    many = [Process(target=write_again_and_again, args=(tmp_path, name)) for name in ("a", "b")]
+    start = Barrier(2)
+    many = [Process(target=write_again_and_again, args=(tmp_path, name, start)) for name in ("a", "b")]
     for process in many:
         process.start()
     for process in many:
