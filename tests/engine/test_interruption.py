@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SCENE, refused, typed
+from faults import seams
 
 from validation.errors import InputError
 from validation.runs.history import History
@@ -142,6 +143,8 @@ def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp
     """A limit on the size of files stands for a full disk: the second history does not fit."""
     scene_file.write_text(SCENE + '[run]\nsolvers = ["dda"]\n[sweep]\n"time.steps" = [10, 4000]\n')
     monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a compiled file would be cut off, and kept
+    made = {"python": "3", "commit": "here", "packages": {}}
+    seams.ORIGIN.put(monkeypatch, lambda: made)  # git would be ended in the middle of its index, and leave its lock
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (16_384, before[1]))
     try:
