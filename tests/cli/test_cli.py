@@ -124,9 +124,11 @@ def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_fil
     assert "overflow: The numbers left the range of double precision." in done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("steps = 50", "steps = 40000") + '[sweep]\n"time.gg" = [1.0, 0.9, 0.8]\n')
+    long = SCENE.replace("steps = 50", "steps = 40000") + '[run]\nsolvers = ["dda-textbook"]\n'
+    scene_file.write_text(long + '[sweep]\n"time.gg" = [1.0, 0.9]\n"time.steps" = [10, 1000000]\n')
     command = [sys.executable, "-m", "validation", "run", str(scene_file), "--results", str(tmp_path / "r")]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
         rows = tmp_path / "r" / "rows.jsonl"
@@ -138,18 +140,33 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
     assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
-@pytest.mark.usefixtures("interruptible")
-def test_an_interruption_in_a_long_call_is_told_as_well(tmp_path: Path) -> None:
-    """The main thread is where it hears of no signal: what it would say is said for it, once."""
-    code = (
-        "import signal, threading\nfrom validation.cli import entry, signals\nsignals.PATIENCE = 0.1\n"
-        "def deaf(act):\n    while True:\n        try:\n            threading.Event().wait(1)\n"
-        "        except KeyboardInterrupt:\n            pass\n"
-        "entry._guarded = deaf\nthreading.Timer(0.2, signal.raise_signal, [signal.SIGINT]).start()\nentry.main()"
+INTERRUPTED = (130, "", "interrupted: finished rows are kept; run the same command again to continue\n")
+
+
+def interrupted(code: str) -> tuple[int, str, str]:
+    """Return status and words of a command line that hears Ctrl-C in the middle of what the code makes of it."""
+    raised = (
+        "import signal, threading, time\nfrom validation.cli import entry, signals\n"
+        + code
+        + ("\nthreading.Timer(0.2, signal.raise_signal, [signal.SIGINT]).start()\nentry.main()")
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert (done.returncode, done.stdout) == (130, "")
-    assert done.stderr == "interrupted: finished rows are kept; run the same command again to continue\n"
+    done = subprocess.run([sys.executable, "-c", raised], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stdout, done.stderr
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interruption_is_one_line() -> None:
+    assert interrupted("entry._commands = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interruption_in_a_long_call_is_told_as_well() -> None:
+    """The main thread is where it hears of no signal: what it would say is said for it, once."""
+    deaf = (
+        "signals.PATIENCE = 0.1\ndef deaf(act):\n    while True:\n        try:\n            threading.Event().wait(1)\n"
+        "        except KeyboardInterrupt:\n            pass\nentry._guarded = deaf"
+    )
+    assert interrupted(deaf) == INTERRUPTED
 
 
 def test_an_end_of_a_file_is_no_interruption(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,7 +25,6 @@ from validation.report.figures.curves import style_of
 from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.studies.catalogue import get_study
 from validation.studies.paper.claims import page
 from validation.studies.paper.study import CLAIMS
 from validation.studies.work import record as work_record
@@ -90,14 +89,6 @@ def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
 def test_the_status_of_a_run(words: list[str], required: list[str], refused: bool, worse: Any, status: int) -> None:
     gate = Gate("s", ("dda", "bar"), "displacement.l2", 0.0, 1.0, "why")
     assert _status([Verdict(gate, None, Status(word)) for word in words], required, refused, worse) == status
-
-
-def test_the_list_names_every_study_and_scene_with_its_title() -> None:
-    lines = [line.split(maxsplit=1) for line in typed("list").stdout.splitlines()]
-    for name in ("figures-3-4", "stiff-contact"):
-        assert [name, load_scene(name).title] in lines
-    for name in ("core", "paper"):
-        assert [name, get_study(name).title] in lines
 
 
 # ---- verdicts side by side ----------------------------------------------------------------------------------------

@@ -142,7 +142,7 @@ def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History
         assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 
-def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History) -> None:
+def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History, undrawn: None) -> None:
     place = answered(tmp_path / "mine", exact)
     (place / "badge.svg").mkdir()
     done = typed("judge", place)
@@ -150,7 +150,7 @@ def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History) ->
     assert sorted(path.name for path in place.iterdir()) == ["answer.csv", "badge.svg", "submission.json"]
 
 
-def test_control_characters_are_written_out(tmp_path: Path, exact: History) -> None:
+def test_control_characters_are_written_out(tmp_path: Path, exact: History, undrawn: None) -> None:
     place = answered(tmp_path / "mine", exact, program="a\x1b[31m\u202e", settings="one\n  two")
     done = typed("judge", place)
     assert "a\\x1b[31m\\u202e 1.0 on locked: PASS" in done.stdout

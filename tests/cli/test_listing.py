@@ -1,5 +1,6 @@
 """`list WORD`: one line for each metric, study, scene and solver; the page of metrics is the catalogue."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -13,10 +14,6 @@ from validation.solvers.registry import get_solver, solver_names
 from validation.studies.catalogue import STUDIES, get_study
 
 PAGE = Path(__file__).parents[2] / "docs" / "metrics.md"
-
-
-def listed_plain() -> str:
-    return typed("list").stdout
 
 
 def listed(word: str) -> list[str]:
@@ -40,11 +37,13 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
 
 
 def test_metrics_stand_in_groups_one_for_each_first_part() -> None:
-    for word in ("metrics", None):
-        text = "\n".join(listed(word) if word else listed_plain().partition("metrics\n")[2].splitlines()[:-2])
-        groups = [[line.split()[0].partition(".")[0] for line in group.splitlines()] for group in text.split("\n\n")]
-        names = [set(group) - {"metric"} for group in groups]
-        assert all(len(name) == 1 for name in names) and len(set.union(*names)) == len(names) > 5
+    assert_grouped(listed("metrics"))
+
+
+def assert_grouped(lines: list[str]) -> None:
+    groups = "\n".join(lines).split("\n\n")
+    names = [{line.split()[0].partition(".")[0] for line in group.splitlines()} - {"metric"} for group in groups]
+    assert all(len(name) == 1 for name in names) and len(set.union(*names)) == len(names) > 5
 
 
 def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> None:
@@ -65,7 +64,9 @@ def test_studies_scenes_and_solvers_have_a_line_each() -> None:
         assert line.split()[1] == str(len(get_study(name).scenes)) and line.endswith(get_study(name).title)
     for line, name in zip(scenes, scene_names(), strict=True):
         scene = load_scene(name)
-        assert line.split()[1] == str(len(scene.expand())) and line.endswith(scene.title)
+        axes = [len(values) for field, values in scene.sweep.items() if field != "mode"]
+        cases = axes[0] if scene.sweep.get("mode") == "zip" else math.prod(axes)
+        assert line.split()[1] == str(cases) and line.endswith(scene.title)
         assert ", ".join(scene.run.solvers) in line
     for line, name in zip(solvers, registry.BUILT_IN, strict=False):  # what is installed beside follows
         assert f" {get_solver(name).role} " in line and all(word in line for word in get_solver(name).handles)
@@ -77,11 +78,15 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch: pyte
     assert last == ["theirs", "other", "their_package.adapter:solve", "decides", "itself"]
 
 
-def test_the_plain_list_names_all_four() -> None:
-    done = typed("list")
-    words = done.stdout.replace(",", "").split()
+def test_the_plain_list_names_all_four_with_their_titles() -> None:
+    shown = typed("list").stdout
+    words = shown.replace(",", "").split()
     for name in (*STUDIES, *scene_names(), *solver_names(), *METRICS):
         assert name in words
+    lines = [line.split(maxsplit=1) for line in shown.splitlines()]
+    for name, title in (("core", get_study("core").title), ("figures-3-4", load_scene("figures-3-4").title)):
+        assert [name, title] in lines
+    assert_grouped(shown.partition("metrics\n")[2].splitlines()[:-2])
 
 
 def test_another_word_is_bad_input() -> None:

@@ -18,7 +18,7 @@ from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
 SCENES = [
-    load_scene("figures-5-6").with_values({"time.step": step, "time.gg": gg}, label=True)
+    load_scene("figures-5-6").with_values({"time.step": step, "time.gg": gg, "time.steps": 40}, label=True)
     for step, gg in itertools.product((1e-3, 2e-3), (1.0, 0.98))
 ]
 STUDY = Study("sweep", "Sweep", "A sweep.", SCENES, ("dda", "bar"))

@@ -17,7 +17,6 @@ from oracles.processes import AFTER, MARK, left, marked, new_mark
 
 from validation.runs.results import Results
 
-SWEEP = '"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
 SOLVERS = """
 import atexit, os, signal, subprocess, sys, threading, time
 
@@ -66,11 +65,11 @@ def mark() -> Iterator[str]:
         yield name
 
 
-def begin(directory: Path, mark: str, solvers: str, *options: str) -> subprocess.Popen[str]:
-    """Start a run of a scene by the named solvers of the module above."""
+def begin(directory: Path, mark: str, solvers: str, *options: str, sweep: str = "[1.0]") -> subprocess.Popen[str]:
+    """Start a run of a scene, with these discounts, by the named solvers of the module above."""
     (directory / "bad_solvers.py").write_text(SOLVERS)
     scene = directory / "long.toml"
-    scene.write_text(SCENE + f"[run]\nsolvers = [{solvers}]\n[sweep]\n{SWEEP}")
+    scene.write_text(SCENE + f'[run]\nsolvers = [{solvers}]\n[sweep]\n"time.gg" = {sweep}\n')
     command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(directory / "r"), *options]
     places = [str(directory), *filter(None, [os.environ.get("PYTHONPATH")])]
     return subprocess.Popen(
@@ -89,7 +88,7 @@ def wait_for(mark: str, words: str, process: subprocess.Popen[str]) -> None:
     deadline = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < deadline:
         if any(words in line for line in marked(mark).values()):
-            time.sleep(1.0)
+            time.sleep(0.3)
             return
         time.sleep(0.05)
     raise AssertionError(f"no process with {words!r}: {marked(mark)}")
@@ -131,7 +130,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_daemon_left"])
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
-    with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2") as process:
+    with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2", sweep="[1.0, 0.99]") as process:
         process.communicate(timeout=60)
     assert left(mark) == []
     assert {str(row.outcome) for row in Results(tmp_path / "r").rows().values()} == {"completed"}

@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import beside
+from conftest import beside, typed
 from oracles.pages import BLOCK, FEW, ROOT
 from oracles.submissions import right_answer
 
@@ -19,16 +19,19 @@ LONG = ("friction.md", "contact.md", "rotation.md", "waves.md", "judge-your-code
 
 def run_line(line: str, directory: Path) -> None:
     """Run a line of a shell as a user in a directory does."""
-    words = shlex.split(line, comments=True)
-    module = {"dda-validate": "validation", "pytest": "pytest"}[words[0]]
-    done = subprocess.run(
-        [sys.executable, "-m", module, *words[1:], *(FEW if module == "pytest" else [])],
-        capture_output=True,
-        text=True,
-        timeout=200,
-        cwd=directory,
-        env=os.environ | {"OMP_NUM_THREADS": "1"},
-    )
+    program, *words = shlex.split(line, comments=True)
+    if program == "dda-validate":
+        done = typed(*words, cwd=directory)
+    else:
+        assert program == "pytest"
+        done = subprocess.run(
+            [sys.executable, "-m", program, *words, *FEW],
+            capture_output=True,
+            text=True,
+            timeout=200,
+            cwd=directory,
+            env=os.environ | {"OMP_NUM_THREADS": "1"},
+        )
     assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
 
 

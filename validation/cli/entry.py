@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import cache
 
 import typer
 
@@ -54,11 +55,17 @@ app.registered_commands.sort(key=lambda command: _place(command.name or getattr(
 def main() -> None:
     """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
     prepare()
-    status = _guarded(lambda: app(standalone_mode=False))
+    status = _guarded(lambda: _commands()(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
         _guarded(sys.stdout.flush)
         end()
     sys.exit(_guarded(sys.stdout.flush) or status)
+
+
+@cache
+def _commands() -> Callable[..., object]:
+    """Return the commands, which typer reads from the signatures of their functions, once in a process."""
+    return typer.main.get_command(app)
 
 
 def _guarded(act: Callable[[], object]) -> int:

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from validation.compare.causes import UNEXPLAINED
 from validation.compare.diagnosis import compare
@@ -185,6 +184,8 @@ class Search:
 
     def _fitted(self, family: Family, start: float) -> tuple[float, float]:
         """Return the number that comes nearest, and what it leaves."""
+        from scipy.optimize import least_squares
+
         done = least_squares(
             lambda u: self._residual(family, float(u[0])), [start], diff_step=1e-5, x_scale=0.05, max_nfev=ROUNDS
         )

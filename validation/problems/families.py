@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from validation.problems.models import Base, Columns, Runs
 from validation.problems.variations import friction, layers, sized, springs
@@ -272,6 +271,8 @@ def _moved(
 
 
 def _at(dense: History, name: str, asked: Array) -> Array:
+    from scipy.interpolate import CubicSpline
+
     time, column = np.concatenate([[0.0], dense.time]), np.concatenate([[0.0], dense.columns[name]])
     found = CubicSpline(time, column)(np.maximum(asked, 0.0))
     return np.asarray(found, dtype=np.float64)

@@ -21,12 +21,7 @@ from pydantic import Field, ValidationError, model_validator
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.kinds import SceneTables
-from validation.scenes.tables import (
-    GateSection,
-    RunSection,
-    Section,
-    TimeSection,
-)
+from validation.scenes.tables import GateSection, RunSection, Section, TimeSection
 
 SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from validation.metrics.catalogue import Metric
+    from validation.scenes.scene import Scene
+    from validation.studies.declaration import Study
 
 Line = tuple[str, ...]
 BREAK: Line = ()  # an empty line between two groups
@@ -36,19 +38,13 @@ def _grouped(line: Callable[[Metric], Line]) -> list[Line]:
 
 def studies() -> list[Line]:
     """Return name, number of scenes and title of every study."""
-    from validation.studies.catalogue import STUDIES, get_study
-
-    declared = [get_study(name) for name in STUDIES]
-    return [("study", "scenes", "title"), *((s.name, str(len(s.scenes)), s.title) for s in declared)]
+    return [("study", "scenes", "title"), *((s.name, str(len(s.scenes)), s.title) for s in _studies())]
 
 
 def scenes() -> list[Line]:
     """Return name, number of cases, solvers and title of every built-in scene."""
-    from validation.scenes.scene import load_scene, scene_names
-
-    known = [load_scene(name) for name in scene_names()]
     heads = ("scene", "cases", "solvers", "title")
-    return [heads, *((s.name, str(len(s.expand())), ", ".join(s.run.solvers), s.title or s.name) for s in known)]
+    return [heads, *((s.name, str(len(s.expand())), ", ".join(s.run.solvers), _title(s)) for s in _scenes())]
 
 
 def solvers() -> list[Line]:
@@ -60,6 +56,22 @@ def solvers() -> list[Line]:
         solver = get_solver(name)
         lines.append((name, str(solver.role), _first_line(solver), ", ".join(sorted(solver.handles)) or "-"))
     return [heads, *lines, *((name, "other", target, "decides itself") for name, target in entry_points().items())]
+
+
+def _studies() -> list[Study]:
+    from validation.studies.catalogue import STUDIES, get_study
+
+    return [get_study(name) for name in STUDIES]
+
+
+def _scenes() -> list[Scene]:
+    from validation.scenes.scene import load_scene, scene_names
+
+    return [load_scene(name) for name in scene_names()]
+
+
+def _title(scene: Scene) -> str:
+    return scene.title or scene.name
 
 
 def _first_line(value: object) -> str:
@@ -76,11 +88,12 @@ LISTS: dict[str, Callable[[], list[Line]]] = {
 
 def short() -> dict[str, list[Line]]:
     """Return the four lists with what fits a line: names, and what they stand for."""
-    named = {"studies": studies(), "scenes": scenes(), "solvers": [line[:3] for line in solvers()]}
-    parts: dict[str, list[Line]] = {
-        title: [(line[0], line[-1]) for line in lines[1:]] for title, lines in named.items()
+    return {
+        "studies": [(study.name, study.title) for study in _studies()],
+        "scenes": [(scene.name, _title(scene)) for scene in _scenes()],
+        "solvers": [(name, description) for name, _, description, _ in solvers()[1:]],
+        "metrics": short_metrics()[1:],
     }
-    return parts | {"metrics": short_metrics()[1:]}
 
 
 def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = "") -> str:
