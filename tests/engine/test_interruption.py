@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from multiprocessing import Barrier, Process
+from multiprocessing import Barrier, Process, synchronize
 from pathlib import Path
 
 import numpy as np
@@ -97,7 +97,7 @@ def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
     assert Results(results).studies() == ["other", "scene"]
 
 
-def write_again_and_again(directory: Path, study: str, start: Barrier) -> None:
+def write_again_and_again(directory: Path, study: str, start: synchronize.Barrier) -> None:
     """Write verdicts, of which those before must still be there."""
     start.wait(60)
     for i in range(40):
