@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 
+import numpy as np
+
 from validation.engine.case import Case
 from validation.engine.executor import executed
 from validation.engine.finished import Finished
@@ -117,6 +119,7 @@ def _named(row: Row, case: Case, study: Study) -> Row:
     return replace(row, scene=case.scene.name, study=study.name, solver=case.solver)
 
 
+@np.errstate(divide="raise", invalid="raise")
 def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
     left, failed = list(scenes), dict[str, str]()
