@@ -27,7 +27,7 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
-from validation.solvers.registry import solver_names
+from validation.solvers.registry import BUILT_IN
 from validation.studies.catalogue import scene_study
 
 
@@ -305,7 +305,7 @@ def test_own_gates_of_a_scene_file(tmp_path: Path) -> None:
 def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references() -> None:
     names = {"dda", "fem", "bar", "continuum"}
     assert list(_ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]
-    assert _ordered(solver_names())[:2] == ["dda", "dda-textbook"]
+    assert _ordered(BUILT_IN)[:2] == ["dda", "dda-textbook"]
 
 
 def test_a_row_survives_its_line() -> None:

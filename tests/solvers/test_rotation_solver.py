@@ -11,7 +11,7 @@ from validation.advice.friction import friction_alarms
 from validation.errors import InputError
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.solvers.registry import get_solver, solver_names
+from validation.solvers.registry import BUILT_IN, get_solver
 
 TOPPLING = """\
 title = "A tower on its corner"
@@ -92,7 +92,7 @@ def test_rotation_is_the_default_of_no_scene(scene):
 
 
 def test_other_solvers_refuse_updated_geometry(scene):
-    for name in solver_names():
+    for name in BUILT_IN:
         if name not in ("dda",) and get_solver(name).handles.isdisjoint({"large rotation"}):
             assert "large rotation" in get_solver(name).refusal(scene)
 
