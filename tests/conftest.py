@@ -58,7 +58,6 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_compare_words",
     "test_confusion",
     "test_contact_pack",
-    "test_fenicsx",
     "test_in_browser",
     "test_judge",
     "test_kept_numbers",
@@ -109,8 +108,13 @@ SHORT_CASES = {
 }
 
 
+# An exact motion of a shaken slope, and a second process of the distributed solver: seconds each.
+LONG_GATES = re.compile(r"slope-quake-exact:|.*:fenicsx:2-")
+
+
 def short_gates(names: Sequence[str]) -> set[str]:
     """Return the gates of the short tests among those of these ids: some cases of each scene."""
+    names = [name for name in names if not LONG_GATES.match(name)]
     cases: dict[str, dict[str, set[str]]] = {}
     for name in names:
         scene, values, kind = parts_of(name)
@@ -135,8 +139,13 @@ def _covering(marks: Mapping[str, set[str]]) -> list[str]:
 
 
 def group_of(nodeid: str) -> str:
-    """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself."""
+    """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself.
+
+    Tests that run FEniCSx are one group, since each worker of the tests would start a process of it.
+    """
     path, _, name = nodeid.partition("::")
+    if "fenicsx" in nodeid:
+        return "fenicsx"
     if name.startswith(GATE):
         return re.split(r"[\[:]", name.removeprefix(GATE))[0]
     return path if Path(path).stem in TOGETHER else nodeid

@@ -124,14 +124,14 @@ def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_fil
     assert "overflow: The numbers left the range of double precision." in done.stdout
 
 
-@pytest.mark.long
-@pytest.mark.usefixtures("interruptible")
 def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(scene_file: Path, tmp_path: Path) -> None:
     done = typed("run", scene_file, "--set", "contact.stiffness=1e308", "--results", tmp_path / "results")
     assert "not examined: small: alarms and damping budget: FloatingPointError: divide by zero" in done.stdout
     assert not done.stderr
 
 
+@pytest.mark.long
+@pytest.mark.usefixtures("interruptible")
 def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_path: Path) -> None:
     long = SCENE.replace("steps = 50", "steps = 40000") + '[run]\nsolvers = ["dda-textbook"]\n'
     scene_file.write_text(long + '[sweep]\n"time.gg" = [1.0, 0.9]\n"time.steps" = [10, 1000000]\n')

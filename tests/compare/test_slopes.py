@@ -102,7 +102,8 @@ AVERAGE: dict[str, object] = {"time__alpha": 0.25, "time__delta": 0.5}
 SWINGS = [(2e-3, True), (5e-3, False), (5e-3, True), (2e-3, False), (1e-3, False), (1e-3, True)]
 
 
-@pytest.mark.parametrize(("step", "consistent"), thinned(SWINGS, 6))
+@pytest.mark.long
+@pytest.mark.parametrize(("step", "consistent"), SWINGS)
 def test_a_sound_program_without_damping_is_the_same_model(step: float, consistent: bool) -> None:
     """At 5 ms from a consistent start two programs fall apart after 200 steps by their rounding alone."""
     steps = 500 if step == 5e-3 else 250

@@ -61,10 +61,8 @@ def errors(name, alpha, delta, truth, steps):
     return np.array(found)
 
 
-@pytest.mark.parametrize(
-    ("alpha", "delta", "order"),
-    [SCHEMES[0], *(pytest.param(*scheme, marks=pytest.mark.long) for scheme in SCHEMES[1:])],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("alpha", "delta", "order"), SCHEMES)
 def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(glued, alpha, delta, order):
     found = errors("glued", alpha, delta, glued, (150, 300))
     assert abs(math.log2(found[0] / found[1]) - order) < 0.1  # the next order at these steps

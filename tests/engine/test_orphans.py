@@ -117,7 +117,8 @@ def test_nothing_outlives_the_parent(
         assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
-@pytest.mark.parametrize("number", thinned(reversed(SIGNALS), 4))
+@pytest.mark.long
+@pytest.mark.parametrize("number", SIGNALS)
 def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)

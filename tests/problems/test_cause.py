@@ -81,6 +81,7 @@ def test_what_gives_the_same_rows_has_one_name() -> None:
     assert {number.id: number.name for number in numbers(problem("sliding").scene)}["gravity-factor"] == "gravity"
 
 
+@pytest.mark.long
 def test_a_weight_that_is_forgotten_is_no_wrong_pressure() -> None:
     """A weight acts at the centroid, a pressure on top: another pressure comes within the bar."""
     values = {"load.gravity": 9.81, "load.pressure": -1.0e5, "block.young": 1e9, "time.steps": 40}

@@ -98,6 +98,7 @@ def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
     assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
 
 
+@pytest.mark.long
 def test_ranks_change_the_key_of_the_distributed_solver_only(scene: Scene) -> None:
     assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
     assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()

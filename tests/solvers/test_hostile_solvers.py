@@ -147,7 +147,7 @@ def at_once(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("at_once")
-@pytest.mark.parametrize(("target", "outcome", "said"), thinned(FATAL, 2))
+@pytest.mark.parametrize(("target", "outcome", "said"), thinned(FATAL, 4))
 def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
     scene: Scene, mark: str, target: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
