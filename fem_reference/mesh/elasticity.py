@@ -13,14 +13,15 @@ intervals end where a patch ends, so that it is integrated exactly on any mesh.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import functools
+import operator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
-from skfem import Basis, DiscreteField, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
-from skfem.helpers import div, sym_grad
+from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
+from skfem.helpers import ddot, div, dot, sym_grad
 
 from fem_reference.problem.problem import Array, Problem
 
@@ -28,23 +29,22 @@ ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4
 """Scalar element by (corners of a cell, degree)."""
 
 
-Part = Callable[[DiscreteField], Array]
-"""What of two displacements is multiplied and summed to make a form, shape (..., cells, points)."""
+@BilinearForm
+def mass_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(u, v)."""
+    return dot(u, v)
 
 
-def displacement(u: DiscreteField) -> Array:
-    """Of the form (u, v)."""
-    return np.asarray(u)
+@BilinearForm
+def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(div u, div v)."""
+    return div(u) * div(v)
 
 
-def dilatation(u: DiscreteField) -> Array:
-    """Of the form (div u, div v)."""
-    return np.asarray(div(u))
-
-
-def strain(u: DiscreteField) -> Array:
-    """Of the form 2 (eps(u), eps(v))."""
-    return np.asarray(np.sqrt(2) * sym_grad(u))
+@BilinearForm
+def strain_form(u, v, w):  # type: ignore[no-untyped-def]
+    """2 (eps(u), eps(v))."""
+    return 2 * ddot(sym_grad(u), sym_grad(v))
 
 
 class Rule(NamedTuple):
@@ -62,40 +62,31 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
     return Basis(mesh, element, intorder=2 * degree + 1)
 
 
-def assembled(terms: list[tuple[float, Part]], basis: Basis, congruent: bool) -> csr_array:
+def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
     """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
 
     Where all cells are translates of the first one its element matrix is that of all.
     """
-    sample = basis
-    if congruent:
-        sample = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
-    local = np.sum([c * element_matrices(sample, part) for c, part in terms if c != 0], axis=0)
+    terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
+    if not congruent:
+        parts = [coefficient * csr_array(form.assemble(basis)) for coefficient, form in terms]
+        return functools.reduce(operator.add, parts)
+    first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
+    local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
     dofs = basis.element_dofs.T.astype(np.int32)
     rows, columns = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
-    data = np.broadcast_to(local, (len(dofs), *local.shape[1:])).ravel()
-    matrix = csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
-    matrix.eliminate_zeros()
-    return matrix
-
-
-def element_matrices(basis: Basis, part: Part) -> Array:
-    """Matrix of a form in each cell, shape (cells, functions, functions), as one product of all pairs of functions."""
-    found = np.stack([part(field) for (field,) in basis.basis])
-    shape = (len(basis.dx), len(found), -1)
-    one, other = (np.moveaxis(values, -2, 0).reshape(shape) for values in (found, found * basis.dx))
-    product: Array = one @ other.transpose(0, 2, 1)
-    return product
+    data = np.tile(local.ravel(), len(dofs))
+    return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
 
 
 def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
     """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
-    return assembled([(density, displacement)], basis, congruent)
+    return assembled([(density, mass_form)], basis, congruent)
 
 
 def stiffness(basis: Basis, problem: Problem, congruent: bool = False) -> csr_array:
     """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
-    return assembled([(problem.shear_modulus, strain), (problem.lame, dilatation)], basis, congruent)
+    return assembled([(problem.shear_modulus, strain_form), (problem.lame, dilatation_form)], basis, congruent)
 
 
 def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:
@@ -110,12 +101,13 @@ def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_a
     cells
         Cell of each point, shape (count,).
     """
-    scalar = basis.elem.elem
-    count = basis.Nbfun // 2
-    phi = np.array([np.broadcast_to(scalar.lbasis(points, k)[0], len(cells)) for k in range(count)]).ravel()
-    rows, shape = np.tile(np.arange(len(cells)), count), (len(cells), basis.N)
-    dofs = basis.element_dofs[:, cells]
-    u, v = (csr_array(coo_array((phi, (rows, dofs[i::2].ravel())), shape=shape)) for i in (0, 1))
+    phi = np.array(
+        [basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0] for k in range(basis.Nbfun)]
+    )
+    rows = np.tile(np.arange(len(cells)), basis.Nbfun)
+    columns = basis.element_dofs[:, cells].ravel()
+    shape = (len(cells), basis.N)
+    u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
     return u, v
 
 
@@ -281,11 +273,9 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
 def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
     """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
     row = np.zeros(basis.N)
-    for k in range(basis.Nbfun // 2):
-        by_x, by_y = basis.elem.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
-        u, v = basis.element_dofs[2 * k : 2 * k + 2, cells]
-        np.add.at(row, u, -by_y / 2 / len(cells))
-        np.add.at(row, v, by_x / 2 / len(cells))
+    for k in range(basis.Nbfun):
+        gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
+        np.add.at(row, basis.element_dofs[k, cells], (gradient[1, 0] - gradient[0, 1]) / 2 / len(cells))
     return row
 
 
@@ -297,9 +287,6 @@ def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:
     with np.errstate(all="ignore"):
         for _ in range(12):
             inverse = basis.mapping.invDF(local, cells)
-            change = np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
-            local = local + change
-            if not np.any(np.abs(change) > 1e-15):
-                break
+            local = local + np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
     result: Array = local[:, :, 0]
     return result
