@@ -88,7 +88,6 @@ GATE = "test_gate["  # with which the names of gates begin
 SHORT_CASES = {
     "two-codes-constant": ("block.poisson=0,block.hypothesis=plane stress,time.start=zero",),
     "two-codes-average": ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",),
-    "subblocks-locking": ("contact.stiffness=1e+09,block.poisson=0.25,load.pressure=5e+06,load.traction=0",),
     "subblocks-axial": ("block.pattern=triangles,block.subdivide=4x4",),
     "subblocks-rocking": ("block.pattern=triangles,block.subdivide=4x4",),
     "stiff-contact": (
@@ -108,8 +107,9 @@ SHORT_CASES = {
 }
 
 
-# An exact motion of a shaken slope, and a second process of the distributed solver: seconds each.
-LONG_GATES = re.compile(r"slope-quake-exact:|.*:fenicsx:2-")
+# Seconds each: an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has tests of its
+# own, and a second process of the distributed solver.
+LONG_GATES = re.compile(r"(slope-quake-exact|subblocks-locking|work-precision)\b|.*:fenicsx:2-")
 
 
 def short_gates(names: Sequence[str]) -> set[str]:

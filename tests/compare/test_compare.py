@@ -198,6 +198,7 @@ def test_numbers_of_the_examples_readme() -> None:
     assert found[3].variant.weight == pytest.approx(0.970, abs=5e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("program", "opened"),
     thinned(

@@ -105,12 +105,14 @@ def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
     assert "not explained" in answer.sentence
 
 
+@pytest.mark.long
 def test_the_gate_of_the_unknown_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where anything may be left, a history with another damping is the scene's own."""
     seams.BAR_EXPLAINED.put(monkeypatch, lambda *given: True)
     assert judged(replace(PLAIN, steps=25), hht=-0.1).causes != ["unexplained"]
 
 
+@pytest.mark.long
 def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells() -> None:
     half = judged(rho=1350.0)
     named(half, ["density-factor"], {"density-factor": 0.5})

@@ -111,6 +111,7 @@ def test_points_that_slide_are_those_of_brute_force(scheme, elements):
     assert run["displacement"][-1] == pytest.approx(assembled.observers["displacement"] @ brute.D, rel=1e-8)
 
 
+@pytest.mark.long
 def test_a_stiff_block_on_its_corners_is_the_rigid_one():
     """E a million times that of the springs: three unknowns, two corners, brute force."""
     problem = replace(make(elements=2, degree=1, poisson=0.2, shear=4e8, foundation="corner"), young=1e15, pressure=1e5)

@@ -54,6 +54,7 @@ def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
     assert found[-1][0] < 0.03
 
 
+@pytest.mark.long
 def test_implicit_contact_leads_to_the_exact_bar_too():
     problem, found = make(elements=128, degree=2), []
     truth = exact(bar_of(problem), 0.0301).at(0.03 / 125 * np.arange(1, 126)).displacement

@@ -58,6 +58,7 @@ def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half(
         np.testing.assert_allclose(found[name], predicted.columns[name], rtol=0, atol=1e-9 * np.abs(found[name]).max())
 
 
+@pytest.mark.long
 def test_its_own_contact_slides_exactly_but_for_a_step_in_which_a_corner_is_taken_as_open(program):
     """A corner that rounding lifts does not rub for a step, which costs tan(phi) g cos(slope) dt^2 at most, once."""
     given = scene("sliding", time__steps=50)
@@ -100,6 +101,7 @@ def test_its_own_rigid_contact_rocks(program):
     assert differences(scene("rocking"), siconos.AsItComes())["rotation"] < 1e-2
 
 
+@pytest.mark.long
 def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does(program):
     with pytest.raises(NotImplementedError, match=r"contact\.cohesion: is lost"):
         siconos.Siconos().solve(scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))

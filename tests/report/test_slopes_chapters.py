@@ -51,6 +51,7 @@ def test_the_chapter_of_sliding_lays_runs_beside_closed_forms(tmp_path: Path, dr
     assert sliding_chapter.kept(20.0) == pytest.approx(2 * (20 - 1) / 400, rel=1e-6)
 
 
+@pytest.mark.long
 def test_the_chapter_of_creep_lays_rules_and_schemes_beside_a_program(tmp_path: Path, drawn: dict[str, Figure]) -> None:
     kept = results(creep.STUDY, CREEPS, tmp_path / "kept")
     blocks = creeping.chapter(kept, kept.manifest("creep"), tmp_path)

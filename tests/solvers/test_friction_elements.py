@@ -38,6 +38,7 @@ def far(scene: Scene) -> float:
     return max(found)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("values", thinned([{"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}, {}], 2))
 def test_stiff_elements_on_corners_tend_to_the_stiff_block(scene: Scene, values: dict[str, object]) -> None:
     """Both tend to the rigid block with p/E, two decades of which take two decades of what is between them."""

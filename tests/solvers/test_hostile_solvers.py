@@ -175,8 +175,9 @@ def test_a_hostile_solver_is_a_row_with_a_name(
     assert left(mark) == []
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("at_once")
-@pytest.mark.parametrize("target", ["deadly:forks_and_stays", pytest.param("deadly:forks", marks=pytest.mark.long)])
+@pytest.mark.parametrize("target", ["deadly:forks_and_stays", "deadly:forks"])
 def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, target: str) -> None:
     for _ in range(4):
         assert row_of(scene, target).metrics["displacement.final"] == -1e-3
