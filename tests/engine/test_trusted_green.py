@@ -1,5 +1,6 @@
 """What is kept is served only where it is whole and its own; what was not measured is no green."""
 
+import itertools
 import json
 import shutil
 import threading
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, refused, typed
+from conftest import SCENE, refused, thinned, typed
 from faults import seams
 from oracles.made_cases import study
 
@@ -182,11 +183,11 @@ def test_a_worker_with_other_sources_makes_no_rows(
 
 # ---- records --------------------------------------------------------------------------------------------------------
 
+COMMANDS = ["run", "report", "diff", "baseline"]
 MALFORMED = ["[", "[" * 100_000, "{}", "null", '[{"study": "s"}]', '[{"id": 1, "study": "s"}]', '["a"]', "[1e999]"]
 
 
-@pytest.mark.parametrize("text", MALFORMED, ids=range(len(MALFORMED)))
-@pytest.mark.parametrize("command", ["run", "report", "diff", "baseline"])
+@pytest.mark.parametrize(("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 3), ids=itertools.count())
 def test_malformed_verdicts_are_one_line_before_anything_runs(
     command: str, text: str, scene_file: Path, tmp_path: Path
 ) -> None:

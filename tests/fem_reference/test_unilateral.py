@@ -104,7 +104,7 @@ def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
         (make(SLOPE, elements=4, degree=1, foundation="nodes", p=1e8, poisson=0.1), GLUED),
     ],
 )
-@pytest.mark.parametrize("full", [False, True])
+@pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
     check_locked(problem, Scheme(0.5, 1.0, 0.98, 1e-2), contact, full)
 
