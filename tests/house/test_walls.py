@@ -31,6 +31,7 @@ TYPER = {
     "typer",
     "click",
     "rich",
+    "attr",  # which rich imports where it is installed
     "pygments",
     "markdown_it",
     "mdurl",

@@ -69,7 +69,7 @@ def random_scene(rng: np.random.Generator, family: str) -> Scene:
         "load.gravity": rng.choice([0.0, 9.81]),
     }
     if family == "fem":
-        kind = rng.choice(["distributed", "corner"])
+        kind = str(rng.choice(["distributed", "corner"]))
         values |= {
             "fem.elements": int(rng.integers(1, 4)),
             "fem.degree": int(rng.integers(1, 3)),

@@ -50,7 +50,7 @@ def meaning(column: str) -> str:
 class Data(BaseModel):
     """Plain data: immutable, unknown keys refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class BlockData(Data):
@@ -181,7 +181,7 @@ class SubmissionData(Data):
     version: Text
     settings: Text = Field(description="Time step, integrator, contact model, damping: what another user would need.")
     who: Text
-    not_reported: tuple[str, ...] = Field((), description="Columns that the program cannot report.")
+    not_reported: tuple[Text, ...] = Field((), description="Columns that the program cannot report.")
 
     @model_validator(mode="after")
     def _check(self) -> Self:
