@@ -58,8 +58,7 @@ def column_response(
     by_D, by_V, by_A = (matrix[:, step.first :] for matrix in (rows.D, rows.V, rows.A))
     for i, (w2, s) in enumerate(zip(np.atleast_1d(W2), S, strict=True)):
         D = _solved(step.K.rows + s * step.C.rows - w2 * step.M.rows, step.push @ drive[i])
-        with np.errstate(all="ignore"):  # older BLAS raise flags of lanes that they leave unused
-            seen[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
+        seen[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
     return dict(zip(columns, seen.T, strict=True))
 
 
@@ -68,6 +67,8 @@ def _solved(lower: Complex, right: Complex) -> Complex:
     from scipy.linalg import solve_banded
 
     n = len(right)
+    if n == 1 and lower[0, 0] != 0:  # older SciPy divide by a diagonal beside the main one
+        return np.asarray(right / lower[0, 0])
     band = np.zeros((2 * WIDTH + 1, n), complex)
     for offset, diagonal in enumerate(lower[:, :n]):
         band[WIDTH + offset, : n - offset] = diagonal[: n - offset]
