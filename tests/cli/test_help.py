@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import typer
 from conftest import SCENE, beside, typed
-from oracles.pages import BLOCK, ROOT
+from oracles.pages import write_my_solver
 from oracles.submissions import right_answer
 
 from validation import load_scene, solve
@@ -40,13 +40,6 @@ def test_help_pages_show_it() -> None:
     for command in ([], ["run"], ["show"]):
         done = typed(*command, "--help")
         assert done.returncode == 0 and "Example: " in done.stdout
-
-
-def write_my_solver(directory: Path) -> None:
-    """Write the solver that the documentation shows."""
-    page = (ROOT / "docs/judge-your-code.md").read_text(encoding="utf-8")
-    files = {file: text for _, file, text in BLOCK.findall(page)}
-    (directory / "my_solver.py").write_text(files["my_solver.py"])
 
 
 @pytest.mark.long

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import refused, thinned, typed
+from conftest import refused, typed
 from faults import seams
 from oracles.shi_dda import Program, run, write_measured_point
 
@@ -201,15 +201,12 @@ def test_numbers_of_the_examples_readme() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("program", "opened"),
-    thinned(
-        [
-            (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0, steps=40), None),
-            (Program(dt=1e-3, p=1e9, g=9.81), [1, 2]),
-            (Program(dt=5e-4, p=1e10, gg=0.98, g=9.81, rho=2300.0), None),
-            (Program(dt=2e-4, p=5e8, steps=100, g=9.81), None),
-        ],
-        4,
-    ),
+    [
+        (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0, steps=40), None),
+        (Program(dt=1e-3, p=1e9, g=9.81), [1, 2]),
+        (Program(dt=5e-4, p=1e10, gg=0.98, g=9.81, rho=2300.0), None),
+        (Program(dt=2e-4, p=5e8, steps=100, g=9.81), None),
+    ],
 )
 def test_a_program_of_another_make(program: Program, opened: list[int] | None, tmp_path: Path) -> None:
     """Base that yields, moving geometry, weight, opening: the scheme is named and the steps are found."""

@@ -9,6 +9,13 @@ BLOCK = re.compile(r"^```(\w+)(?: (?:file=|title=\")([^\s\"]+)\"?)?\n(.*?)^```$"
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 
 
+def write_my_solver(directory: Path) -> None:
+    """Write the solver that the documentation shows."""
+    page = (ROOT / "docs/judge-your-code.md").read_text(encoding="utf-8")
+    files = {file: text for _, file, text in BLOCK.findall(page)}
+    (directory / "my_solver.py").write_text(files["my_solver.py"])
+
+
 def page_with(table: str, page: str, begin: str, end: str) -> str:
     """Return a page with a table in its place between two marks."""
     return re.sub(

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from validation import solve
 from validation.errors import InputError
@@ -39,7 +38,7 @@ def far(scene: Scene) -> float:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("values", thinned([{"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}, {}], 2))
+@pytest.mark.parametrize("values", [{"contact.gap": 1e-5, "block.velocity": -0.05, "time.gg": 0.99}, {}])
 def test_stiff_elements_on_corners_tend_to_the_stiff_block(scene: Scene, values: dict[str, object]) -> None:
     """Both tend to the rigid block with p/E, two decades of which take two decades of what is between them."""
     moved = {"load.base_motion": str(Path(__file__).with_name("shake.csv")), "time.start": "consistent", **values}

@@ -14,6 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from conftest import SCENE
+from oracles.pages import write_my_solver
 from oracles.processes import answer_here
 
 from validation import plugin
@@ -130,9 +131,7 @@ def solve(scene):
 
 @pytest.mark.long
 def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slow(tmp_path: Path) -> None:
-    code = re.search(r"^```python title=\"my_solver.py\"\n(.*?)^```$", page(), re.M | re.S)
-    assert code
-    (tmp_path / "my_solver.py").write_text(code[1])
+    write_my_solver(tmp_path)
     (tmp_path / "busy.py").write_text(BUSY)
     shown = through_the_gates("busy:solve", tmp_path)
     table = re.findall(r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+)   ", shown, re.M)

@@ -127,11 +127,11 @@ class Law:
 
 
 FORGOTTEN = {
-    "load.gravity": ("weight", {"load.gravity": 0.0, "load.slope": 0.0}),
-    "load.traction": ("traction", {"load.traction": 0.0}),
-    "load.eccentricity": ("eccentricity of the pressure", {"load.eccentricity": 0.0}),
-    "contact.gap": ("gap", {"contact.gap": 0.0}),
-    "contact.cohesion": ("cohesion", {"contact.cohesion": 0.0}),
+    "load.gravity": ("the weight", {"load.gravity": 0.0, "load.slope": 0.0}),
+    "load.traction": ("the traction", {"load.traction": 0.0}),
+    "load.eccentricity": ("the eccentricity of the pressure", {"load.eccentricity": 0.0}),
+    "contact.gap": ("the gap", {"contact.gap": 0.0}),
+    "contact.cohesion": ("the cohesion", {"contact.cohesion": 0.0}),
     "block.poisson": ("Poisson's ratio", {"block.poisson": 0.0}),
 }
 GLUED = 89.0  # deg: no block slips on such friction
@@ -145,7 +145,7 @@ def laws(scene: Scene) -> Iterator[Law]:
     for key, (name, values) in FORGOTTEN.items():
         section, _, entry = key.partition(".")
         if data[section].get(entry):
-            yield Law(f"no-{entry}", f"the {name} is forgotten".replace("the Poisson", "Poisson"), values)
+            yield Law(f"no-{entry}", f"{name} is forgotten", values)
     if scene.contact.law == "locked":
         yield Law("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
     elif scene.contact.friction is None:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import METRICS, PAIRS
+from validation.runs.case_name import scene_of
 from validation.scenes.scene import Scene, load_scene, scene_names
 from validation.scenes.tables import GateSection
 from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
@@ -85,7 +86,7 @@ def _of_suite(scene: Scene, part: Callable[[Study], Iterable[T]], case_of: Calla
     names = {case.name for case in scene.expand()}
     found: list[T] = []
     for study in map(get_study, judged_studies()):
-        if any((of if isinstance(of, str) else of.name).partition("[")[0] == scene.name for of in study.scenes):
+        if scene.name in {scene_of(of if isinstance(of, str) else of.name) for of in study.scenes}:
             found += [item for item in part(study) if case_of(item) in names]
     return tuple(found)
 
