@@ -1,5 +1,6 @@
 """Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
 
+import gc
 import importlib
 import io
 import os
@@ -179,7 +180,11 @@ def pytest_collection(session: pytest.Session) -> None:
 
     In a fresh clone the assertions of all test modules are rewritten, which takes longer than to collect them. Workers
     that begin at both ends of the list do half of it each and read the rest from the files that the other has written.
+
+    The garbage collector rests until all is collected: what is imported stays, and to look through it takes as long as
+    to collect the tests.
     """
+    gc.disable()
     config = session.config
     worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
     if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
@@ -188,6 +193,12 @@ def pytest_collection(session: pytest.Session) -> None:
                 continue  # which says from where its modules import, and is read where they are collected
             with suppress(Exception, pytest.skip.Exception):  # told where the module is collected
                 importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
+
+
+def pytest_collection_finish() -> None:
+    """Let the garbage collector look only at what comes after the collection."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)
