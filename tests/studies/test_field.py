@@ -57,6 +57,7 @@ def test_the_table_of_one_problem(brought, tmp_path, monkeypatch) -> None:
     assert cell["dda"].cause.endswith("at this step: numerical damping")
     assert cell["opensees"].verdict == NOT_RUN
     assert cell["opensees"].reason == "not installed: pip install 'examples/peers[opensees]'"
+    assert 0 < cell["dda"].within < cell["mine"].within == cell["mine"].columns[0].until
     assert cell["broken"].verdict == NOT_RUN
     assert "no disk" in cell["broken"].reason
     about = {line.name: line.about for line in table.programs}
