@@ -180,11 +180,7 @@ def pytest_collection(session: pytest.Session) -> None:
 
     In a fresh clone the assertions of all test modules are rewritten, which takes longer than to collect them. Workers
     that begin at both ends of the list do half of it each and read the rest from the files that the other has written.
-
-    The garbage collector rests until all is collected: what is imported stays, and to look through it takes as long as
-    to collect the tests.
     """
-    gc.disable()
     config = session.config
     worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
     if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
@@ -195,10 +191,18 @@ def pytest_collection(session: pytest.Session) -> None:
                 importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
 
 
-def pytest_collection_finish() -> None:
-    """Let the garbage collector look only at what comes after the collection."""
-    gc.freeze()
-    gc.enable()
+@pytest.hookimpl(wrapper=True, specname="pytest_collection")
+def pytest_rest_while_collecting() -> Iterator[None]:
+    """Let the garbage collector rest until all is collected, and leave that alone later.
+
+    What is imported and collected stays to the end; to look through it takes as long as to collect it.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)
