@@ -85,6 +85,13 @@ def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Pat
     assert "next: name two solvers or more" in typed("run", scene_file, "--results", tmp_path / "r").stdout
 
 
+def test_a_scene_of_which_one_solver_completed_says_that_the_other_did_not(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["dda", "bar"]'))
+    shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
+    assert "only runs that complete are compared, and 1 of 2 did: --verbose shows" in shown
+    assert "two solvers or more" not in shown
+
+
 def test_gates_of_which_none_was_judged_are_no_green(scene_file: Path, tmp_path: Path) -> None:
     text = gated("[-1.0, 1.0]", '["dda-textbook"]', '["dda", "dda-textbook"]')
     scene_file.write_text(text.replace("steps = 50", "steps = 50\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -122,15 +122,23 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
         printer.print(table)
     if len(compared) > MOST:
         printer.print(f"and {len(compared) - MOST} more pairs; dda-validate report shows all", markup=False)
-    for line in _next(compared, writable):
+    for line in _next(compared, writable) if compared else [_alone(outcomes(results, study))]:
         typer.echo(line)
 
 
+def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
+    """Return what to do with a scene whose solvers cannot be compared."""
+    if len({solver for _, solver in ended}) < 2:
+        return 'next: name two solvers or more in the scene, such as solvers = ["dda", "bar"] under [run]'
+    completed = sum(outcome is Outcome.COMPLETED for outcome in ended.values())
+    return (
+        f"next: only runs that complete are compared, and {completed} of {len(ended)} did: --verbose shows how each "
+        "one ended"
+    )
+
+
 def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
-    """Yield what to do with a scene that nothing has judged: the lines of a gate, or why there can be none yet."""
-    if not compared:
-        yield 'next: name two solvers or more in the scene, such as solvers = ["dda", "bar"] under [run]'
-        return
+    """Yield the lines of a gate for a scene that nothing has judged."""
     first, metric = compared[0], DIFFERENCES[0]
     value = first["metrics"].get(metric)
     place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
