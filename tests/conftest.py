@@ -263,10 +263,15 @@ def beside(finished_cases: Path, directory: Path) -> Results:
 
 @pytest.fixture
 def interruptible() -> Iterator[None]:
-    """Let SIGINT reach the processes that a test starts: they inherit that a job in the background ignores it."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Let signals reach the processes that a test starts.
+
+    They inherit that a job in the background ignores SIGINT, and SIGHUP under nohup.
+    """
+    interrupt = signal.signal(signal.SIGINT, signal.default_int_handler)
+    hangup = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
-    signal.signal(signal.SIGINT, before)
+    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGHUP, hangup)
 
 
 @pytest.fixture
