@@ -144,7 +144,6 @@ def _of_pairs() -> Iterator[Metric]:
 SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability(), *_of_switches())}
 PAIRS = {metric.id: metric for metric in _of_pairs()}
 CATALOGUE = SOLO | PAIRS
-METRICS = tuple(CATALOGUE)  # the ids
 
 
 def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
