@@ -54,6 +54,11 @@ def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_s
     assert stiffer["step_now"] == now["step_now"]
 
 
+def test_a_scene_that_dda_does_not_take_is_refused_by_the_solvers_name() -> None:
+    more = ("--set", "block.subdivide=[2, 2]", "--set", "damping.mass=1.0")
+    assert "solver dda does not apply: it does not handle" in refused("contact", "unlocked-constant", *SHORT, *more)
+
+
 def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:
     path = tmp_path / "locked.toml"
     path.write_text(SCENE.replace("steps = 50", "steps = 2"))

@@ -82,7 +82,7 @@ def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_
 
 def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE + RUN.format('["dda"]'))
-    assert "next: name two solvers or more" in typed("run", scene_file, "--results", tmp_path / "r").stdout
+    assert "name two solvers or more that apply" in typed("run", scene_file, "--results", tmp_path / "r").stdout
 
 
 def test_gates_of_which_none_was_judged_are_no_green(scene_file: Path, tmp_path: Path) -> None:

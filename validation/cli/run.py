@@ -204,7 +204,7 @@ def _print_answer(ran: Ran, verbose: bool) -> None:
     from validation.cli.printing.output import width
     from validation.scenes.scene import scene_names
 
-    if verbose or (ran.own and 0 < len(ran.verdicts) <= FEW):
+    if ran.verdicts and (verbose or (ran.own and len(ran.verdicts) <= FEW)):
         tables.print_verdicts(ran.verdicts, ran.results, ran.names)
     if verbose:
         tables.print_ends(ran.results, ran.names)

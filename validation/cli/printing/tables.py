@@ -129,7 +129,10 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
 def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
     """Yield what to do with a scene that nothing has judged: the lines of a gate, or why there can be none yet."""
     if not compared:
-        yield 'next: name two solvers or more in the scene, such as solvers = ["dda", "bar"] under [run]'
+        yield (
+            "next: nothing could be compared; name two solvers or more that apply to the scene, such as "
+            'solvers = ["dda", "bar"] under [run]'
+        )
         return
     first, metric = compared[0], DIFFERENCES[0]
     value = first["metrics"].get(metric)

@@ -82,8 +82,7 @@ def _check(scene: Scene) -> None:
         raise InputError(
             f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {got}"
         )
-    if scene.sweep:
-        raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
+    features.refuse_sweep(scene)
 
 
 def _sign(column: Array, load: float) -> float:

@@ -97,7 +97,8 @@ def conclusion(group: Group) -> str:
 
 def _agreement(group: Group) -> str:
     pairs = [("dda", reference) for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT))]
-    for solver, reference in (*pairs, *parts_of(group.cases[0]).values()):
+    others = [(pair["solver"], pair["reference"]) for pair in group.comparisons]  # of users' own solvers
+    for solver, reference in dict.fromkeys((*pairs, *parts_of(group.cases[0]).values(), *others)):
         said = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
             if values := _pair_values(group, solver, reference, metric):
