@@ -34,7 +34,7 @@ def test_the_page_states_what_json_holds() -> None:
         "ALARM step too large for contact",
         "bar-events",
         f"with these  a contact returns {found['needed']['restitution']['mean']:.3g} of its speed",
-        "the exact block then goes",
+        "the exact block then penetrates",
     ):
         assert words in done.stdout, words
     assert block["switches.first_closing"] == pytest.approx(0.0032525750597312, rel=1e-12)

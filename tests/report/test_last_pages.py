@@ -56,7 +56,7 @@ def test_of_very_many_gates_those_of_one_kind_share_a_line() -> None:
     ((_, _, lines),) = lines_of([*many, *others])
     assert lines == (
         (f"a, {MOST_LINES} cases", "dda–bar m", "0.1 … 0.1699", "0 … 1"),
-        ("b, 2 cases", "dda–bar m", "0.1", "a band of its own each"),
+        ("b, 2 cases", "dda–bar m", "0.1", "each with its own band"),
         ("c", "dda–bar m", "0.3", "0 … 1"),
     )
 

@@ -104,7 +104,7 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     check_scene(scene)
     if scene.column is not None and scene.column.impedance is not None and not np.all(f > 0):
         raise InputError(
-            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which holds nothing, got 0"
+            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which has no static stiffness, got 0"
         )
     chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):

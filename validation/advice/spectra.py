@@ -42,7 +42,7 @@ class ModeDamping:
     algorithmic: float | None  # xi of the same scheme at gg = 1 [1]
     kinetic: float | None  # what the discount adds [1]
     period_elongation: float | None  # w / w' - 1 [1]
-    least_root: float  # real part of the eigenvalue next to -1 [1]
+    least_root: float  # real part of the eigenvalue nearest to -1 [1]
     viscous: float | None = 0.0  # what damping tables add to xi [1]
 
     @property

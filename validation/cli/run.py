@@ -100,7 +100,7 @@ def run(
 ) -> None:
     """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
-    Finished cases are kept: the same command after an interruption goes on from there.
+    Finished cases are kept: the same command after an interruption continues from there.
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
@@ -227,7 +227,7 @@ def _checked(kept: Results, required: list[str], summary: Path | None, baseline:
         if not is_solver(name) and name not in adapted:
             raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
     if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
-        raise InputError(f"--summary: must be a file in a directory that is there, got {str(summary)!r}")
+        raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
     kept.check()
     return None if baseline is None else read_verdicts(baseline)
 

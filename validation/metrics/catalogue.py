@@ -67,7 +67,7 @@ def _of_modes() -> Iterator[Metric]:
         "damping": ("1", "damping ratio of the step's operator"),
         "numerical_frequency": ("rad/s", "undamped frequency of the step's operator"),
         "spectral_radius": ("1", "largest modulus of the operator's eigenvalues"),
-        "least_root": ("1", "real part of the eigenvalue next to -1"),
+        "least_root": ("1", "real part of the eigenvalue nearest to -1"),
     }
     for part in ("frequency", "damping", "numerical_frequency", "spectral_radius"):
         unit, says = named[part]

@@ -46,7 +46,7 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
     ]
     if any("overdamped below" in budget["limits"] for budget in budgets):
         said.append("Grey: overdamped.")
-    said.append("a/c: the wave's way from top to base; a larger dt does not see it.")
+    said.append("a/c: travel time of the wave from top to base; a larger dt does not resolve it.")
     floors = sorted({budget["floor"] for budget in budgets if budget["floor"]})
     if floors:
         span = f"{floors[0]:.3f}" + (f" to {floors[-1]:.3f}" if floors[-1] != floors[0] else "")

@@ -154,7 +154,8 @@ def _damped_agreement(group: Group) -> str:
     if len(pairs) < 3 or not falls:
         return ""
     least, most = (f"{percent(error)} at ξ₁ = {100 * xi:.2f}\u00a0%" for xi, error in (pairs[0], pairs[-1]))
-    return f"the difference falls as the damping grows, from {least} to {most}: both are damped, which is no merit"
+    trend = f"the difference falls as the damping grows, from {least} to {most}"
+    return f"{trend}: both are damped, which is no sign of accuracy"
 
 
 def outcomes(group: Group) -> list[Block]:
@@ -237,7 +238,7 @@ def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> li
     """Say how the figure is read, as far as it is not written on it."""
     said = []
     if span := motion.start_of(panels, columns[0]):
-        said.append(f"More swings than can be drawn are the band that they fill; below, the first {plain(span, 2)} s.")
+        said.append(f"Oscillations too dense to draw are the band that they fill; below, the first {plain(span, 2)} s.")
     if any(panel.static for panel in panels):
         said.append("Hairline: static value.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
