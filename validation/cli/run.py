@@ -112,7 +112,7 @@ def run(
     _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
-    before = _checked(kept, required, summary, baseline)
+    before = _checked_baseline(kept, required, summary, baseline)
     runs, seconds = _judged(studies, kept, Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler), not quiet)
     ran = _answered(runs, seconds, kept, required, summary, before)
     with heard():
@@ -215,7 +215,9 @@ def _print_answer(ran: Ran, verbose: bool) -> None:
         tables.print_differences(ran.results, name, name not in scene_names())
 
 
-def _checked(kept: Results, required: list[str], summary: Path | None, baseline: Path | None) -> list[Kept] | None:
+def _checked_baseline(
+    kept: Results, required: list[str], summary: Path | None, baseline: Path | None
+) -> list[Kept] | None:
     """Check before anything runs what would be refused at the end; return the baseline's verdicts."""
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
