@@ -271,6 +271,13 @@ def test_the_data_of_a_scene_tell_its_contact_friction_slope_and_geometry() -> N
     assert "a₀ = 0.5 1/s" in line and "φ" not in line
 
 
+def test_a_key_without_words_of_its_own_is_told_by_its_name() -> None:
+    scene = load_scene("unlocked").expand()[0]
+    assert "cut" not in chapters_text.parameters(scene, set())
+    told = chapters_text.parameters(scene.with_values({"contact.cut": 0.5, "contact.solve_limit": 4}), {"contact.cut"})
+    assert told.endswith(", solve limit = 4.")
+
+
 def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:
     base = BASE.with_values({"block.young": 2e9})
     scenes = [base.with_values({"contact.stiffness": p, "load.pressure": q}, label=True)

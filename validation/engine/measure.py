@@ -23,7 +23,7 @@ from validation.runs.text import error_text, printable
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
-from validation.solvers.contract import NotReported, Prepared, Solver
+from validation.solvers.contract import EXACT_IN_TIME, NotReported, Prepared, Solver
 
 Part = TypeVar("Part")
 
@@ -200,7 +200,7 @@ def _measures(case: Case, run: Run) -> set[str]:
         asked -= {"stability"}
     if "history" in asked and features.UNILATERAL in features.of(case.scene):
         asked |= {"switches"}
-        if case.make_solver().role not in horizon.EXACT:
+        if case.make_solver().role not in EXACT_IN_TIME:
             asked |= {"horizon"}
     return asked if "history" in asked else asked - {"modes"}
 

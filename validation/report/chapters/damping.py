@@ -14,11 +14,10 @@ from validation.report.figures.paper import BudgetPanel, budget_figure
 from validation.runs.records import BudgetRecord
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
+from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import is_solver, role
 
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
-EXACT = (Role.LIMIT, Role.TRUTH)  # in time
 
 
 def budget_blocks(group: Group, directory: Path) -> list[Block]:
@@ -111,7 +110,7 @@ def damping_table(group: Group) -> Table:
 
 def _finished(case: Case) -> list[str]:
     finished = [solver for solver, row in case.rows.items() if row.metrics and not solver.endswith(":full")]
-    return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT] or finished
+    return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT_IN_TIME] or finished
 
 
 def _measured(measure: Measure, value: Value, scene: Scene) -> str:
