@@ -201,7 +201,7 @@ def edited(path: Path, change: object) -> None:
 
 BASELINES = {
     "missing": (None, "there is no such file"),
-    "twice": (lambda found: found * 2, "stands twice in the study small"),
+    "twice": (lambda found: found * 2, "appears twice in the study small"),
     "another word": (lambda found: [found[0] | {"verdict": "pass"}], "0.verdict: "),
     "no band": (lambda found: [{k: v for k, v in found[0].items() if k != "band"}], "0.band: field required"),
     "an empty band": (lambda found: [found[0] | {"band": [1.0, 0.0]}], "low <= high"),
