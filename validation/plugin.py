@@ -24,14 +24,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--dda-solver",
         metavar="MODULE:ATTRIBUTE",
-        help="put this solver, solve(scene) -> history, in the place of `dda` and run every gate that applies to it",
+        help="put this solver, solve(scene) -> history, in place of `dda` and run every gate that applies to it",
     )
     group.addoption(
         "--dda-timeout",
         metavar="SECONDS",
         type=float,
         default=60.0,
-        help="time limit of the solver for one case, beside 5 ms for each of its steps (default: 60)",
+        help="time limit of the solver for one case in seconds, plus 5 ms for each of its steps (default: 60)",
     )
 
 

@@ -14,7 +14,7 @@ def load() -> None:
         NAME, folder / "__init__.py", submodule_search_locations=[str(folder)]
     )
     if spec is None or spec.loader is None:
-        raise ImportError(f"{folder}: is no package")
+        raise ImportError(f"{folder}: is not a package")
     package = importlib.util.module_from_spec(spec)
     sys.modules[NAME] = package
     spec.loader.exec_module(package)

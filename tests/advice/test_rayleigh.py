@@ -58,7 +58,7 @@ def test_delta_beyond_the_limit_of_alpha_raises_alpha() -> None:
         (Rayleigh(1.0, -0.01), CONSTANT, "no scheme hides a negative stiffness part"),
         (Rayleigh(1.0, 0.01), Stepping(0.01, 0.25, 0.5), "hides no a1"),
         (Rayleigh(1.0, 0.0), CONSTANT, "hides no a1"),
-        (Rayleigh(500.0, 0.01), CONSTANT, "takes more than all velocity"),
+        (Rayleigh(500.0, 0.01), CONSTANT, "takes more than the whole velocity"),
     ],
 )
 def test_what_no_scheme_hides_is_refused(damping: Rayleigh, scheme: Stepping, rule: str) -> None:

@@ -113,6 +113,18 @@ def test_words_that_nothing_answers_to_are_refused_before_anything_is_written(
     assert list(scene_file.parent.iterdir()) == [scene_file]
 
 
+def test_a_file_in_place_of_the_results_directory_is_kept(scene_file: Path) -> None:
+    text = scene_file.read_text()
+    said = refused("run", scene_file, "--results", scene_file)
+    assert "--results: must be a directory, got the file" in said and "delete" not in said
+    assert scene_file.read_text() == text
+
+
+def test_verdicts_that_are_no_text_are_told_as_such(tmp_path: Path) -> None:
+    (tmp_path / "verdicts.json").write_bytes(b"\xff\xfe")
+    assert "verdicts.json: must be UTF-8 text" in refused("diff", tmp_path, tmp_path)
+
+
 def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene_file: Path) -> None:
     explicit = ["solve", scene_file, "--set", "time.alpha=0", "--set", "time.delta=0.5"]
     assert "time.step: must not exceed 0.0015" in refused(*explicit)

@@ -34,7 +34,7 @@ def test_the_page_states_what_json_holds() -> None:
         "ALARM step too large for contact",
         "bar-events",
         f"with these  a contact returns {found['needed']['restitution']['mean']:.3g} of its speed",
-        "the exact block then goes",
+        "the exact block then penetrates",
     ):
         assert words in done.stdout, words
     assert block["switches.first_closing"] == pytest.approx(0.0032525750597312, rel=1e-12)
@@ -52,6 +52,11 @@ def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_s
     assert finer["step"] == pytest.approx(now["step"] / 5) and finer["stiffness"] == now["stiffness"]
     assert stiffer["stiffness"] == pytest.approx(100 * now["stiffness"])
     assert stiffer["step_now"] == now["step_now"]
+
+
+def test_a_scene_that_dda_does_not_take_is_refused_by_the_solvers_name() -> None:
+    more = ("--set", "block.subdivide=[2, 2]", "--set", "damping.mass=1.0")
+    assert "solver dda does not apply: it does not handle" in refused("contact", "unlocked-constant", *SHORT, *more)
 
 
 def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:

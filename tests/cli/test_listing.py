@@ -7,7 +7,7 @@ import pytest
 from conftest import refused, typed
 
 from validation.cli.printing.listing import in_columns
-from validation.metrics.catalogue import CATALOGUE, KIND, METRICS, Metric
+from validation.metrics.catalogue import CATALOGUE, KIND, Metric
 from validation.scenes.scene import load_scene, scene_names
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
@@ -27,7 +27,7 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
     assert heads.split() == ["metric", "unit", "needs", "meaning"]
     starts = [heads.index(word) for word in heads.split()]
     shown = [line for line in lines if line]
-    assert len(shown) == len(METRICS)
+    assert len(shown) == len(CATALOGUE)
     found = {}
     for line in shown:
         cells = [line[a:b].strip() for a, b in zip(starts, [*starts[1:], None], strict=True)]
@@ -81,7 +81,7 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch: pyte
 def test_the_plain_list_names_all_four_with_their_titles() -> None:
     shown = typed("list").stdout
     words = shown.replace(",", "").split()
-    for name in (*STUDIES, *scene_names(), *solver_names(), *METRICS):
+    for name in (*STUDIES, *scene_names(), *solver_names(), *CATALOGUE):
         assert name in words
     lines = [line.split(maxsplit=1) for line in shown.splitlines()]
     for name, title in (("core", get_study("core").title), ("figures-3-4", load_scene("figures-3-4").title)):

@@ -82,7 +82,7 @@ def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_
 
 def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE + RUN.format('["dda"]'))
-    assert "next: name two solvers or more" in typed("run", scene_file, "--results", tmp_path / "r").stdout
+    assert "name two solvers or more that apply" in typed("run", scene_file, "--results", tmp_path / "r").stdout
 
 
 def test_a_scene_of_which_one_solver_completed_says_that_the_other_did_not(scene_file: Path, tmp_path: Path) -> None:
@@ -208,7 +208,7 @@ def edited(path: Path, change: object) -> None:
 
 BASELINES = {
     "missing": (None, "there is no such file"),
-    "twice": (lambda found: found * 2, "stands twice in the study small"),
+    "twice": (lambda found: found * 2, "appears twice in the study small"),
     "another word": (lambda found: [found[0] | {"verdict": "pass"}], "0.verdict: "),
     "no band": (lambda found: [{k: v for k, v in found[0].items() if k != "band"}], "0.band: field required"),
     "an empty band": (lambda found: [found[0] | {"band": [1.0, 0.0]}], "low <= high"),

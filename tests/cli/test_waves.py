@@ -66,7 +66,7 @@ def test_rayleigh_translates_a_step_and_back(tmp_path: Path) -> None:
     tables = said("rayleigh", *CASE, "--set", "damping.mass=3.0")
     assert "the scene's own damping tables, a0 = 3 1/s and a1 = 0 s, come on top" in tables
     adaptive = said("rayleigh", *CASE, "--set", "damping.kinetic=adaptive")
-    assert "self-adaptive damping, which no a0 and a1 stand for, comes on top" in adaptive
+    assert "self-adaptive damping, which no a0 and a1 can express, comes on top" in adaptive
     assert "gg = 0.98 hides" in said("rayleigh", *CASE, "--gg", "0.98")
     path = tmp_path / "xi.svg"
     back = said("rayleigh", "--dt", "0.001", "--ratio", "5=0.05", "--ratio", "50=0.05", "--figure", str(path))

@@ -216,7 +216,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("pressure-factor", {}, "the reported pressure is 0.5 times the scene's"),
         ("load-row", {"strain_load": -1.0}, "the load has the wrong sign in the row of ey"),
         ("coupling", {"coupling": 0.0}, "the springs' coupling of v and ey is missing"),
-        ("stress-not-kept", {"kept": "stress"}, "only the stress is carried on"),
+        ("stress-not-kept", {"kept": "stress"}, "only the stress is carried over"),
     ],
 )  # fmt: skip
 def test_each_fault_is_told_with_its_number(cause: str, fields: dict[str, Any], words: str) -> None:
@@ -268,7 +268,7 @@ def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -
     alike = [near | {"further_scene": "another time step"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
     text = wording.not_explained(about, None, alike, 0.034, stages)
     assert "gg 0.98 and density-factor 1.01 or scheme give the same rows" in text
-    assert text.endswith("another time step tells.")
+    assert text.endswith("to tell them apart, try another time step.")
 
 
 # ---- where and how a history departs ------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ from validation.engine.measure import completed, execute
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.gates.gate import Gate, Status, judge, rounded, said
+from validation.gates.gate import Gate, Status, judge, rounded, value_text
 from validation.runs.files import read_csv, write_csv
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -252,11 +252,11 @@ def test_rounding_for_verdicts() -> None:
 def test_what_is_rounding_reads_alike_on_every_processor(rounding: float) -> None:
     gate = Gate("scene", ("dda",), "mode1.damping", -1e-9, 1e-9, "none by the formula")
     assert judge(gate, rounding).record("s")["value"] == 0.0
-    assert said(rounding) == said(judge(gate, rounding).record("s")["value"]) == "below 1e-12"
+    assert value_text(rounding) == value_text(judge(gate, rounding).record("s")["value"]) == "below 1e-12"
 
 
 def test_what_is_no_rounding_is_said_in_digits() -> None:
-    assert [said(value) for value in (0, 2e-12, -0.0363249, "undefined", None)] == [
+    assert [value_text(value) for value in (0, 2e-12, -0.0363249, "undefined", None)] == [
         "0",
         "2e-12",
         "-0.03632",

@@ -215,7 +215,7 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path,
     (tmp_path / "r/rows.jsonl").write_text("\n")
     for words in (["rows", "test"], ["report", "--out", tmp_path / "r.pdf"], ["figures", "test"]):
         said = refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
-        assert "the row of small dda is lost; run test again" in said
+        assert "the row of small dda is missing; run test again" in said
 
 
 def test_verdicts_of_other_studies_stay(scene_file: Path, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The plain program with friction: what it shares with a program of the trade, and with the closed forms."""
+"""The plain program with friction: what it shares with an established program, and with the closed forms."""
 
 import math
 from pathlib import Path

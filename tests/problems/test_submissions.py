@@ -115,7 +115,7 @@ def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
         (lambda r: [[*r[0][:2], "speed"], *r[1:]], "header: speed: must be among time_s, displacement_m,"),
         (lambda r: [row[:2] for row in r], "contact_pressure_Pa: is required, got time_s, displacement_m; not"),
         (lambda r: [row[1:] for row in r], "header: time_s: is required, got displacement_m, contact_pressure_Pa"),
-        (lambda r: [[*row, row[1]] for row in r], "displacement_m: must stand once, got it 2 times"),
+        (lambda r: [[*row, row[1]] for row in r], "displacement_m: must appear once, got it 2 times"),
         (lambda r: [[";".join(row)] for row in r], "header: must be separated by commas, got semicolons: 'time_s;"),
         (lambda r: [["\t".join(row)] for row in r], "header: must be separated by commas, got tabs: 'time_s\\t"),
         (lambda r: [["# of my code"], *r], "header: # of my code: must be among time_s,"),
@@ -172,7 +172,7 @@ def test_a_key_that_stands_twice_is_refused(tmp_path: Path, one: Problem, motion
     place = submitted(tmp_path, table_of(motion, one.scene.run.columns))
     stated = json.dumps(STATED)
     (place / FILE).write_text(stated.replace('{"format"', '{"pack": "1.0", "format"'))
-    assert f"{FILE}: must be JSON in UTF-8: 'pack' must stand once, got it 2 times" in refused(place)
+    assert f"{FILE}: must be JSON in UTF-8: 'pack' must appear once, got it 2 times" in refused(place)
     (place / FILE).write_text(stated.replace("}", ', "not_reported": "time_s"}'))
     assert f"{FILE}: not_reported: must be a list, got 'time_s'" in refused(place)
 

@@ -176,7 +176,7 @@ def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() ->
         extreme("fem", 1e14, 1e-3, 1e-2),  # beyond what fem promises
     ]
     assert chapters_stability.conclusion(found) == (
-        "Correct digits kept at least, in both quantities: dda 11, fem 10 for p/E from 10⁻³ to 10¹²; 2 runs of dda "
+        "Fewest correct digits, in both quantities: dda 11, fem 10 for p/E from 10⁻³ to 10¹²; 2 runs of dda "
         "left their bounds, all as predicted."
     )
     odd = [*found, extreme("dda", 1.0, 1.0, None, outcome=Outcome.MISPREDICTED)]

@@ -104,7 +104,7 @@ def test_the_force_is_judged_at_rest_and_on_the_way() -> None:
     head, said = first.force(FOUND)  # type: ignore[misc]
     assert head == "Is DDA's force right?"
     assert said == (
-        "At rest yes: every run tends to 5 MPa; on the way not: against the bar the contact pressure is off by "
+        "At rest yes: every run tends to 5 MPa; during the motion no: against the bar the contact pressure is off by "
         "0.7\u00a0% at 10\u00a0ms, 4\u00a0% at 2\u00a0ms, 74\u00a0% at 0.1\u00a0ms (relative L2 over 1.0 s, p = 1E)."
     )
     wrong = made_group(case(pressure__static=4.9e6), comparisons=FOUND["model-form"].comparisons)
@@ -127,7 +127,7 @@ def test_stiff_springs_are_told_with_their_steps_and_their_ring() -> None:
 
 def test_a_discount_is_told_at_three_steps() -> None:
     head, said = first.discount(PAPER)
-    assert head == "What does gg = 0.98 do?" and "takes 2\u00a0% of the velocity each step" in said
+    assert head == "What does gg = 0.98 do?" and "removes 2\u00a0% of the velocity in each step" in said
     assert "1.52\u00a0% at 2\u00a0ms, 2.96\u00a0% at 1\u00a0ms, 29.3\u00a0% at 0.1\u00a0ms of critical" in said
 
 
@@ -203,7 +203,7 @@ def test_the_table_of_springs_joins_closed_forms_and_steps_as_run() -> None:
     assert rows["10E"][5:] == ("22", "25", "–", "–")
     assert rows["100E"] == ("−5.050", "0.05", "22.5\u00a0%", "0.9733", "0.462", "21", "24", "41", "157")
     said = decisions.spring_rule(FOUND, base)
-    assert "Take p = 10E: the springs then give way by 0.5\u00a0mm" in said and "At p = 100E" in said
+    assert "Take p = 10E: the springs then deflect by 0.5\u00a0mm" in said and "At p = 100E" in said
     assert "keeps 97.3\u00a0%" in said and "157 steps until the pressure is within 0.01\u00a0%, 41 for" in said
 
 

@@ -56,7 +56,7 @@ def test_of_very_many_gates_those_of_one_kind_share_a_line() -> None:
     ((_, _, lines),) = lines_of([*many, *others])
     assert lines == (
         (f"a, {MOST_LINES} cases", "dda–bar m", "0.1 … 0.1699", "0 … 1"),
-        ("b, 2 cases", "dda–bar m", "0.1", "a band of its own each"),
+        ("b, 2 cases", "dda–bar m", "0.1", "each with its own band"),
         ("c", "dda–bar m", "0.3", "0 … 1"),
     )
 
@@ -194,3 +194,10 @@ def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
     pair = between(case.name, "block-events", "bar-events", **{"displacement.l2": 0.02, "pressure.l2": 0.5})
     group = replace(made_group(case), comparisons=(pair,))
     assert conclusion(group).startswith("Against bar-events, block-events differs by 2\u00a0% in displacement and 50")
+
+
+def test_the_pair_of_a_users_own_solver_is_told() -> None:
+    case = made_case(load_scene("figures-3-4").expand()[0], {})
+    pair = between(case.name, "mine", "bar", **{"displacement.l2": 0.02})
+    group = replace(made_group(case), comparisons=(pair,))
+    assert conclusion(group).startswith("Against bar, mine differs by 2\u00a0% in displacement (relative L2)")

@@ -26,11 +26,11 @@ ANSWERS = {  # question -> what is read on which page
     "which dt for 5 % damping": {1: "for 5 % take dt = 0.584 ms", 2: "for 5 % at p = 1E, dt = 0.584 ms"},
     "what happens at p = 100E": {
         1: "the contact rings: it flips sign each step",
-        3: "At p = 100E they give way by 0.05 mm",
+        3: "At p = 100E they deflect by 0.05 mm",
     },
-    "is DDA's force right": {1: "At rest yes: every run tends to 5 MPa; on the way not"},
-    "what does gg = 0.98 do": {1: "It takes 2 % of the velocity each step", 4: "gg = 0.98 per step is 1.52 % at 2 ms"},
-    "what must I not believe": {1: "What must I not believe? The agreement at a long step: 0.813 % at 10 ms"},
+    "is DDA's force right": {1: "At rest yes: every run tends to 5 MPa; during the motion no"},
+    "what does gg = 0.98 do": {1: "It removes 2 % of the velocity in each", 4: "gg = 0.98 per step is 1.52 % at 2 ms"},
+    "what must I not believe": {1: "What should I not trust? The agreement at a long step: 0.813 % at 10 ms"},
 }
 
 

@@ -395,7 +395,7 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         figures("core", small, tmp_path)
     with pytest.raises(InputError, match="no study's results here"):
         build(Results(tmp_path / "nowhere"), tmp_path / "r.pdf")
-    with pytest.raises(InputError, match="is no directory"):
+    with pytest.raises(InputError, match="is not a directory"):
         build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
         Table((Column("a"), Column("b")), (("1", "2", "3"),))

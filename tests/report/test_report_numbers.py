@@ -107,7 +107,7 @@ def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() ->
         "Against bar, dda differs by 0.81\u00a0% to 8.97\u00a0% in displacement and 0.67\u00a0% to 10.4\u00a0% in "
         "contact pressure (relative L2); no gate judges this scene; the locked contact hides tension, down to "
         "−0.0100 MPa in dda and −2.00 MPa in bar; the difference falls as the damping grows, from 8.97\u00a0% at "
-        "ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no merit."
+        "ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no sign of accuracy."
     )
 
 
@@ -219,7 +219,7 @@ def test_the_headline_gives_displacement_pressure_code_and_mesh_each_its_own_num
     assert chapters_ledger.headline([ledger_group()]) == (
         "The model form is 3.1\u00a0% in displacement and 3.2\u00a0% in contact pressure (relative L2); of the "
         "displacement's difference code and rounding are at most 1.1×10⁻¹³ and the finite-element mesh is at most "
-        "2.1×10⁻⁶, so that neither explains it: it is one strain in the block in the place of a wave."
+        "2.1×10⁻⁶, so that neither explains it: it is one strain in the block in place of a wave."
     )
 
 
@@ -269,6 +269,13 @@ def test_the_data_of_a_scene_tell_its_contact_friction_slope_and_geometry() -> N
     line = chapters_text.parameters(other.with_values({"damping.mass": 0.5}), {"contact.friction"})
     assert all(part in line for part in ("cohesion 2000 Pa", "dead band −0.001 to 0 m", "base moved by slope-base.csv"))
     assert "a₀ = 0.5 1/s" in line and "φ" not in line
+
+
+def test_a_key_without_words_of_its_own_is_told_by_its_name() -> None:
+    scene = load_scene("unlocked").expand()[0]
+    assert "cut" not in chapters_text.parameters(scene, set())
+    told = chapters_text.parameters(scene.with_values({"contact.cut": 0.5, "contact.solve_limit": 4}), {"contact.cut"})
+    assert told.endswith(", solve limit = 4.")
 
 
 def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:

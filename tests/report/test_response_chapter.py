@@ -24,7 +24,7 @@ def test_the_page_says_what_the_step_takes(tmp_path: Path) -> None:
     blocks = told(results, tmp_path)
     assert [type(block) for block in blocks] == [Heading, Paragraph, Paragraph, FigureBlock, Table, Paragraph]
     texts = [block.text for block in blocks if isinstance(block, Paragraph)]
-    assert "with 31.4 mm instead of 100.6 mm: at dt = 2 ms the step has taken 68.7\u00a0% of the resonance" in texts[0]
+    assert "31.4 mm instead of 100.6 mm: at dt = 2 ms the step has removed 68.7\u00a0% of the resonance" in texts[0]
     assert texts[1].endswith(f"All {len(STUDY.gates())} gates pass.")
     assert "7.85\u00a0% at 5 Hz, 15.6\u00a0% at 10 Hz, 30.9\u00a0% at 20 Hz" in texts[2]
     (table,) = (block for block in blocks if isinstance(block, Table))

@@ -322,7 +322,7 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
         left = 100 * kept_way(solution.value, solution.step, 1.0)
-        braked = f"in flight or sliding it leaves {left:.3g} % of the way of a second"
+        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered in a second"
         return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {braked}"
     return ""
 
@@ -337,7 +337,7 @@ def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> s
     if greatest - least < FLAT:
         return f"{wanted}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
     if least < target < greatest:
-        return f"{wanted}: it lies in a gap between values that can be had."
+        return f"{wanted}: it lies in a gap between attainable values."
     if target > greatest:
         return f"{wanted}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
     return f"{wanted}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

@@ -99,7 +99,7 @@ def _large_step(seen: Seen) -> Iterator[Alarm]:
 def _gained(seen: Seen) -> Iterator[Alarm]:
     gain = _number(seen.row, "energy.switching_gain")
     if gain is not None and gain > NOTABLE:
-        said = f"opening and closing have put in {100 * gain:.3g} % of the energy that start and loads give"
+        said = f"opening and closing have added {100 * gain:.3g} % to the energy that start and loads give"
         yield seen.alarm(GAINED, said, gain=gain)
 
 
@@ -107,8 +107,8 @@ def _may_gain(seen: Seen) -> Iterator[Alarm]:
     t = seen.scene.time
     if seen.returns and t.delta < 1 and seen.omega > 1 and seen.scene.contact.rule == "newmark":
         said = (
-            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1, or a rule "
-            "of contact that cannot gain, keeps opening and closing from putting energy in"
+            f"delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: only delta = 1, or a contact "
+            "rule that cannot gain energy, keeps opening and closing from adding some"
         )
         yield seen.alarm(MAY_GAIN, said, omega=seen.omega, delta=t.delta)
 
@@ -118,7 +118,7 @@ def _hidden(seen: Seen) -> Iterator[Alarm]:
     if limit is not None and seen.scene.time.step > limit:
         said = (
             f"dt = {seen.scene.time.step:g} s is beyond {limit:.4g} s, h / (c sqrt(6 alpha)): the block of one strain "
-            "leaves its springs at t = 0, and no step sees it"
+            "leaves its springs at t = 0, and no step shows it"
         )
         yield seen.alarm(HIDDEN, said, step=seen.scene.time.step, limit=limit)
 
@@ -138,7 +138,7 @@ def _drag(seen: Seen) -> Iterator[Alarm]:
     t, share = seen.scene.time, _number(seen.row, "contact.open_share") or 0.0
     if t.discount < 1 and share > 0:
         said = (
-            f"gg = {t.discount:g} brakes the block in the air as well, {100 * share:.3g} % of the time: speeds fall "
+            f"gg = {t.discount:g} slows the block in flight as well, {100 * share:.3g} % of the time: speeds fall "
             f"with the time constant {t.step / (1 - t.discount):.3g} s"
         )
         yield seen.alarm(DRAG, said, gg=t.discount, share=share)

@@ -32,7 +32,7 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
     ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
     ("energy, greatest above the start", "energy.rise", 100.0, " %"),
 )
-SLIPS = (("slip", "contact.slip", 1e3, " mm"), ("slip a second, at the end", "contact.slip_rate", 1e3, " mm/s"))
+SLIPS = (("slip", "contact.slip", 1e3, " mm"), ("slip per second, at the end", "contact.slip_rate", 1e3, " mm/s"))
 LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
 ALARMS = (contact_alarms, friction.friction_alarms)
 
@@ -171,7 +171,7 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
         lines.append(
             (f"energy lost by {words}", *(_value(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()))
         )
-    lines.append(("solves a step, mean and most", *(_solves(run) for run in runs.values())))
+    lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
     lines.append(("histories agree up to", *(_value(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
     return lines
 
@@ -219,8 +219,8 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
     if scene.time.gg_rate is None and scene.time.discount < 1:
         left = 100 * friction.kept_way(scene.time.discount, scene.time.step, 1.0)
         yield (
-            f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more of a landing it takes; "
-            f"in flight or sliding it leaves {left:.3g} % of the way of a second"
+            f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
+            f"in flight or sliding it leaves {left:.3g} % of the distance covered in a second"
         )
 
 
@@ -228,7 +228,7 @@ def _depth(need: Mapping[str, Any], asked: float) -> str:
     if need["depth"] is None:
         return ", for the load at rest and one landing"
     reached = "" if need["depth"] <= asked else ", and no stiffer ones were tried"
-    return f": the exact block then goes {need['depth']:.3g} m deep{reached}"
+    return f": the exact block then penetrates {need['depth']:.3g} m{reached}"
 
 
 def _aligned(lines: list[Line]) -> Iterator[str]:

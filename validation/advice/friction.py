@@ -113,7 +113,7 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
     yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg:"
     if found.stands:
         yield (
-            f"  stable      springs that ring undamped let it creep by the order of g / w_n = {1e3 * found.creep:.3g} "
+            f"  stable      undamped springs ring and let it creep by the order of g / w_n = {1e3 * found.creep:.3g} "
             f"mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
         )
     else:
@@ -123,7 +123,7 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
         )
         if t.discount < 1:
             yield (
-                f"  gg          {t.discount:g} a step of {t.step:g} s {found.drag}: it cuts "
+                f"  gg          {t.discount:g} per step of {t.step:g} s {found.drag}: it cuts "
                 f"{found.run_out:.3g} m to {found.braked:.3g} m, in flight as well; no speed beyond "
                 f"{found.acceleration * found.constant:.3g} m/s"
             )
@@ -138,8 +138,8 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     found = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
         said = (
-            "a slipping corner has the friction of the pass before: a stable block creeps, the faster the finer the "
-            'step; contact.rules = "consistent" does not'
+            "friction at a slipping corner is that of the iteration before: a stable block creeps, the faster the "
+            'finer the step; contact.rules = "consistent" avoids it'
         )
         yield Alarm(LAGS, scene.name, said)
     if found is not None and found.stands:
@@ -147,7 +147,7 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
         yield from _hides(scene, found)
     elif found is not None and found.braked < (1 - NOTABLE) * found.run_out and scene.time.discount < 1:
         said = (
-            f"gg = {scene.time.discount:g} a step {found.drag}: it cuts the run-out from "
+            f"gg = {scene.time.discount:g} per step {found.drag}: it cuts the run-out from "
             f"{found.run_out:.3g} m to {found.braked:.3g} m"
         )
         rate = {} if found.rate is None else {"rate": found.rate}
@@ -157,8 +157,8 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
 def _stateless(scene: Scene, row: Row) -> Iterator[Alarm]:
     if row.outcome in STATES:
         said = (
-            f"{row.outcome.value} even after the step was cut: a smaller time.step, or a smaller contact.friction or "
-            "shear_stiffness, has one"
+            f"{row.outcome.value} even after the step was cut: use a smaller time.step, contact.friction or "
+            "contact.shear_stiffness"
         )
         yield Alarm(STATELESS, scene.name, said)
 
@@ -183,6 +183,6 @@ def _hides(scene: Scene, found: Sliding) -> Iterator[Alarm]:
     if scene.load.slope and damps and phase > COARSE and found.creep > 0:
         said = (
             f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "
-            f"s, is damped before it is seen; the exact block creeps by the order of {1e3 * found.creep:.3g} mm/s"
+            f"s, is damped before it can show; the exact block creeps by the order of {1e3 * found.creep:.3g} mm/s"
         )
         yield Alarm(HIDES, scene.name, said, {"phase": phase, "scale": found.creep})

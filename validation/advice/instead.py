@@ -53,7 +53,7 @@ def instead(scene: Scene, solve_for: str, target: float, makes: Mapping[str, Mak
         if values := plain.solutions(target):
             settings = changed | plain.settings(min(values))
             return replace(found, settings=settings, words=f"Change more than one: {said(settings)} together give it.")
-    return replace(found, words="Neither gives any other of dt, gg and scheme, nor average acceleration with any gg.")
+    return replace(found, words="No other dt, gg or scheme gives it either, nor does average acceleration with any gg.")
 
 
 def change(scene: Scene, kind: str, search: Search, s: float) -> float:

@@ -165,12 +165,14 @@ def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
     elif wanted.a1 == 0 and scheme.delta == 0.5:
         found = scheme  # any step does
     elif wanted.a1 == 0 or scheme.delta <= 0.5:
-        raise InputError(f"delta: {scheme.delta:g} hides no a1 = {wanted.a1:g} s at any step; keep dt and let delta go")
+        raise InputError(f"delta: {scheme.delta:g} hides no a1 = {wanted.a1:g} s at any step; keep dt and vary delta")
     else:
         found = replace(scheme, step=wanted.a1 / (scheme.delta - 0.5))
     gg = 1 - wanted.a0 * found.step
     if gg <= 0:
-        raise InputError(f"damping: a0 = {wanted.a0:g} 1/s takes more than all velocity in a step of {found.step:g} s")
+        raise InputError(
+            f"damping: a0 = {wanted.a0:g} 1/s takes more than the whole velocity in a step of {found.step:g} s"
+        )
     return replace(found, gg=gg)
 
 

@@ -104,7 +104,7 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     check_scene(scene)
     if scene.column is not None and scene.column.impedance is not None and not np.all(f > 0):
         raise InputError(
-            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which holds nothing, got 0"
+            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which has no static stiffness, got 0"
         )
     chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):
@@ -119,12 +119,8 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
 
 def check_scene(scene: Scene) -> None:
     """Refuse a scene with a sweep, or one that is not linear."""
-    if scene.sweep:
-        fields = ", ".join(field for field in scene.sweep if field != "mode")
-        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
-    if not features.linear(scene):
-        has = ", ".join(features.of(scene))
-        raise InputError(f"{scene.name}: a frequency response exists for linear scenes only, got one with {has}")
+    features.refuse_sweep(scene)
+    features.refuse_nonlinear(scene, "a frequency response exists")
 
 
 def _checked(frequencies: ArrayLike) -> Array:

@@ -18,7 +18,6 @@ import numpy as np
 from dda.scheme import spectral, viscous
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
-from validation.errors import InputError
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
@@ -43,7 +42,7 @@ class ModeDamping:
     algorithmic: float | None  # xi of the same scheme at gg = 1 [1]
     kinetic: float | None  # what the discount adds [1]
     period_elongation: float | None  # w / w' - 1 [1]
-    least_root: float  # real part of the eigenvalue next to -1 [1]
+    least_root: float  # real part of the eigenvalue nearest to -1 [1]
     viscous: float | None = 0.0  # what damping tables add to xi [1]
 
     @property
@@ -131,19 +130,15 @@ def _elongation(omega: float, roots: ComplexArray) -> float:
 
 
 def single(scene: Scene) -> Scene:
-    """Return the scene, or refuse it where it still has a sweep.
+    """Return the scene, or refuse it where it still has a sweep or its motion is not linear.
 
     Raises
     ------
     InputError
-        One value must be picked for a swept field.
+        One value must be picked for a swept field, or there are no modes.
     """
-    if scene.sweep:
-        fields = ", ".join(field for field in scene.sweep if field != "mode")
-        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
-    if not features.linear(scene):
-        has = ", ".join(features.of(scene))
-        raise InputError(f"{scene.name}: modes and damping ratios exist for linear scenes only, got one with {has}")
+    features.refuse_sweep(scene)
+    features.refuse_nonlinear(scene, "modes and damping ratios exist")
     return scene
 
 

@@ -303,7 +303,7 @@ def _advised(scene: Scene, way: _Way, found: Passage | None, height: str, step: 
             f"the blocks are limited by the {height}, the step by the {step}."
         )
     if height == "glue":
-        return "No blocks do: the glue between them is too soft for the phase error; raise block.glue_ratio."
+        return "No block height does: the glue between them is too soft for the phase error; raise block.glue_ratio."
     steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID)
     losses = [way.passage(_stepping(scene, float(dt))).loss for dt in steps]
     best = int(np.argmin(losses))

@@ -76,15 +76,13 @@ SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file
 
 def one_case(source: str, assignments: list[str] | None) -> Scene:
     """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
-    from validation.errors import InputError
+    from validation.scenes import features
     from validation.scenes.scene import load_scene, parse_assignment
     from validation.studies.catalogue import check_words
 
     scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
     check_words(scene, source)
-    if scene.sweep:
-        fields = ", ".join(field for field in scene.sweep if field != "mode")
-        raise InputError(f"{source}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")
+    features.refuse_sweep(scene, source)
     return scene
 
 

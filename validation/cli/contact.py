@@ -78,8 +78,10 @@ def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
     rows, absent = {}, {}
     for name, scene in scenes.items():
         row, _ = execute(Case(scene, name), "", "contact")
-        if name == own() and row.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-            raise InputError(f"{scene.name}: {'; '.join(row.notes)}")
+        if name == own() and row.outcome is Outcome.REFUSED:
+            raise InputError("; ".join(row.notes))
+        if name == own() and row.outcome is Outcome.NOT_APPLICABLE:
+            raise InputError(f"{scene.name}: solver {name} does not apply: {'; '.join(row.notes)}")
         if row.outcome is Outcome.COMPLETED:
             rows[name] = row
         else:

@@ -60,10 +60,10 @@ def advise(
     loss: Annotated[float, typer.Option("--loss", help="Share of the wave's amplitude that may be lost.")] = 0.1,
     wavelengths: Annotated[
         float | None,
-        typer.Option("--wavelengths", help="How many wavelengths the wave runs; without it the height of the column."),
+        typer.Option("--wavelengths", help="Wavelengths that the wave travels; without it the height of the column."),
     ] = None,
     phase_error: Annotated[
-        float, typer.Option("--phase-error", help="Parts of a period by which the wave may arrive early or late.")
+        float, typer.Option("--phase-error", help="Fraction of a period by which the wave may arrive early or late.")
     ] = 0.05,
     assignments: SetOption = None,
     as_json: JsonOption = False,

@@ -100,7 +100,7 @@ def run(
 ) -> None:
     """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
-    Finished cases are kept: the same command after an interruption goes on from there.
+    Finished cases are kept: the same command after an interruption continues from there.
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
@@ -112,7 +112,7 @@ def run(
     _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
-    before = _checked(kept, required, summary, baseline)
+    before = _checked_baseline(kept, required, summary, baseline)
     runs, seconds = _judged(studies, kept, Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler), not quiet)
     ran = _answered(runs, seconds, kept, required, summary, before)
     with heard():
@@ -204,7 +204,7 @@ def _print_answer(ran: Ran, verbose: bool) -> None:
     from validation.cli.printing.output import width
     from validation.scenes.scene import scene_names
 
-    if verbose or (ran.own and 0 < len(ran.verdicts) <= FEW):
+    if ran.verdicts and (verbose or (ran.own and len(ran.verdicts) <= FEW)):
         tables.print_verdicts(ran.verdicts, ran.results, ran.names)
     if verbose:
         tables.print_ends(ran.results, ran.names)
@@ -215,7 +215,9 @@ def _print_answer(ran: Ran, verbose: bool) -> None:
         tables.print_differences(ran.results, name, name not in scene_names())
 
 
-def _checked(kept: Results, required: list[str], summary: Path | None, baseline: Path | None) -> list[Kept] | None:
+def _checked_baseline(
+    kept: Results, required: list[str], summary: Path | None, baseline: Path | None
+) -> list[Kept] | None:
     """Check before anything runs what would be refused at the end; return the baseline's verdicts."""
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
@@ -227,7 +229,7 @@ def _checked(kept: Results, required: list[str], summary: Path | None, baseline:
         if not is_solver(name) and name not in adapted:
             raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
     if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
-        raise InputError(f"--summary: must be a file in a directory that is there, got {str(summary)!r}")
+        raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
     kept.check()
     return None if baseline is None else read_verdicts(baseline)
 

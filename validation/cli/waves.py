@@ -26,7 +26,7 @@ PEAKS = 3  # that are printed
 @app.command()
 def response(
     scene: SceneArgument,
-    solver: Annotated[str, typer.Option("--solver", help="Solver whose model is asked.", metavar="NAME")] = "dda",
+    solver: Annotated[str, typer.Option("--solver", help="Solver whose model is used.", metavar="NAME")] = "dda",
     low: Annotated[float, typer.Option("--from", help="Lowest frequency.", metavar="HZ")] = 0.1,
     high: Annotated[float, typer.Option("--to", help="Highest frequency.", metavar="HZ")] = 200.0,
     points: Annotated[int, typer.Option("--points", help="Number of frequencies.", min=1)] = 1000,
@@ -180,7 +180,7 @@ def rayleigh(
         own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
         typer.echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
     if tables is not None and tables.kinetic == "adaptive":
-        typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 stand for, comes on top of it")
+        typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
     advice.check_band(*band)
     _print_scheme(scheme, band)

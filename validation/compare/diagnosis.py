@@ -116,8 +116,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
             f"{scene.name}: compare takes linear scenes and centred ones on contact that opens, got one with "
             + ", ".join(features.of(scene))
         )
-    if scene.sweep:
-        raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
+    features.refuse_sweep(scene)
     if not np.any(foreign.displacement):
         raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
     if column is None:

@@ -12,17 +12,17 @@ from validation.compare.fits.target import Target
 from validation.compare.fitting import Found
 
 SAME_FACTOR = 1e-5  # relative
-SIDE = "load.gravity = 9.81: the weight goes with the area of the block"
+SIDE = "load.gravity = 9.81: the weight is proportional to the area of the block"
 TELLS = {
     "gg": "another time step: gg acts per step, a drag per second",
     "scheme": "another time step",
     "start": "another time step",
     "springs-factor": "another contact stiffness, or the contact pressure if it is missing",
-    "young-factor": "another contact stiffness: stiff springs leave the block alone",
+    "young-factor": "another contact stiffness: on stiff springs only the block deforms",
     "load-factor": "the contact pressure if it is missing; load.gravity = 9.81 without pressure",
     "density-factor": "load.gravity = 9.81 without pressure: density then acts on the static displacement",
     "side-factor": "the contact pressure if it is missing; load.gravity = 9.81",
-    "reported-point": "stiff springs, where the points of the block move most unlike",
+    "reported-point": "stiff springs, on which the points of the block move most differently",
     "poisson": "another Poisson's ratio in both codes",
     "own-weight": "load.pressure = 0 with load.gravity = 9.81",
 }

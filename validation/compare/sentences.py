@@ -93,7 +93,8 @@ def not_explained(
     start = f"Departs{said.where}, not explained: "
     if alike:
         words = " or ".join(_family(one) for one in alike[:3])
-        return f"{start}{words} give the same rows within digits and noise; {alike[0]['further_scene']} tells."
+        further = f"to tell them apart, try {alike[0]['further_scene']}"
+        return f"{start}{words} give the same rows within digits and noise; {further}."
     near = "nothing is near"
     if nearest and nearest["causes"]:
         near = f"nearest is {_family(nearest)}, {per_cent(left, 2)} % left"
@@ -203,7 +204,7 @@ def _fault_words(name: str, said: Said) -> str:
         "load-factor": f"the load, or the displacement, is {value:.5g} times the scene's",
         "load-row": "the load " + ("is missing" if v.strain_load == 0 else "has the wrong sign") + " in the row of ey",
         "coupling": "the springs' coupling of v and ey " + ("is missing" if v.coupling == 0 else "has the wrong sign"),
-        "stress-not-kept": f"only the {'force of the springs' if v.kept == 'springs' else 'stress'} is carried on",
+        "stress-not-kept": f"only the {'force of the springs' if v.kept == 'springs' else 'stress'} is carried over",
         "contact-opened": f"the contact opened in steps {steps}" if steps else "the contact opened",
         "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
     }

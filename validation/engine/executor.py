@@ -11,10 +11,11 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as
 from contextlib import contextmanager
 
 from validation.engine.case import Case
-from validation.engine.measure import execute, failed_row, said
+from validation.engine.measure import execute, failed_row
 from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
+from validation.runs.text import error_text
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 LOOK = 0.25  # s between two looks whether the parent lives
@@ -36,7 +37,7 @@ def executed(
             if isinstance(error, BrokenExecutor):
                 lost.append(key)
             elif error is not None:  # on its way there or back: what a worker runs never raises
-                yield failed_row(pending[key], key, study.name, said(error)), None
+                yield failed_row(pending[key], key, study.name, error_text(error)), None
             else:
                 yield future.result()
     for key in lost:
@@ -53,7 +54,7 @@ def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
             return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
         return execute(case, key, study)
     except Exception as error:
-        return failed_row(case, key, study, said(error)), None
+        return failed_row(case, key, study, error_text(error)), None
 
 
 def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:

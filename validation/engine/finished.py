@@ -9,7 +9,7 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
-from validation.runs.text import printable
+from validation.runs.text import error_text
 
 
 class NothingToDerive(Exception):
@@ -73,8 +73,7 @@ class Finished:
         except NothingToDerive as error:
             return Row("", "", scene, name, Outcome.NOT_RUN, {}, notes=(str(error),))
         except Exception as error:  # numbers that a faulty run leaves without meaning
-            note = printable(f"{type(error).__name__}: {error}")
-            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(note,))
+            return Row("", "", scene, name, Outcome.RAISED, {}, notes=(error_text(error),))
 
     def history(self, scene: str, solver: str) -> History | None:
         """Return the history of a case, or None."""

@@ -12,10 +12,9 @@ import math
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role, Solver
+from validation.solvers.contract import Solver
 
 SHIFT = 1e-12  # relative change of the springs, well above the rounding of any code
-EXACT = (Role.LIMIT, Role.TRUTH)  # computed in so many digits that nothing is amplified
 
 
 def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:

@@ -19,11 +19,11 @@ from validation.runs.history import History
 from validation.runs.results import KEPT
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
-from validation.runs.text import printable
+from validation.runs.text import error_text, printable
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
-from validation.solvers.contract import NotReported, Prepared, Solver
+from validation.solvers.contract import EXACT_IN_TIME, NotReported, Prepared, Solver
 
 Part = TypeVar("Part")
 
@@ -38,18 +38,13 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     try:
         return _executed(case, key, study)
     except Exception as error:  # of one case, which must not end the others
-        return failed_row(case, key, study, said(error)), None
+        return failed_row(case, key, study, error_text(error)), None
 
 
 def failed_row(case: Case, key: str, study: str, note: str) -> Row:
     """Return the row of a case that ended by an error."""
     made = origin.of_row(case.make_solver())
     return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,), provenance=made)
-
-
-def said(error: BaseException) -> str:
-    """Return an error as a note: its type and its text in characters that every file and terminal takes."""
-    return printable(f"{type(error).__name__}: {error}").removesuffix(":")
 
 
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
@@ -89,7 +84,7 @@ def _asked(history: History | None, scene: Scene) -> History | None:
 
 def columns_of(case: Case) -> tuple[str, ...]:
     """Return the columns that the history of a completed case holds."""
-    return tuple(_columns(case.make_solver(), case.scene)[0].run.columns)
+    return tuple(_narrowed(case.make_solver(), case.scene)[0].run.columns)
 
 
 def _repeated(run: Run, solver: Solver, case: Case) -> Run:
@@ -110,7 +105,7 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         if reason := solver.refusal(scene):
             return None, Run(Outcome.NOT_APPLICABLE, notes=(reason,))
         memory.check(scene, solver)
-        asked, absent = _columns(solver, scene)
+        asked, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of
             prepared = solver.prepare(asked, full)
@@ -120,10 +115,10 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         return prepared, Run(Outcome.REFUSED, notes=(str(error),))
     except OSError as error:
         if fields is None:
-            return prepared, Run(Outcome.RAISED, notes=(said(error),))
+            return prepared, Run(Outcome.RAISED, notes=(error_text(error),))
         return prepared, Run(Outcome.REFUSED, notes=(f"--fields: cannot be written: {error.strerror or error}",))
     except Exception as error:  # a solver may be anybody's code: its failure is a row, not the end of the study
-        return prepared, Run(Outcome.RAISED, notes=(said(error),))
+        return prepared, Run(Outcome.RAISED, notes=(error_text(error),))
 
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
@@ -131,7 +126,7 @@ def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | N
     return check(attempt(solver, scene, full, fields)[1], scene)
 
 
-def _columns(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
+def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
     """Return the scene with the columns that a solver has, and the others; the scene itself where it has none."""
     known = solver.columns()
     absent = [name for name in scene.run.columns if known is not None and name not in known]
@@ -192,7 +187,7 @@ def _solo(seen: Measurable, parts: set[str], only: Collection[str] | None, faile
         try:
             found |= solo(seen, (part,), only)
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
-            failed.append(f"{part} not measured: {said(error)}")
+            failed.append(f"{part} not measured: {error_text(error)}")
     return found
 
 
@@ -205,7 +200,7 @@ def _measures(case: Case, run: Run) -> set[str]:
         asked -= {"stability"}
     if "history" in asked and features.UNILATERAL in features.of(case.scene):
         asked |= {"switches"}
-        if case.make_solver().role not in horizon.EXACT:
+        if case.make_solver().role not in EXACT_IN_TIME:
             asked |= {"horizon"}
     return asked if "history" in asked else asked - {"modes"}
 
@@ -217,5 +212,5 @@ def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part
     except NotReported:
         return absent
     except Exception as error:  # anybody's code, as in `attempt`; the history is sound and is kept
-        failed.append(f"{part.__name__} not reported: {said(error)}")
+        failed.append(f"{part.__name__} not reported: {error_text(error)}")
         return absent

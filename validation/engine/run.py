@@ -12,7 +12,7 @@ from validation.engine.case import Case
 from validation.engine.executor import executed
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate, existing, plain
-from validation.engine.measure import columns_of, said
+from validation.engine.measure import columns_of
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
@@ -29,6 +29,7 @@ from validation.runs.records import (
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
+from validation.runs.text import error_text
 from validation.scenes.scene import Scene
 
 Progress = Callable[[int, int, str], None]
@@ -122,17 +123,16 @@ def _named(row: Row, case: Case, study: Study) -> Row:
 @np.errstate(divide="raise", invalid="raise")
 def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
-    left, failed = list(scenes), dict[str, str]()
+    failed: dict[str, str] = {}
     try:
-        return study.annotate(left, finished)
+        return study.annotate(scenes, finished)
     except Exception:  # which scene it was is found one by one
         for scene in scenes:
             try:
                 study.annotate([scene], finished)
             except Exception as error:
-                failed[scene.name] = said(error)
-    left = [scene for scene in scenes if scene.name not in failed]
-    found = study.annotate(left, finished)
+                failed[scene.name] = error_text(error)
+    found = study.annotate([scene for scene in scenes if scene.name not in failed], finished)
     own: list[AlarmRecord] = [
         {"kind": "not examined", "scene": name, "sentence": f"alarms and damping budget: {why}", "values": {}}
         for name, why in failed.items()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.gates.gate import said
+from validation.gates.gate import value_text
 from validation.runs import strict
 from validation.runs.records import Baseline, Judged, VerdictRecord
 
@@ -161,7 +161,7 @@ def _rows_of_studies(records: Sequence[VerdictRecord]) -> list[list[str]]:
 
 def _row(v: VerdictRecord) -> list[str]:
     band = " .. ".join(f"{edge:.4g}" for edge in v.get("band", ()))
-    return [_code(v["id"]), said(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
+    return [_code(v["id"]), value_text(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
 
 
 def _row_of_change(c: Change) -> list[str]:
@@ -177,7 +177,7 @@ def band_said(band: Edges | None) -> str:
 
 
 def _step(before: object, after: object) -> str:
-    return said(after) if before == after else f"{said(before)} → {said(after)}"
+    return value_text(after) if before == after else f"{value_text(before)} → {value_text(after)}"
 
 
 def _cell(text: str) -> str:

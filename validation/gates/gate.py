@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import enum
 import math
+import sys
 from dataclasses import dataclass
 
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
-LARGEST = 1.7976931348623157e308
+LARGEST = sys.float_info.max
 ROUNDING = 1e-12  # a number of this size or less is rounding, and differs from processor to processor
 
 
@@ -122,17 +123,13 @@ def _edge(value: float) -> float:
 def judge(gate: Gate, value: Value) -> Verdict:
     """Judge a value: inside the band passes; outside, undefined, absent or not a number fails."""
     if isinstance(value, str) or value is None or math.isnan(value):
-        return Verdict(
-            gate,
-            None if value is None or not isinstance(value, str) else value,
-            Status.FAIL,
-            "there is no value to judge",
-        )
+        word = value if isinstance(value, str) else None
+        return Verdict(gate, word, Status.FAIL, "there is no value to judge")
     inside = gate.low <= value <= gate.high
     return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)
 
 
-def said(value: object) -> str:
+def value_text(value: object) -> str:
     """Return a measured number as text, ``below 1e-12`` where it is rounding; a count, which is an integer, in full."""
     if isinstance(value, float) and abs(value) <= ROUNDING:
         return f"below {ROUNDING:g}"

@@ -67,7 +67,7 @@ def _of_modes() -> Iterator[Metric]:
         "damping": ("1", "damping ratio of the step's operator"),
         "numerical_frequency": ("rad/s", "undamped frequency of the step's operator"),
         "spectral_radius": ("1", "largest modulus of the operator's eigenvalues"),
-        "least_root": ("1", "real part of the eigenvalue next to -1"),
+        "least_root": ("1", "real part of the eigenvalue nearest to -1"),
     }
     for part in ("frequency", "damping", "numerical_frequency", "spectral_radius"):
         unit, says = named[part]
@@ -144,7 +144,6 @@ def _of_pairs() -> Iterator[Metric]:
 SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability(), *_of_switches())}
 PAIRS = {metric.id: metric for metric in _of_pairs()}
 CATALOGUE = SOLO | PAIRS
-METRICS = tuple(CATALOGUE)  # the ids
 
 
 def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:

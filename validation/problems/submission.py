@@ -97,7 +97,7 @@ def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     names = [name for name, _ in pairs]
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f"{name!r} must stand once, got it {names.count(name)} times")
+            raise ValueError(f"{name!r} must appear once, got it {names.count(name)} times")
     return dict(pairs)
 
 
@@ -208,7 +208,7 @@ def _check_header(path: Path, names: Sequence[str], asked: Problem, columns: Seq
         if name not in wanted:
             raise InputError(f"{path}: header: {name}: {_rule(name, wanted, asked)}, got {name!r}")
         if names.count(name) > 1:
-            raise InputError(f"{path}: header: {name}: must stand once, got it {names.count(name)} times")
+            raise InputError(f"{path}: header: {name}: must appear once, got it {names.count(name)} times")
     for name in wanted:
         if name not in names:
             left = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"

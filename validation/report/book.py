@@ -12,7 +12,7 @@ from validation.report.chapters.registry import CHAPTERS, chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
-from validation.runs.text import printable
+from validation.runs.text import error_text
 
 
 def ordered_studies(results: Results) -> list[str]:
@@ -51,7 +51,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
     chapters: list[Part] = [PageBreak()]
     for study in studies:
         chapters += _chapter_or_why(results, study, figures)
-    with _told(results, "the first and the last pages"):
+    with _naming_what_fails(results, "the first and the last pages"):
         found, verdicts = found_scenes(results, studies), results.verdicts()
         front = front_pages(found, verdicts, studies, figures)
         return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, studies)]
@@ -59,7 +59,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
     manifest = results.whole(study, histories=True)
-    with _told(results, f"the chapter of {unescaped(study)}"):
+    with _naming_what_fails(results, f"the chapter of {unescaped(study)}"):
         return chapter_of(study)(results, manifest, figures)
 
 
@@ -76,15 +76,15 @@ class _Undrawn(InputError):
 
 
 @contextmanager
-def _told(results: Results, what: str) -> Iterator[None]:
+def _naming_what_fails(results: Results, what: str) -> Iterator[None]:
     """Name what cannot be written from results that are damaged in a way of which no check has told."""
     try:
         yield
     except InputError:
         raise
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        said = printable(f"{type(error).__name__}: {error}")
-        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({said})") from error
+        why = error_text(error)
+        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({why})") from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:

@@ -10,7 +10,7 @@ from validation.runs.results import Results
 from validation.runs.text import shown
 
 DOLLAR, ESCAPED = "$", r"\$"  # between two bare ones a figure sets mathematics
-AS_STATED = ("definition", "key", "data")  # parts of a manifest that are read, not shown
+NOT_SHOWN = ("definition", "key", "data")  # parts of a manifest that are read, not shown
 
 
 def escaped(text: str) -> str:
@@ -49,5 +49,5 @@ def _mapped(data: Any) -> Any:
     if isinstance(data, str):
         return escaped(data)
     if isinstance(data, Mapping):
-        return {key: value if key in AS_STATED else _mapped(value) for key, value in data.items()}
+        return {key: value if key in NOT_SHOWN else _mapped(value) for key, value in data.items()}
     return [_mapped(value) for value in data] if isinstance(data, Iterable) else data

@@ -161,7 +161,7 @@ def unique(records: list[Judged]) -> list[Judged]:
     for record in records:
         name = (record["study"], record["id"])
         if name in met:
-            raise ValueError(f"{record['id'][:200]} stands twice in the study {record['study'][:200]}")
+            raise ValueError(f"{record['id'][:200]} appears twice in the study {record['study'][:200]}")
         met.add(name)
     return records
 

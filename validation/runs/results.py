@@ -54,7 +54,7 @@ class Results:
         if not path.exists():
             return {}
         if not path.is_file():
-            raise InputError(f"{path}: cannot be read: it is no file; choose another place with --results")
+            raise InputError(f"{path}: cannot be read: not a file; choose another place with --results")
         try:
             parsed = map(_parsed, path.read_text(encoding="utf-8", errors="replace").splitlines())
         except OSError as error:
@@ -182,7 +182,7 @@ class Results:
             if row is None or (histories and gone):
                 lost = "row" if row is None else "history"
                 raise InputError(
-                    f"{self.directory}: the {lost} of {case['scene']} {case['solver']} is lost; run {study} again"
+                    f"{self.directory}: the {lost} of {case['scene']} {case['solver']} is missing; run {study} again"
                 )
         return manifest
 
@@ -194,6 +194,8 @@ class Results:
         InputError
             Rows or verdicts cannot be read.
         """
+        if self.directory.is_file():  # what is in it is not said to be damaged, nor to be deleted
+            raise InputError(f"--results: must be a directory, got the file {str(self.directory)!r}")
         self.rows()
         self.verdicts()
 

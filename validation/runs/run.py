@@ -30,28 +30,28 @@ class Outcome(Told):
     OVERFLOW = "overflow", "The numbers left the range of double precision."
     UNSTABLE = (
         "unstable as predicted",
-        "The step lies beyond the limit of the scheme and the numbers grew as predicted.",
+        "The step exceeds the stability limit of the scheme and the numbers grew as predicted.",
     )
     MISPREDICTED = (
         "unstable, not as predicted",
-        "The step lies beyond the limit of the scheme and the numbers grew at another rate.",
+        "The step exceeds the stability limit of the scheme and the numbers grew at another rate.",
     )
     NOT_A_NUMBER = "not a number", "The history holds values that are not numbers."
     WRONG_SHAPE = "wrong shape", "The history does not hold one value for each step of the scene."
-    WRONG_UNITS = "wrong units", "The history is in other units or has another sign."
+    WRONG_UNITS = "wrong units", "The history has wrong units or a wrong sign."
     NO_CONTACT_STATE = (
         "no consistent contact state",
-        "No state of the contacts fits the step, not even a hundredth of it; use a smaller step.",
+        "No contact state is consistent, not even over a hundredth of the step; use a smaller step.",
     )
     SEVERAL_CONTACT_STATES = (
         "several consistent contact states",
-        "Several states of the contacts fit a hundredth of the step; use a smaller step.",
+        "Several contact states are consistent, even over a hundredth of the step; use a smaller step.",
     )
     RAISED = "raised", "The solver raised an error."
     TIMEOUT = "timeout", "The solver did not finish within its time limit."
-    REFUSED = "refused", "The scene asks for what the solver must refuse."
+    REFUSED = "refused", "The scene asks for something that the solver must refuse."
     NOT_APPLICABLE = "not applicable", "The solver does not apply to this scene."
-    NOT_RUN = "not run", "A part that the solver needs is not installed."
+    NOT_RUN = "not run", "Software that the solver needs is not installed."
 
 
 @dataclass(frozen=True)

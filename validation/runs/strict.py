@@ -45,6 +45,8 @@ def read(path: Path, kind: Any, advice: str, what: str = "what a run writes") ->
         raise
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; {advice}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not; {advice}") from None
     except ValueError as error:
         raise InputError(f"{path}: must be JSON: {error}; {advice}") from None
     if defect := defect_of(found, kind):
@@ -70,7 +72,7 @@ def _adapter(kind: Any) -> TypeAdapter[Any]:
 
 
 def _refuse(word: str) -> float:
-    raise ValueError(f"{word} is no number of JSON")
+    raise ValueError(f"{word} is not a JSON number")
 
 
 def _finite(text: str) -> float:

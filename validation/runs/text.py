@@ -11,3 +11,8 @@ def printable(text: str) -> str:
 def shown(text: str) -> str:
     """Return a text whose control characters and lone surrogates are written as escapes."""
     return "".join(c if c.isprintable() or c == "\u00a0" else c.encode("unicode_escape").decode() for c in text)
+
+
+def error_text(error: BaseException) -> str:
+    """Return an error in one line: its type and its text."""
+    return printable(f"{type(error).__name__}: {error}").removesuffix(":")

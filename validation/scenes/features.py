@@ -82,6 +82,31 @@ def damping_apart(scene: Scene) -> str | None:
     return None
 
 
+def refuse_sweep(scene: Scene, source: str = "") -> None:
+    """Refuse a scene with a sweep where one case is asked for; it is named by its `source` where that is known.
+
+    Raises
+    ------
+    InputError
+        One value must be picked for a swept field.
+    """
+    if scene.sweep:
+        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        raise InputError(f"{source or scene.name}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")
+
+
+def refuse_nonlinear(scene: Scene, what: str) -> None:
+    """Refuse a scene whose motion is not linear where the answer, `what`, exists for linear motion only.
+
+    Raises
+    ------
+    InputError
+        The motion is not linear.
+    """
+    if not linear(scene):
+        raise InputError(f"{scene.name}: {what} for linear scenes only, got one with {', '.join(of(scene))}")
+
+
 def refuse_damping(scene: Scene, what: str) -> None:
     """Refuse a scene with damping tables where the answer knows the scheme's own damping only.
 

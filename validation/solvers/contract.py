@@ -32,6 +32,9 @@ class Role(enum.StrEnum):
     OTHER = "other"  # brought by a user
 
 
+EXACT_IN_TIME = (Role.LIMIT, Role.TRUTH)  # computed in so many digits that nothing is amplified
+
+
 @dataclass(frozen=True)
 class LineStyle:
     """Colour and stroke of a solver's lines, the same in every figure."""

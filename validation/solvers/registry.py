@@ -10,6 +10,7 @@ from typing import Any
 
 from validation.errors import InputError
 from validation.runs.run import Run
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import Role, Solver
@@ -130,9 +131,7 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     -0.01
     """
     chosen = get_solver(solver) if isinstance(solver, str) else solver
-    if scene.sweep:
-        fields = ", ".join(field for field in scene.sweep if field != "mode")
-        raise InputError(f"{scene.name}: sweep: one value must be picked for {fields}; use --set key=value")
+    features.refuse_sweep(scene)
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
     memory.check(scene, chosen)

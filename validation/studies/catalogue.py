@@ -10,8 +10,9 @@ from typing import Any, TypeVar
 
 from validation.errors import InputError
 from validation.gates.gate import Gate
-from validation.metrics.catalogue import METRICS, PAIRS
+from validation.metrics.catalogue import CATALOGUE, PAIRS
 from validation.runs.case_name import scene_of
+from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene, scene_names
 from validation.scenes.tables import GateSection
 from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
@@ -111,6 +112,7 @@ def check_words(scene: Scene, source: str) -> None:
     _check_repeats(scene, source)
     for number, section in enumerate(scene.gate):
         _check_gate(section, scene.run.solvers, f"{source}: gate.{number}")
+    _check_linear(scene, source)
 
 
 def _check_repeats(scene: Scene, source: str) -> None:
@@ -125,8 +127,8 @@ def _check_repeats(scene: Scene, source: str) -> None:
 
 
 def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> None:
-    if section.metric not in METRICS:
-        raise InputError(f"{place}.metric: must be among {', '.join(METRICS)}, got {section.metric!r}")
+    if section.metric not in CATALOGUE:
+        raise InputError(f"{place}.metric: must be among {', '.join(CATALOGUE)}, got {section.metric!r}")
     missing = [name for name in section.pair if name not in solvers]
     if missing:
         raise InputError(f"{place}.pair: must be solvers that run.solvers lists, got {missing[0]!r}")
@@ -134,6 +136,16 @@ def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> Non
         raise InputError(
             f"{place}.pair: must name a solver and a reference for {section.metric}, got {list(section.pair)}"
         )
+
+
+def _check_linear(scene: Scene, source: str) -> None:
+    """Refuse a gate on a metric of linear scenes where no case is linear: it would be dropped without a word."""
+    asked = [(number, each.metric) for number, each in enumerate(scene.gate) if CATALOGUE[each.metric].linear]
+    cases = scene.expand() if asked else ()
+    if asked and not any(map(features.linear, cases)):
+        number, metric = asked[0]
+        has = ", ".join(features.of(cases[0]))
+        raise InputError(f"{source}: gate.{number}.metric: {metric} exists for linear scenes only, got one with {has}")
 
 
 def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:

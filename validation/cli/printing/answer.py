@@ -11,7 +11,7 @@ from typing import Any
 from validation.cli.app import RESULTS
 from validation.engine.measured import Judged, unjudged
 from validation.gates.changes import Change
-from validation.gates.gate import Status, Verdict, said
+from validation.gates.gate import Status, Verdict, value_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
 from validation.runs.row import Row
@@ -102,7 +102,7 @@ def _measured(verdict: Verdict) -> str:
     band = f"[{gate.low:.4g}, {gate.high:.4g}]"
     if value is None or isinstance(value, str):
         return f"FAIL {printable(gate.id)}: {'no value' if value is None else value}, allowed {band}"
-    return f"FAIL {printable(gate.id)}: {said(value)} is outside {band}"
+    return f"FAIL {printable(gate.id)}: {value_text(value)} is outside {band}"
 
 
 def badly_ended(ran: Ran) -> Iterator[str]:

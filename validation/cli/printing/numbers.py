@@ -88,10 +88,10 @@ def _block(scene: Scene) -> Iterator[Number]:
     yield Number("m", scene.block.mass, "kg", "mass of the block")
     yield Number("p/E", scene.contact.stiffness / b.young, "", "springs over Young's modulus, unit thickness")
     yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
-    yield Number("h/c", height / speed, "s", "time of the wave through the block")
-    yield Number("c dt/h", speed * dt / height, "", "share of the block that the wave crosses in a step")
+    yield Number("h/c", height / speed, "s", "travel time of the wave through the block")
+    yield Number("c dt/h", speed * dt / height, "", "share of the block that the wave crosses per step")
     if load := opened.pushing(scene):
-        yield Number("F/2p", load / (2 * scene.contact.stiffness), "m", "how far the load presses the springs at rest")
+        yield Number("F/2p", load / (2 * scene.contact.stiffness), "m", "compression of the springs at rest")
 
 
 def _modes(scene: Scene) -> Iterator[Number]:
@@ -111,11 +111,11 @@ def _modes(scene: Scene) -> Iterator[Number]:
 def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Number]:
     found = mode_damping(scene, name, frequency)
     yield Number(short, frequency, "rad/s", f"{name} mode of the DDA block")
-    yield Number(f"{short} dt", found.omega_dt, "", "times the step: its period has 2 pi over this steps")
+    yield Number(f"{short} dt", found.omega_dt, "", "times the step; a period takes 2 pi over this many steps")
     if found.damping is not None:
         yield Number(f"{short} xi", 100 * found.damping, "%", "its damping ratio by scheme, gg and tables")
     if name == CONTACT:
-        yield Number("least root", found.least_root, "", "of a step; next to -1 the contact force rings")
+        yield Number("least root", found.least_root, "", "of a step; near -1 the contact force rings")
 
 
 def _opening(scene: Scene) -> Iterator[Number]:
@@ -124,7 +124,7 @@ def _opening(scene: Scene) -> Iterator[Number]:
     yield Number("Omega", contact.omega(scene), "", "w_c dt of a landing, w_c = sqrt(8 p/m)")
     hidden = contact.hidden_from(scene)
     if hidden is not None:
-        yield Number("dt seen", hidden, "s", "largest step that sees the block leave its springs at t = 0")
+        yield Number("dt seen", hidden, "s", "largest step that shows the block leave its springs at t = 0")
 
 
 def _slope(scene: Scene) -> Iterator[Number]:
@@ -132,7 +132,7 @@ def _slope(scene: Scene) -> Iterator[Number]:
     if c.friction is not None:
         yield Number("tan phi", math.tan(math.radians(c.friction)), "", "coefficient of friction")
     if slope:
-        yield Number("tan b", abs(slope), "", "of the slope: what it asks of friction at rest")
+        yield Number("tan b", abs(slope), "", "of the slope: friction coefficient that it needs at rest")
         if scene.block.vertices is None:
             width, height = closed_forms.size(scene)
             yield Number("w/h", width / height, "", "slenderness: the tan b beyond which the block topples")
@@ -140,9 +140,9 @@ def _slope(scene: Scene) -> Iterator[Number]:
 
 def _steps(scene: Scene) -> Iterator[Number]:
     t = scene.time
-    yield Number("n dt", t.duration, "s", "time that is simulated")
+    yield Number("n dt", t.duration, "s", "simulated time")
     if 0 < t.discount < 1:
-        yield Number("-ln gg/dt", -math.log(t.discount) / t.step, "1/s", "rate at which gg takes velocity")
+        yield Number("-ln gg/dt", -math.log(t.discount) / t.step, "1/s", "rate at which gg reduces velocity")
 
 
 # ---- a column -----------------------------------------------------------------------------------------------------
@@ -160,24 +160,24 @@ def _column(scene: Scene) -> Iterator[Number]:
         top = layer.density * speed
         limit = min(limit, closed_forms.critical_omega(scene) * height / (math.sqrt(12) * speed))
         yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
-    yield Number("H/c", travel, "s", "time of the wave through the column")
+    yield Number("H/c", travel, "s", "travel time of the wave through the column")
     yield Number("dt stable", limit, "s", "largest stable step of welded blocks")
     if column.impedance is not None:
         lowest = column.layer[0]
         own = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
         share = abs(column.impedance - own) / (column.impedance + own)
-        yield Number("reflected", 100 * share, "%", "of the amplitude of a wave that comes down to the base")
+        yield Number("reflected", 100 * share, "%", "of the amplitude of a wave that reaches the base")
     yield Number("rho c", top, "Pa s/m", "impedance of the top layer")
 
 
 def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Number]:
-    yield Number(f"{place}c", speed, "m/s", "speed of the wave")
+    yield Number(f"{place}c", speed, "m/s", "wave speed")
     yield Number(f"{place}h", height, "m", "height of a block")
-    yield Number(f"{place}c dt/h", speed * scene.time.step / height, "", "share of a block crossed in a step")
+    yield Number(f"{place}c dt/h", speed * scene.time.step / height, "", "share of a block that it crosses per step")
     frequency = scene.input.frequency
-    yield Number(f"{place}f10", speed / (10 * height), "Hz", "ten blocks a wavelength")
+    yield Number(f"{place}f10", speed / (10 * height), "Hz", "frequency with ten blocks per wavelength")
     if frequency is not None:
-        yield Number(f"{place}blocks", speed / (frequency * height), "", f"in a wavelength at {frequency:g} Hz")
+        yield Number(f"{place}blocks", speed / (frequency * height), "", f"per wavelength at {frequency:g} Hz")
 
 
 # ---- limits -------------------------------------------------------------------------------------------------------
@@ -185,22 +185,22 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
 
 def _unstable(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     if scene.time.step > found.get("dt stable", math.inf) * (1 + 1e-12):
-        yield "dt is beyond the stability limit: the numbers grow"
+        yield "dt is beyond the stability limit: the solution grows without bound"
 
 
 def _coarse(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     if found.get("w1 dt", 0.0) > math.pi:
-        yield "fewer than two steps in a period of the first mode: no history shows it"
+        yield "fewer than two steps per period of the first mode: no history can show it"
     stable = scene.time.step <= found.get("dt stable", math.inf)
     if stable and found.get("least root", 0.0) <= FLIPPING:
-        yield "the contact mode flips its sign in every step: the contact force rings"
+        yield "the contact mode changes sign in every step: the contact force rings"
 
 
 def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     if scene.time.step > found.get("dt seen", math.inf):
-        yield "dt hides that the block leaves its springs at t = 0"
+        yield "dt is too large to show that the block leaves its springs at t = 0"
     if found.get("Omega", 0.0) > contact.ARBITRARY:
-        yield f"Omega > {contact.ARBITRARY:g}: how fast a landing returns depends on where in the step it falls"
+        yield f"Omega > {contact.ARBITRARY:g}: the rebound speed depends on where in the step the block lands"
     elif found.get("Omega", 0.0) > contact.WRONG:
         yield f"Omega > {contact.WRONG:g}: the restitution of a landing is off by a fifth or more"
 

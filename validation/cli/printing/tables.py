@@ -16,7 +16,7 @@ from rich.text import Text
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
 from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import console
-from validation.gates.gate import Verdict, said
+from validation.gates.gate import Verdict, value_text
 from validation.runs.case_name import CaseName
 from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
 from validation.runs.results import Results
@@ -51,7 +51,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             escape(printable(name(g.scene))),
             " | ".join(g.pair),
             g.id.rpartition(":")[2],
-            said(v.value),
+            value_text(v.value),
             _band(v),
             f"[{STYLES[word]}]{word}[/]",
             "" if spent is None else f"{spent:.2f}",
@@ -66,7 +66,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
 def _by_scene(verdicts: Sequence[Verdict]) -> Iterator[Line]:
     """Yield the gates of each scene below its name: verdict, pair, metric, value and band."""
     cells = [
-        (str(v.status), " | ".join(v.gate.pair), v.gate.id.rpartition(":")[2], said(v.value), _band(v))
+        (str(v.status), " | ".join(v.gate.pair), v.gate.id.rpartition(":")[2], value_text(v.value), _band(v))
         for v in verdicts
     ]
     scene = ""
@@ -129,7 +129,7 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
 def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
     """Return what to do with a scene whose solvers cannot be compared."""
     if len({solver for _, solver in ended}) < 2:
-        return 'next: name two solvers or more in the scene, such as solvers = ["dda", "bar"] under [run]'
+        return 'next: name two solvers or more that apply to the scene, such as solvers = ["dda", "bar"] under [run]'
     completed = sum(outcome is Outcome.COMPLETED for outcome in ended.values())
     return (
         f"next: only runs that complete are compared, and {completed} of {len(ended)} did: --verbose shows how each "
@@ -198,7 +198,8 @@ def print_changes(found: list[Change]) -> None:
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}
     for c in found:
-        values = [f"{word} {said(value)}" for word, value in ((c.before, c.value_before), (c.after, c.value_after))]
+        sides = ((c.before, c.value_before), (c.after, c.value_after))
+        values = [f"{word} {value_text(value)}" for word, value in sides]
         if c.rebanded:
             bands = (band_said(band) for band in (c.band_before, c.band_after))
             values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]

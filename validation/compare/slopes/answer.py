@@ -63,7 +63,7 @@ def read(scene: Scene, foreign: Foreign) -> Read:
             f"step, use --set time.step={last:.6g}"
         )
     if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
-        raise InputError(f"{scene.name}: time: with friction all steps must be alike, in seconds, got others")
+        raise InputError(f"{scene.name}: time: with friction all steps must be equal, in seconds, got others")
     place = np.column_stack([foreign.sideways, foreign.displacement])
     no_digits = np.zeros(len(place))
     units = [no_digits if unit is None else unit for unit in (foreign.sideways_rounding, foreign.rounding)]
@@ -82,8 +82,7 @@ def _check(scene: Scene) -> None:
         raise InputError(
             f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {got}"
         )
-    if scene.sweep:
-        raise InputError(f"{scene.name}: sweep: one value must be picked; use --set key=value")
+    features.refuse_sweep(scene)
 
 
 def _sign(column: Array, load: float) -> float:
@@ -111,7 +110,7 @@ def stages(found: Found, read: Read) -> list[Stage]:
     telling = f"{found.telling} steps tell them apart"
     blurred = "; the digits of the file do not show it" if found.tolerance > BLURRED else ""
     numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
-    right = "signs and columns are the scene's" if not read.slips else "a sign is turned"
+    right = "signs and columns are the scene's" if not read.slips else "a sign is reversed"
     pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
     run = found.run
     left = None if math.isnan(run.left) else run.left
@@ -133,7 +132,7 @@ def _motion(found: Found) -> str:
     run = found.run
     if math.isnan(run.left):
         return "the suite has no run of it"
-    part = f" up to step {run.until}, from where on the scene makes much of rounding" if run.until else ""
+    part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
     if run.same:
         return f"the suite's own run gives the displacements to their digits or noise{part}"
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
@@ -161,7 +160,7 @@ def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
 def _fault(name: str, found: Found) -> str:
     value = found.values.get(name, 0.0)
     words = {
-        "lagged-friction": "friction lags, that of a slipping corner is of the step, or of the pass, before",
+        "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
         "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
         "springs-factor": f"the contact springs are {value:.4g} times the scene's",
     }

@@ -30,7 +30,7 @@ def gate_pages(verdicts: Verdicts, found: Mapping[str, Group]) -> list[Part]:
             title = ""
     told = "Measured value and band of every gate that passed, under the reason of the band and the kind of reference."
     if together:
-        told += " Gates of a scene that share pair, metric and reason share a line, which tells their number and range."
+        told += " Gates of a scene that share pair, metric and reason share a line, which gives their number and range."
     return [Heading("Gates", 2), Paragraph(told, "small"), Lines(tuple(sections))]
 
 
@@ -68,7 +68,7 @@ def _range_line(verdicts: Verdicts) -> Line:
         f"{scene_of(first['scene'])}, {len(verdicts)} cases",
         _measured(first),
         _ends(values),
-        band(first) if same else "a band of its own each",
+        band(first) if same else "each with its own band",
     )
 
 

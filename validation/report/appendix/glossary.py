@@ -11,13 +11,13 @@ WORDS = (
     ("open-close iteration", "The search, within one step, for which springs act: solve, look at the gaps, repeat."),
     ("α, δ", "Weights of the new acceleration in the displacement and in the velocity of a step (Newmark's β and γ): "
      "(1/2, 1) is constant, (1/4, 1/2) average acceleration."),
-    ("discount gg", "The factor on the velocity at the start of each step; 1 takes nothing, 0 forgets all motion."),
-    ("damping ratio ξ", "Damping over critical damping: at 5 % a swing keeps 73 % of itself, at 100 % nothing swings."),
-    ("|λ|, spectral radius", "What a mode keeps of itself over one step; at 1 it is not damped, above 1 it grows."),
-    ("bar, continuum", "The same block resolved to the end: exact in space, same steps; exact in time as well."),
-    ("model form", "What stays wrong however fine step and mesh are: one strain in the place of a wave."),
+    ("discount gg", "The factor on the velocity at the start of each step: 1 changes nothing, 0 removes all motion."),
+    ("damping ratio ξ", "Damping over critical damping: at 5 % a cycle keeps 73 % of its amplitude, at 100 % none."),
+    ("|λ|, spectral radius", "What a mode keeps of its amplitude in a step; at 1 it is not damped, above 1 it grows."),
+    ("bar, continuum", "The same block, exact in space at the same steps; the continuum is exact in time as well."),
+    ("model form", "The error that remains however fine step and mesh are: one strain in place of a wave."),
     ("relative L2", "Root of the mean square of a difference over that of the reference, over the whole history."),
-    ("gate, alarm", "A gate passes a number between two edges that have a reason; an alarm marks a result that looks "
+    ("gate, alarm", "A gate passes a number inside a band that has a reason; an alarm marks a result that looks "
      "better than it is."),
 )  # fmt: skip
 

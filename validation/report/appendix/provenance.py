@@ -24,7 +24,7 @@ def parameter_table(found: Mapping[str, Group]) -> list[Block]:
         swept = f"{len(group.cases)} cases" if len(group.cases) > 1 else "one case"
         rows.append((group.name, ", ".join([*own, swept])))
         base = base or set(items)
-    caption = "Data of the scenes: of the first in full, of the others what differs from it."
+    caption = "Data of the scenes: the first in full, the others where they differ from it."
     return [Heading("Parameters", 2), Table((Column("Scene"), Column("Data", "fill")), tuple(rows), caption)]
 
 

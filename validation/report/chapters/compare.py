@@ -39,7 +39,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         {},
         next(iter(answer.curves)),
     )
-    caption = "The file, the scene as DDA with what is no fault, and the best explanation."
+    caption = "The file, DDA on the scene allowing for what is no error, and the best explanation."
     rest = [*told_lines(answer.told, answer.untold), *answer.notes]
     return [
         Heading(f"{source} beside {scene.name}"),

@@ -14,11 +14,10 @@ from validation.report.figures.paper import BudgetPanel, budget_figure
 from validation.runs.records import BudgetRecord
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
+from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import is_solver, role
 
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
-EXACT = (Role.LIMIT, Role.TRUTH)  # in time
 
 
 def budget_blocks(group: Group, directory: Path) -> list[Block]:
@@ -46,7 +45,7 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
     ]
     if any("overdamped below" in budget["limits"] for budget in budgets):
         said.append("Grey: overdamped.")
-    said.append("a/c: the wave's way from top to base; a larger dt does not see it.")
+    said.append("a/c: travel time of the wave from top to base; a larger dt does not resolve it.")
     floors = sorted({budget["floor"] for budget in budgets if budget["floor"]})
     if floors:
         span = f"{floors[0]:.3f}" + (f" to {floors[-1]:.3f}" if floors[-1] != floors[0] else "")
@@ -111,7 +110,7 @@ def damping_table(group: Group) -> Table:
 
 def _finished(case: Case) -> list[str]:
     finished = [solver for solver, row in case.rows.items() if row.metrics and not solver.endswith(":full")]
-    return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT] or finished
+    return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT_IN_TIME] or finished
 
 
 def _measured(measure: Measure, value: Value, scene: Scene) -> str:

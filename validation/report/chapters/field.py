@@ -19,17 +19,17 @@ NONE = "n. a."
 PLACE = re.compile(r" \([^()]*:\d+, in [^()]*\)$")  # of the code that raised an error
 SAID = (
     "Each problem has an exact motion. An answer passes where its relative L2 error is below what one per cent of the "
-    "problem's data changes, which is the row of what is allowed. A program stands with parameters chosen for accuracy "
-    "and, below, as it comes. What it cannot express is not applicable and not bent until it fits."
+    "problem's data changes; the row of what is allowed states it. Each program runs with parameters chosen for "
+    "accuracy and, below, with its defaults. What it cannot express is not applicable, and is not forced to fit."
 )
 NOTE = (
-    "Relative L2 error in per cent of the column that is worst beside its band; n. a. not applicable, the reason is "
-    "told below, and why a dash stands for no answer. Time: of all answers together, with the start of the program, on "
-    "this machine."
+    "Relative L2 error in per cent of the column that is worst relative to its band; n. a.: not applicable; a dash: no "
+    "answer; the reasons are given below. Time: of all answers together, with the start of the program, on this "
+    "machine."
 )
 SILENT = (
-    "In brackets the instant up to which the error of an answer that is not explained is within what is allowed. What "
-    f"would tell: {WOULD_TELL}."
+    "In brackets: the time up to which the error of an answer without a certain cause is within what is allowed. What "
+    f"would tell the cause: {WOULD_TELL}."
 )
 
 

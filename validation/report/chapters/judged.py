@@ -127,7 +127,7 @@ def datum(column: Column, held: Standard) -> str:
 def _told(found: Sequence[Told]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
     rows = [(one.name, _value(one.value), _value(one.exact), one.unit) for one in found]
-    return Table(titles, tuple(rows), "Numbers beside; nothing is judged by them.")
+    return Table(titles, tuple(rows), "Further numbers, which are not judged.")
 
 
 def _value(value: float | None) -> str:

@@ -89,7 +89,7 @@ def _shares(found: Sequence[Group], form: float) -> str:
     if not said:
         return ""
     small = all(max(values) < form for values in parts.values() if values)
-    rest = ", so that neither explains it: it is one strain in the block in the place of a wave" if small else ""
+    rest = ", so that neither explains it: it is one strain in the block in place of a wave" if small else ""
     return f"; of the displacement's difference {' and '.join(said)}{rest}"
 
 

@@ -97,7 +97,8 @@ def conclusion(group: Group) -> str:
 
 def _agreement(group: Group) -> str:
     pairs = [("dda", reference) for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT))]
-    for solver, reference in (*pairs, *parts_of(group.cases[0]).values()):
+    others = [(pair["solver"], pair["reference"]) for pair in group.comparisons]  # of users' own solvers
+    for solver, reference in dict.fromkeys((*pairs, *parts_of(group.cases[0]).values(), *others)):
         said = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
             if values := _pair_values(group, solver, reference, metric):
@@ -153,7 +154,8 @@ def _damped_agreement(group: Group) -> str:
     if len(pairs) < 3 or not falls:
         return ""
     least, most = (f"{percent(error)} at ξ₁ = {100 * xi:.2f}\u00a0%" for xi, error in (pairs[0], pairs[-1]))
-    return f"the difference falls as the damping grows, from {least} to {most}: both are damped, which is no merit"
+    trend = f"the difference falls as the damping grows, from {least} to {most}"
+    return f"{trend}: both are damped, which is no sign of accuracy"
 
 
 def outcomes(group: Group) -> list[Block]:
@@ -236,7 +238,7 @@ def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> li
     """Say how the figure is read, as far as it is not written on it."""
     said = []
     if span := motion.start_of(panels, columns[0]):
-        said.append(f"More swings than can be drawn are the band that they fill; below, the first {plain(span, 2)} s.")
+        said.append(f"Oscillations too dense to draw are the band that they fill; below, the first {plain(span, 2)} s.")
     if any(panel.static for panel in panels):
         said.append("Hairline: static value.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))

@@ -19,7 +19,7 @@ from validation.runs.results import Results
 
 PRACTICE = (
     "For practice: cut the block into triangles and glue them stiffly (the joints' forces are unknowns of their own, "
-    "so stiff glue costs no digits). Squares answer for the axial motion only; more of them do not help."
+    "so stiff glue costs no digits). Squares are right for the axial motion only; more of them do not help."
 )
 LOCKED = (
     "Affine squares that meet at their corners can only move as u = f(x) + g(y): no square can shear without its "

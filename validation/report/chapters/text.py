@@ -14,6 +14,7 @@ from validation.scenes.scene import Scene
 
 DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
+OF_POLYGONS = {"block.base", "block.top"}  # edges of a polygon, which is told by its number of vertices
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
@@ -161,6 +162,7 @@ def parameters(scene: Scene, varied: set[str]) -> str:
         ("fem.degree", f"elements of degree {scene.fem.degree}"),
         *_of_mesh(scene),
     ]
+    items += _of_others(scene, {field for field, _ in items})
     return ", ".join(text for field, text in items if field not in varied) + "."
 
 
@@ -236,6 +238,16 @@ def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "damping.stiffness", f"a₁ = {damping.stiffness:g} s"
     if damping.kinetic == "adaptive":
         yield "damping.kinetic", "adaptive gg"
+
+
+def _of_others(scene: Scene, told: set[str]) -> Iterator[tuple[str, str]]:
+    """Yield the data of a block without words of their own here, by their keys, where they are not the defaults."""
+    tables = {"block": scene.stated_block, "contact": scene.stated_contact, "load": scene.stated_load}
+    for name, table in (tables | {"damping": scene.damping}).items():
+        for key, field in [] if table is None else type(table).model_fields.items():
+            value = getattr(table, key)
+            if f"{name}.{key}" not in told | OF_POLYGONS and value != field.default:
+                yield f"{name}.{key}", f"{key.replace('_', ' ')} = {value}"
 
 
 def _newtons(stiffness: float) -> str:

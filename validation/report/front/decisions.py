@@ -62,7 +62,7 @@ def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     )
     caption = (
         f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} %; where a line ends nothing "
-        "swings. Dashed upright: the time a wave takes from the top to the base; no longer step can see it."
+        "oscillates. Dashed vertical: the time a wave takes from top to base; a longer step cannot resolve it."
     )
     five = closed.step_for(scenes[0], 0.05)
     return [
@@ -71,7 +71,7 @@ def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
             "Choose the damping ratio ξ, then dt ≈ 4 ξ / ω₁"
             + (f": for 5\u00a0% at p = 1E, dt = {1e3 * five:.3g}\u00a0ms" if five else "")
             + ". Small damping and the wave both need a short step, and no step repairs the model: what is left "
-            "when the damping is gone is one strain in the place of a wave."
+            "when the damping is gone is one strain in place of a wave."
         ),
         histories.saved(charts_figure([chart], 62.0), directory, "decision-step.svg", caption),
         step_table(scenes),
@@ -121,7 +121,7 @@ def _as_run(found: Found) -> list[Block]:
         Table(titles, tuple(rows), "What each step cost over 0.2 s at p = 1E (relative L2), as run."),
         Paragraph(
             "Read both halves together: the left falls as the step grows because both motions are damped out, and only "
-            "the right tells what the step has taken."
+            "the right shows what the step has cost."
         ),
     ]
 
@@ -155,8 +155,9 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         ("p / E", ""), rings, (0.1, 1e5), (0.0, 1.05), marks, logarithmic=(True, False),
     )  # fmt: skip
     caption = (
-        "Left: beyond p = 10E the springs give way by little, and none brings the first frequency to the bar's. "
-        "Right: what the contact keeps of its swing each step; at 1 it rings for ever, and only (9/16, 1) avoids it."
+        "Left: beyond p = 10E the springs deflect little, and none brings the first frequency to the bar's. "
+        "Right: share of its amplitude that the contact keeps per step; at 1 it rings for ever, and only (9/16, 1) "
+        "avoids it."
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),
@@ -164,8 +165,8 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         histories.saved(charts_figure([give, ring], 52.0), directory, "decision-springs.svg", caption),
         spring_table(found, base),
         Paragraph(
-            "The ring is next to invisible in the displacement and stands in full in the contact force: whoever reads "
-            "forces, or lets the contact open by them, sees the scheme and not the block."
+            "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
+            "are read, or that open the contact, show the scheme and not the block."
         ),
     ]
 
@@ -185,9 +186,9 @@ def spring_rule(found: Found, base: Scene) -> str:
             f" (as run: {pressure} steps until the pressure is within 0.01\u00a0%, {displacement} for the displacement)"
         )
     return (
-        f"Take p = 10E: the springs then give way by {1e3 * ten:.3g}\u00a0mm at rest. At p = 100E they give way by "
+        f"Take p = 10E: the springs then deflect by {1e3 * ten:.3g}\u00a0mm at rest. At p = 100E they deflect by "
         f"{1e3 * hundred:.3g}\u00a0mm, but at dt = {milliseconds(STEP)} the contact force flips sign each step and "
-        f"keeps {percent(radius)} of its swing{run}. If stiff springs are a must, take α = 9/16, δ = 1, or a step "
+        f"keeps {percent(radius)} of its amplitude{run}. If stiff springs are a must, take α = 9/16, δ = 1, or a step "
         "below 4/ω of the contact."
     )
 
@@ -250,8 +251,8 @@ def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         {"critical": 100.0},
     )  # fmt: skip
     caption = (
-        "A discount per step damps the more the shorter the step is, without bound; the same discount held as a "
-        "rate (dashed) is a damping of the block and stays where it is."
+        "The shorter the step, the more a discount per step damps, without bound; held as a rate (dashed), it damps "
+        "the block alike at every step."
     )
     light = closed.timed(base, gg=0.98)
     below = closed.overdamped_below(light)
@@ -264,7 +265,7 @@ def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         _rule(
             f"Leave gg at 1, or hold it as a rate: gg = exp(−c dt) with c = 2 ω₁ ξ, for 5\u00a0% c = {rate:.3g} 1/s. "
             f"gg = 0.98 per step is {spoken} of critical"
-            + (f", and below dt = {1e3 * below:.3g}\u00a0ms the block creeps instead of swinging" if below else "")
+            + (f", and below dt = {1e3 * below:.3g}\u00a0ms the block creeps instead of oscillating" if below else "")
             + "; a refined step never converges."
         ),
         histories.saved(charts_figure([chart], 60.0), directory, "decision-discount.svg", caption),

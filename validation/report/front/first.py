@@ -55,9 +55,9 @@ def tested(paper: Scene) -> list[Block]:
             "strain εx, εy, γxy. Reported are v of the centroid and the contact pressure on the base."
         ),
         Paragraph(
-            "Beside it stand the same block in finite elements (fem), as a bar that is exact in space and takes the "
-            "same time steps (bar), and as one exact in space and time (continuum). What DDA differs from the bar is "
-            "its model, what the bar differs from the continuum is the time step."
+            "It is compared with the same block in finite elements (fem), as a bar that is exact in space and takes "
+            "the same time steps (bar), and as one exact in space and time (continuum). DDA differs from the bar by "
+            "its model, the bar from the continuum by the time step."
         ),
     ]
 
@@ -88,7 +88,7 @@ def force(found: Found) -> tuple[str, str] | None:
     at_rest = f"every run tends to {scene.load.pressure / 1e6:g} MPa" if right else "not every run tends to the load"
     return (
         "Is DDA's force right?",
-        f"At rest {'yes' if right else 'no'}: {at_rest}; on the way not: against the bar the contact pressure is "
+        f"At rest {'yes' if right else 'no'}: {at_rest}; during the motion no: against the bar the contact pressure is "
         f"off by {spoken} (relative L2 over {plain(_length(scene), 2)} s, p = {closed.ratio_of(scene):g}E).",
     )
 
@@ -144,8 +144,8 @@ def discount(paper: Scene) -> tuple[str, str]:
         spoken.append(f"{percent(xi)} at {milliseconds(step)}")
     return (
         f"What does gg = {DISCOUNT:g} do?",
-        f"It takes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity each step, not each second: alone, under average "
-        f"acceleration, it damps the first mode by {', '.join(spoken)} of critical; hold "
+        f"It removes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity in each step, not in each second: alone, under "
+        f"average acceleration, it damps the first mode by {', '.join(spoken)} of critical; hold "
         "the rate instead, gg = exp(−c dt) (decision 3).",
     )
 
@@ -161,7 +161,7 @@ def beware(found: Found) -> tuple[str, str] | None:
     high = [closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1 for s in _stiffnesses(longest.scene)]
     late = "" if time is None else f", while both are {percent(time)} off the continuum"
     return (
-        "What must I not believe?",
+        "What should I not trust?",
         f"The agreement at a long step: {percent(agreed)} at {milliseconds(longest.scene.time.step)}, because both are "
         f"damped out{late}; a locked contact that looks closed (it pulls with {plain(-min(pulls) / 1e6, 3)} MPa in "
         f"DDA); and any first frequency: one strain makes it {percent(min(high))} to {percent(max(high))} too high at "
@@ -231,7 +231,7 @@ def carrying_caption(found: Found, paper: Scene) -> str:
         said += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
     return (
         f"{said}. What the step itself spoils grows instead. p = {closed.ratio_of(paper):g}E, constant acceleration; "
-        "line: closed form; dots: as run; dashed uprights: the paper's three steps; relative L2."
+        "line: closed form; dots: as run; dashed verticals: the paper's three steps; relative L2."
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import HORIZON
-from validation.gates.gate import Gate, said
+from validation.gates.gate import Gate, value_text
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
@@ -169,7 +169,7 @@ def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
     ]
     for claim in claims:
         numbers = measured[claim.id]
-        listed = "; ".join(f"{k} {said(v)}" for k, v in numbers.items() if k != "verdict")
+        listed = "; ".join(f"{k} {value_text(v)}" for k, v in numbers.items() if k != "verdict")
         verdict = Finding(int(numbers["verdict"])).words
         condition = f" ({claim.condition})" if verdict == Finding.CONDITIONAL.words else ""
         parts += [

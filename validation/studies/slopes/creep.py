@@ -32,7 +32,7 @@ EVENTS, DDA = "block-events", "dda"
 KNOWN = (1.790e-3, 3.732e-3, 5.532e-3, 7.394e-3)
 RATES = {30.0: 18.7e-3, 22.0: 27.3e-3}  # its speed [m/s] over some tenths of a second
 HALF = 5e-7  # m: half a unit of the last digit of KNOWN
-# Way of the centroid in a second under lagged friction by a program of the trade [m], by time step [s].
+# Way of the centroid in a second under lagged friction by an established program [m], by time step [s].
 PROGRAM = {0.01: 1.0e-3, 0.002: 2.2e-3, 0.001: 5.2e-3, 0.0002: 499e-3}
 DIGIT = 5e-5  # m: half a unit of its last digit
 SHUFFLED = 0.2  # of the way: rounding, or 0.2 % on the springs, changes the order of stick and slip at the finest step
@@ -161,10 +161,10 @@ def stiffness_gates() -> Iterator[Gate]:
 
 
 def lagged_gates() -> Iterator[Gate]:
-    """Yield the gates on lagged friction beside a program of the trade."""
+    """Yield the gates on lagged friction beside an established program."""
     for step, way in PROGRAM.items():
         why = (
-            f"a program of the trade creeps {1e3 * way:g} mm in a second; band: 1.5 times the spread of springs softer "
+            f"an established program creeps {1e3 * way:g} mm in a second; band: 1.5 times the spread of springs softer "
             "by 0, 0.2 and 0.4 %, as its base is, and half a unit of its last digit"
         )
         chaos = "; 20 % at the finest step, where rounding decides the order of stick and slip" if way > 0.1 else ""

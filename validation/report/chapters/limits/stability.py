@@ -89,7 +89,7 @@ def conclusion(found: Sequence[Cell]) -> str:
     ends = Counter(cell.row.outcome for cell in found if cell.solver == "dda")
     grown, odd = ends[Outcome.UNSTABLE] + ends[Outcome.OVERFLOW], ends[Outcome.MISPREDICTED]
     tail = f"; {grown} runs of dda left their bounds, {f'all but {odd} more' if odd else 'all'} as predicted"
-    return f"Correct digits kept at least, in both quantities: {', '.join(said)}{tail if grown else ''}."
+    return f"Fewest correct digits, in both quantities: {', '.join(said)}{tail if grown else ''}."
 
 
 def outcome_table(found: Sequence[Cell]) -> Table:

@@ -31,8 +31,8 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "not settled within the run."
     )
     ring = (
-        "The ring's amplitude falls as 1/p while its decay per step, 8/(ω dt)², falls as well: the longest wait "
-        "lies between, and beyond it a ring too small to see never ends."
+        "The amplitude of the ringing falls as 1/p, and so does its decay per step, 8/(ω dt)²: it takes longest to "
+        "settle in between, and beyond, a ringing too small to see never ends."
     )
     return [
         *opening(manifest, lead=conclusion(table)),

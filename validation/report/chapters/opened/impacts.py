@@ -10,7 +10,7 @@ from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.solvers.contract import Role
+from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import role
 
 QUANTITIES = (  # title, metric, factor
@@ -50,7 +50,7 @@ def table(group: Group) -> Table:
 
 def named(solver: str) -> str:
     """Return a solver's name, marked where it is exact in time."""
-    return f"{solver} (exact)" if role(solver) in (Role.LIMIT, Role.TRUTH) else solver
+    return f"{solver} (exact)" if role(solver) in EXACT_IN_TIME else solver
 
 
 def cells(case: Case, solver: str) -> tuple[str, ...]:

@@ -54,7 +54,7 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
         mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
         curves.append(contact.Curve(words, omega, mean, low, high, dots))
     caption = (
-        "Speed that a block keeps of the one it lands with, over ω_c dt: mean (line) and range over the phase of the "
+        "Share of its landing speed that a block keeps, over ω_c dt: mean (line) and range over the phase of the "
         "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. The springs alone "
         "would return all of it, e = 1."
     )
@@ -120,7 +120,7 @@ def conclusion(maps: Sequence[Group]) -> str:
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
     said = "; ".join(parts)
     return (
-        f"{said[:1].upper()}{said[1:]}: what a step too large for the contact spoils is the motion, not the iteration."
+        f"{said[:1].upper()}{said[1:]}: a step too large for the contact spoils the motion, not the iteration."
     )
 
 

@@ -21,17 +21,18 @@ from validation.studies.rocking.rocking import DURATION, LET_GO, PULSE, PUSH
 from validation.studies.rocking.toppling import TURN, beyond
 
 SWINGS = (
-    "The quarter period of a rigid block, by quadrature, is met to what the corner settles. What an impact leaves of "
-    "the rate is no property of DDA: springs have no restitution of their own, and the ratio depends on time step, "
-    "springs and scheme. Constant acceleration gains no energy, so that it stays below one."
+    "The quarter period of a rigid block, by quadrature, is met up to the settlement of the corner. How much of its "
+    "rate a block keeps after an impact is no property of DDA: springs have no restitution of their own, and the ratio "
+    "depends on time step, springs and scheme. Constant acceleration gains no energy, so that it stays below one."
 )
 PULSES = (
-    "The threshold of the acceleration is that of the rigid block, in closed form; tilt and time are DDA's over its."
+    "The threshold of the acceleration is that of the rigid block, in closed form; tilt and time are DDA's over the "
+    "rigid block's."
 )
 FALLS = (
-    f"Times are those of a turn by {TURN} rad over the rigid block's. A tower that stands on its base is early by what "
-    "its upper corner pushes before it lifts, which goes with 1/√p. First-order rotation, x − r y, y + r x, multiplies "
-    "the area by 1 + r² in every step."
+    f"Times are those of a turn by {TURN} rad over the rigid block's. A tower that stands on its base is early, "
+    "because its upper corner pushes before it lifts, by an amount proportional to 1/√p. First-order rotation, "
+    "x − r y, y + r x, multiplies the area by 1 + r² in every step."
 )
 QUANTITIES = {  # metric -> words
     "moved": "way in the second half, over a sliding block's or the width",

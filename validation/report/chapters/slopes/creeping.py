@@ -23,16 +23,16 @@ ORANGE, AMBER, BLUE, GREEN, BLACK = "#d55e00", "#e69f00", "#0072b2", "#009e73", 
 CAPTION = (
     "Constant acceleration stops the creep, average acceleration keeps it, and lagged friction with dead bands speeds "
     "it up as the step is refined. "
-    "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip in a second "
-    "over the step; the exact block's is drawn across. Lagged friction with dead bands is that of another load, nine "
-    "times the weight, and is laid beside a program of the trade (circles)."
+    "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip per second "
+    "over the step; the horizontal line is the exact block's. Lagged friction with dead bands is under another load, "
+    "nine times the weight, and is compared with an established program (circles)."
 )
 SAID = (
-    "The normal springs ring when the weight comes on. Each swing takes normal force off the base, friction lets go, "
-    "and the block moves by some g/ωₙ²: undamped it creeps for ever, by the order of g/ωₙ = g √(m/2p) a second. "
+    "The normal springs ring when the weight comes on. Each cycle unloads the base, friction lets go, and the block "
+    "moves by about g/ωₙ²: undamped it creeps for ever, by the order of g/ωₙ = g √(m/2p) per second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
-    "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the pass "
-    "before and stick and slip are not looked at, the block goes on: with an open "
+    "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the "
+    "iteration before and stick and slip are not checked, the block keeps moving: with an open "
     "contact that closes only beyond a dead band, ever faster as the step is refined."
 )
 
@@ -59,7 +59,7 @@ def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlo
     slips = [over_step(words, [c for c in steps if of(c, kind)], color) for kind, words, color in kinds]
     slips.append(over_step("lagged, dead bands", lagged(found), GREEN))
     program = np.array(sorted(study.PROGRAM.items()))
-    slips.append(Trace("a program of the trade", 1e3 * program[:, 0], 1e3 * program[:, 1], BLACK, dotted=True))
+    slips.append(Trace("an established program", 1e3 * program[:, 0], 1e3 * program[:, 1], BLACK, dotted=True))
     slips += [across(case) for case in exact[:1]]
     panels = (
         Panel("Slide", "t [s]", "slide [mm]", tuple(line for line in lines if len(line.x)), legend="upper left"),
@@ -138,9 +138,9 @@ def by_step(found: Mapping[str, Group]) -> Table:
         )
     scale = friction.creep_scale(steps[0].scene)
     titles = columns(
-        "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "a program of the trade [mm]"
+        "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"
     )
-    caption = f"Slip in a second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
+    caption = f"Slip per second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
     return Table(titles, tuple(rows), caption)
 
 
@@ -162,8 +162,8 @@ def by_stiffness(found: Mapping[str, Group]) -> list[Block]:
         "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
     )
     caption = (
-        "Springs of other stiffness, steps with them: mean speed over seven swings, and the slide at which the block "
-        "stands under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 a step (ω_n dt = 0.17)."
+        "Springs of other stiffness, with steps to match: mean speed over seven cycles, and the slide at which the "
+        "block stops under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 per step (ω_n dt = 0.17)."
     )
     return [Table(titles, tuple(rows), caption)] if rows else []
 

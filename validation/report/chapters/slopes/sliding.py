@@ -23,15 +23,15 @@ ORANGE, BLUE, GREY = "#d55e00", "#0072b2", "#666666"
 RATES = np.geomspace(0.1, 100.0, 61)  # 1/s
 CAPTION = (
     "DDA follows the closed form down the incline, and a discount brakes it as a drag. "
-    "Left: way of the block down its incline, dda (lines) and the closed form (dashed), without a discount and with "
-    "gg = 0.98 and 0.99 a step. Right: share of its way that a body goes in a second, over the rate of the drag: "
-    "continuous drag (line) and runs (circles)."
+    "Left: distance that the block slides, dda (lines) and the closed form (dashed), without a discount and with "
+    "gg = 0.98 and 0.99 per step. Right: share of the distance without drag that a body covers in a second, over the "
+    "rate of the drag: continuous drag (line) and runs (circles)."
 )
 SAID = (
     "While every corner slips one way or is open, the centroid's uₜ + uₙ tan φ moves freely under "
     "g (sin β − tan φ cos β) − c a / m, whatever springs, step and scheme, through bounces too. The springs put the "
     "block ahead by tan φ times its settlement, at any step: this is what papers call the penalty error of sliding. "
-    "A discount is a drag of −ln(gg)/dt per second, in sliding and in flight alike: gg without dt says nothing."
+    "A discount is a drag of −ln(gg)/dt per second, in sliding and in flight alike: gg without dt means nothing."
 )
 
 
@@ -91,7 +91,7 @@ def run_outs(cases: Sequence[Case]) -> Table:
         *columns("decimal", "closed form [m]", "dda [m]", "ahead [µm]", "fem [m]"),
     )
     caption = (
-        "Way after a second at 28.9 degrees under 15 degrees of friction. Ahead: the run beyond the closed form; "
+        "Distance after a second at 28.9 degrees under 15 degrees of friction. Ahead: the run beyond the closed form; "
         "18.64 µm is tan φ times the settlement; under average acceleration the block is still in the air."
     )
     return Table(titles, tuple(_run_out(case) for case in cases), caption)

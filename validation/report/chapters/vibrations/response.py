@@ -35,7 +35,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     if curves := [_curve(manifest["data"], told) for told in manifest.get("data", {}).get("curves", [])]:
         caption = (
             "The paper's block under a pressure of 5 MPa that vibrates: DDA at dt = 2 ms under (1/2, 1), the same "
-            "model exact in time, and the continuum. A phase is that before the load."
+            "model exact in time, and the continuum. The phase is the lead over the load."
         )
         blocks.append(saved(response_figure(curves, logarithmic=False), directory, "response.svg", caption))
     if (table := amplitudes(rows)).rows:
@@ -56,8 +56,8 @@ def lead(rows: Rows) -> str:
     if not (isinstance(exact, float) and isinstance(stepped, float)):
         return ""
     return (
-        f"Next to its first frequency, at 52 Hz, the block answers with {1e3 * stepped:.1f} mm instead of "
-        f"{1e3 * exact:.1f} mm: at dt = 2 ms the step has taken {percent(1 - stepped / exact)} of the resonance."
+        f"Near its first frequency, at 52 Hz, the block responds with {1e3 * stepped:.1f} mm instead of "
+        f"{1e3 * exact:.1f} mm: at dt = 2 ms the step has removed {percent(1 - stepped / exact)} of the resonance."
     )
 
 
