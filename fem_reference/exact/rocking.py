@@ -88,27 +88,14 @@ class RockingBlock:
         With psi = alpha - tilt it is F(x, k) / p, k = cos(psi / 2) and
         tan(x) = sqrt(sin(alpha - tilt / 2) sin(tilt / 2)) / (cos(alpha / 2) sin(psi / 2)).
         """
-        self._check_tilt(tilt)
+        if not 0 <= tilt <= self.alpha:
+            raise ValueError(f"tilt: must be from 0 to alpha = {self.alpha:g} rad, got {tilt!r}")
         if tilt == self.alpha:
             return math.inf
         psi = self.alpha - tilt
         rise = math.sqrt(math.sin(self.alpha - tilt / 2) * math.sin(tilt / 2))
         angle = math.atan2(rise, math.cos(self.alpha / 2) * math.sin(psi / 2))
         return float(ellipkinc(angle, math.cos(psi / 2) ** 2)) / self.p
-
-    def slender_quarter_period(self, tilt: float) -> float:
-        """Housner's quarter period of a slender block, acosh(1 / (1 - tilt / alpha)) / p [s]."""
-        self._check_tilt(tilt)
-        return math.inf if tilt == self.alpha else math.acosh(1 / (1 - tilt / self.alpha)) / self.p
-
-    def small_quarter_period(self, tilt: float) -> float:
-        """Limit of the quarter period for a small tilt, sqrt(2 tilt I / (m g a / 2)) [s]."""
-        self._check_tilt(tilt)
-        return math.sqrt(2 * tilt / math.sin(self.alpha)) / self.p
-
-    def _check_tilt(self, tilt: float) -> None:
-        if not 0 <= tilt <= self.alpha:
-            raise ValueError(f"tilt: must be from 0 to alpha = {self.alpha:g} rad, got {tilt!r}")
 
 
 @dataclass(frozen=True)
