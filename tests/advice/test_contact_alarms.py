@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact
@@ -70,6 +71,32 @@ def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
     assert "arbitrary" not in soft.sentence and soft.values["omega"] == pytest.approx(0.8607, abs=1e-4)
     pulls = raised(PAPER.with_values({"contact.band": [0.0, 1e-3]}), tmp_path)[kinds.PULLING]
     assert pulls.values["pull"] == pytest.approx(2e6)  # 2 p f0, a fifth of the load
+
+
+HARD = STIFF | {"time.step": 1e-5}
+LANDED = {"contact.gap": 1e-3, "switches.first_closing": 5e-3}
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "metrics", "words"),
+    [
+        (kinds.GAINED, {}, {"energy.switching_gain": 0.25}, "put in 25 % of the energy"),
+        (kinds.DRAG, {"time.gg": 0.98}, {"contact.open_share": 0.4}, "40 % of the time: speeds fall with the time "
+         "constant 0.05 s"),
+        (kinds.PENALTY, HARD, {"contact.peak_force": 6e7}, "6e+07 N, is 4 times that of the exact bar"),
+        (kinds.PULLING, {"contact.band": [0.0, 1e-3]}, {}, "up to 2e+06 N, 20 % of the load"),
+        (kinds.HIDDEN, {"time.step": 2e-3}, {}, "dt = 0.002 s is beyond 0.001897 s"),
+        (kinds.MAY_GAIN, STIFF | AVERAGE, LANDED, "delta = 0.5 with w_c dt = 8.61"),
+        (kinds.LARGE_STEP, STIFF, LANDED, "w_c dt = 8.61, w_c = sqrt(8 p / m): the restitution of a contact is "
+         "arbitrary"),
+    ],
+)  # fmt: skip
+def test_a_sentence_tells_the_numbers_of_its_run(
+    kind: str, values: dict[str, Any], metrics: dict[str, float], words: str
+) -> None:
+    rows = {"dda": made_row("dda", metrics), "bar-events": made_row("bar-events", {"contact.peak_force": 1.5e7})}
+    told = {alarm.kind: alarm.sentence for alarm in kinds.contact_alarms(PAPER.with_values(values), rows)}
+    assert words in told[kind]
 
 
 @pytest.mark.parametrize(
