@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 from conftest import SCENE, refused, typed
+from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact_page
+from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
+from validation.runs.run import Outcome
 
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
@@ -59,6 +62,14 @@ def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:
     path.write_text(SCENE.replace("steps = 50", "steps = 2"))
     assert "--set contact.law=unilateral" in refused("contact", path)
     assert typed("contact", path, "--set", "contact.law=unilateral").returncode == 0
+
+
+def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = made_row("dda", outcome=Outcome.NO_CONTACT_STATE, notes=("at step 3",))
+    monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
+    done = typed("contact", "unlocked-constant", *SHORT)
+    assert done.returncode == 3
+    assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
 
 
 def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:
