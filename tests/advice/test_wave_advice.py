@@ -1,5 +1,6 @@
 """Blocks and step for a wave: what is advised is just good enough, and what the present ones do."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -99,6 +100,16 @@ def test_the_command_advises_for_a_wave() -> None:
     assert done.exit_code == 0
     assert "7.846 %" in done.output and "advised" in done.output
     assert '"limits_step": "loss"' in CliRunner().invoke(app, [*words, "--json"]).output
+
+
+def test_the_command_lists_blocks_step_loss_and_delay_of_both() -> None:
+    words = ["advise", "figures-3-4", "--set", "time.step=0.01", "--fmax", "5", "--wavelengths", "4"]
+    found = json.loads(CliRunner().invoke(app, [*words, "--json"]).output)
+    lines = {line.split()[0]: line.split()[1:] for line in CliRunner().invoke(app, words).output.splitlines() if line}
+    for name in ("present", "advised"):
+        one = found[name]
+        shares = f"{100 * one['loss']:.4g}", "%", f"{one['delay']:+.4g}", f"{100 * one['damping']:.4g}", "%"
+        assert lines[name] == [f"{one['heights'][0]:.5g}", f"{one['step']:.6g}", *shares]
 
 
 @pytest.mark.parametrize(
