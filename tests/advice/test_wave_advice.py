@@ -84,6 +84,21 @@ def test_the_present_step_is_told_in_words() -> None:
     assert (whole.limits_height, whole.blocks) == ("column", (1,))
 
 
+@pytest.mark.parametrize(("delay", "words"), [(0.25, "0.25 periods late"), (-0.25, "0.25 periods early")])
+def test_an_arrival_is_late_or_early_by_its_sign(delay: float, words: str) -> None:
+    way = wave_advice._Way(wave_advice.layers_of(COLUMN), 5.0, 1.0)
+    passage = wave_advice.Passage(0.01, 1.0, (2.0,), 0.25, delay, 0.05)
+    said = wave_advice._sentence(COLUMN, way, passage)
+    assert "75 % of a wave arrives" in said and said.endswith(f"{words}.")
+    assert f"lose 25 % of it and bring it {words};" in wave_advice._advised(COLUMN, way, passage, "column", "loss")
+
+
+def test_the_layer_of_the_shortest_passage_sets_the_stable_step() -> None:
+    explicit = load_scene("waves-site").with_values({"time.alpha": 0.0, "time.delta": 0.5, "time.allow_unstable": True})
+    way = wave_advice._Way(wave_advice.layers_of(explicit), 8.0, 1.0)
+    assert wave_advice._stable(explicit, way) == pytest.approx(2 * 0.5 / 220 / np.sqrt(12), rel=1e-4)  # the third
+
+
 def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
     scene = COLUMN.with_values(AVERAGE | {"time.gg": 0.99})
     losses = [advise_wave(scene.with_values({"time.step": dt}), 5.0, 0.1).present.loss for dt in (0.01, 0.005, 0.001)]
