@@ -18,7 +18,7 @@ from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.rigid.impacts import impact_restitution
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
@@ -122,6 +122,13 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
     assert contact.hidden_from(PAPER.with_values(AVERAGE)) == pytest.approx(2.6832815730e-3, rel=1e-10)
     for none in ({"contact.gap": 0.1}, {"block.velocity": -1.0}, {"load.gravity": 2000.0}, {"load.pressure": -1.0}):
         assert contact.hidden_from(PAPER.with_values(none)) is None
+
+
+def test_the_opening_is_hidden_by_the_height_and_not_the_width() -> None:
+    data = PAPER.definition()
+    del data["block"]["side"]
+    oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
+    assert contact.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
 
 
 @pytest.mark.parametrize(
