@@ -11,7 +11,7 @@ import pytest
 from oracles.made_cases import between, made_case, made_group
 
 from validation.report.blocks import Table
-from validation.report.chapters import waves
+from validation.report.chapters import subblocks, waves
 from validation.report.chapters.opened import impacts, rebound, turning
 from validation.report.chapters.slopes import creeping
 from validation.report.chapters.vibrations import response
@@ -139,6 +139,19 @@ def test_a_fall_turns_downwards_and_first_order_rotation_grows_in_per_cent() -> 
     assert np.allclose(areas["exact"], 0) and np.allclose(areas["first-order"], [0, 0.1, 0.3, 0.5])
     product = np.cumprod(1 + np.array([0.05, 0.05, 0.1, 0.1]) ** 2) - 1
     assert np.allclose(areas["product"], 100 * product)
+
+
+# ---- sub-blocks -----------------------------------------------------------------------------------------------------
+
+
+def test_sub_blocks_are_told_by_their_first_frequency_over_that_of_the_elements() -> None:
+    metrics = {"mode1.frequency": 120.0, "mode1.damping": 0.05}
+    elements = {"mode1.frequency": 100.0, "mode1.damping": 0.04}
+    case = made_case(load_scene("rocking").expand()[0], {"dda": metrics, "fem": elements})
+    (row,) = subblocks._rocking(made_group(case)).rows
+    assert [float(cell) for cell in row[1:5]] == [120.0, 100.0, 0.05, 0.04] and row[5] == "20\u00a0%"
+    low = made_case(case.scene, {"dda": {"mode1.frequency": 75.0}, "fem": elements})
+    assert subblocks._rocking(made_group(low)).rows[0][5] == "−25\u00a0%"
 
 
 # ---- creep and impacts --------------------------------------------------------------------------------------------
