@@ -17,7 +17,7 @@ from validation.engine import measure, origin
 from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate
-from validation.engine.run import finish
+from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.gates.gate import Gate, Status, judge
 from validation.metrics import growth
@@ -321,3 +321,17 @@ def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Sc
     (row,) = finish([Case(alike, "dda:full")], second, Results(tmp_path)).rows.values()
     assert len(Results(tmp_path).rows()) == 1
     assert (row.scene, row.solver, row.study) == ("alike", "dda:full", "second")
+
+
+def test_a_verdict_carries_the_alarms_of_its_case_and_of_its_whole_scene(scene: Scene, tmp_path: Path) -> None:
+    first, second = swept = scene.model_copy(update={"sweep": {"time.step": [0.001, 0.002]}}).expand()
+    raised: Any = [{"kind": kind, "scene": name, "sentence": "", "values": {}} for kind, name in
+                   (("of all", scene.name), ("of one", first.name), ("of another", "elsewhere"))]  # fmt: skip
+    gates = tuple(Gate(case.name, ("dda",), "displacement.static", -1.0, 1.0, "r") for case in swept)
+    run_study(
+        Study("s", "t", "p", swept, ("dda",), gates=lambda: gates,
+              annotate=lambda scenes, finished: {"alarms": raised, "budgets": []}),
+        Results(tmp_path),
+    )  # fmt: skip
+    told = {verdict["scene"]: verdict["alarms"] for verdict in Results(tmp_path).verdicts()}
+    assert told == {first.name: ["of all", "of one"], second.name: ["of all"]}
