@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact
@@ -17,7 +18,7 @@ from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.rigid.impacts import impact_restitution
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
@@ -72,6 +73,32 @@ def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
     assert pulls.values["pull"] == pytest.approx(2e6)  # 2 p f0, a fifth of the load
 
 
+HARD = STIFF | {"time.step": 1e-5}
+LANDED = {"contact.gap": 1e-3, "switches.first_closing": 5e-3}
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "metrics", "words"),
+    [
+        (kinds.GAINED, {}, {"energy.switching_gain": 0.25}, "have added 25 % to the energy"),
+        (kinds.DRAG, {"time.gg": 0.98}, {"contact.open_share": 0.4}, "40 % of the time: speeds fall with the time "
+         "constant 0.05 s"),
+        (kinds.PENALTY, HARD, {"contact.peak_force": 6e7}, "6e+07 N, is 4 times that of the exact bar"),
+        (kinds.PULLING, {"contact.band": [0.0, 1e-3]}, {}, "up to 2e+06 N, 20 % of the load"),
+        (kinds.HIDDEN, {"time.step": 2e-3}, {}, "dt = 0.002 s is beyond 0.001897 s"),
+        (kinds.MAY_GAIN, STIFF | AVERAGE, LANDED, "delta = 0.5 with w_c dt = 8.61"),
+        (kinds.LARGE_STEP, STIFF, LANDED, "w_c dt = 8.61, w_c = sqrt(8 p / m): the restitution of a contact is "
+         "arbitrary"),
+    ],
+)  # fmt: skip
+def test_a_sentence_tells_the_numbers_of_its_run(
+    kind: str, values: dict[str, Any], metrics: dict[str, float], words: str
+) -> None:
+    rows = {"dda": made_row("dda", metrics), "bar-events": made_row("bar-events", {"contact.peak_force": 1.5e7})}
+    told = {alarm.kind: alarm.sentence for alarm in kinds.contact_alarms(PAPER.with_values(values), rows)}
+    assert words in told[kind]
+
+
 @pytest.mark.parametrize(
     "values",
     [
@@ -95,6 +122,13 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
     assert contact.hidden_from(PAPER.with_values(AVERAGE)) == pytest.approx(2.6832815730e-3, rel=1e-10)
     for none in ({"contact.gap": 0.1}, {"block.velocity": -1.0}, {"load.gravity": 2000.0}, {"load.pressure": -1.0}):
         assert contact.hidden_from(PAPER.with_values(none)) is None
+
+
+def test_the_opening_is_hidden_by_the_height_and_not_the_width() -> None:
+    data = PAPER.definition()
+    del data["block"]["side"]
+    oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
+    assert contact.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
 
 
 @pytest.mark.parametrize(

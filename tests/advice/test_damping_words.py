@@ -222,6 +222,7 @@ def test_the_advice_names_the_solution_whose_contact_flips() -> None:
     [
         (0.5, "at 50 % of critical: the largest attainable value is 30 %, at dt = 0.02 s."),
         (0.01, "at 1 % of critical: the smallest attainable value is 2 %, at dt = 0.001 s."),
+        (0.1, "at 10 % of critical: it lies in a gap between attainable values."),
     ],
 )
 def test_what_is_out_of_reach_is_told_with_where_the_end_is(target: float, words: str) -> None:

@@ -1,10 +1,12 @@
 """Where one parameter cannot give the damping, the adviser says what comes nearest and which settings give it."""
 
+import math
 from typing import Any
 
 import pytest
 
 from validation.advice.advice import Advice, advise
+from validation.advice.instead import instead
 from validation.advice.spectra import damping
 from validation.scenes.scene import Scene, load_scene
 
@@ -32,6 +34,33 @@ def test_what_is_named_instead_gives_the_target(target: float, solve_for: str, v
     assert not found.reachable and found.sentence.startswith("No ") and words in found.sentence
     assert found.instead is not None
     assert damping(scene.with_values(found.instead)).modes[0].damping == pytest.approx(target, rel=1e-6)
+
+
+class Found:
+    """A search over a step, by its logarithm, that has found these steps."""
+
+    def __init__(self, *steps: float) -> None:
+        self.steps = steps
+
+    def ends(self) -> list[float]:
+        return []
+
+    def solutions(self, target: float) -> list[float]:
+        return [math.log(step) for step in self.steps]
+
+    def value(self, s: float) -> float:
+        return math.exp(s)
+
+    def settings(self, s: float) -> dict[str, float]:
+        return {"time.step": math.exp(s)}
+
+
+@pytest.mark.parametrize(("steps", "kept"), [((0.0015, 0.02), 0.0015), ((0.0001, 0.003), 0.003)])
+def test_of_two_steps_that_do_the_one_that_changes_less_is_named(steps: tuple[float, float], kept: float) -> None:
+    makes: Any = {"dt": lambda scene: Found(*steps), "gg": lambda scene: Found(), "scheme": lambda scene: Found()}
+    found = instead(BASE, "gg", 0.05, makes, 344.6)
+    assert found.settings == {"time.step": pytest.approx(kept)}
+    assert found.words == f"Change the time step instead: time.step = {kept:g} gives it (--solve-for dt)."
 
 
 def test_the_nearest_is_the_end_of_what_can_be_had() -> None:

@@ -1,5 +1,6 @@
 """Blocks and step for a wave: what is advised is just good enough, and what the present ones do."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -83,6 +84,21 @@ def test_the_present_step_is_told_in_words() -> None:
     assert (whole.limits_height, whole.blocks) == ("column", (1,))
 
 
+@pytest.mark.parametrize(("delay", "words"), [(0.25, "0.25 periods late"), (-0.25, "0.25 periods early")])
+def test_an_arrival_is_late_or_early_by_its_sign(delay: float, words: str) -> None:
+    way = wave_advice._Way(wave_advice.layers_of(COLUMN), 5.0, 1.0)
+    passage = wave_advice.Passage(0.01, 1.0, (2.0,), 0.25, delay, 0.05)
+    said = wave_advice._sentence(COLUMN, way, passage)
+    assert "75 % of a wave arrives" in said and said.endswith(f"{words}.")
+    assert f"lose 25 % of it and bring it {words};" in wave_advice._advised(COLUMN, way, passage, "column", "loss")
+
+
+def test_the_layer_of_the_shortest_passage_sets_the_stable_step() -> None:
+    explicit = load_scene("waves-site").with_values({"time.alpha": 0.0, "time.delta": 0.5, "time.allow_unstable": True})
+    way = wave_advice._Way(wave_advice.layers_of(explicit), 8.0, 1.0)
+    assert wave_advice._stable(explicit, way) == pytest.approx(2 * 0.5 / 220 / np.sqrt(12), rel=1e-4)  # the third
+
+
 def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
     scene = COLUMN.with_values(AVERAGE | {"time.gg": 0.99})
     losses = [advise_wave(scene.with_values({"time.step": dt}), 5.0, 0.1).present.loss for dt in (0.01, 0.005, 0.001)]
@@ -99,6 +115,16 @@ def test_the_command_advises_for_a_wave() -> None:
     assert done.exit_code == 0
     assert "7.846 %" in done.output and "advised" in done.output
     assert '"limits_step": "loss"' in CliRunner().invoke(app, [*words, "--json"]).output
+
+
+def test_the_command_lists_blocks_step_loss_and_delay_of_both() -> None:
+    words = ["advise", "figures-3-4", "--set", "time.step=0.01", "--fmax", "5", "--wavelengths", "4"]
+    found = json.loads(CliRunner().invoke(app, [*words, "--json"]).output)
+    lines = {line.split()[0]: line.split()[1:] for line in CliRunner().invoke(app, words).output.splitlines() if line}
+    for name in ("present", "advised"):
+        one = found[name]
+        shares = f"{100 * one['loss']:.4g}", "%", f"{one['delay']:+.4g}", f"{100 * one['damping']:.4g}", "%"
+        assert lines[name] == [f"{one['heights'][0]:.5g}", f"{one['step']:.6g}", *shares]
 
 
 @pytest.mark.parametrize(

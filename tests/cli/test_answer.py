@@ -15,6 +15,7 @@ from validation import load_scene
 from validation.cli.printing import answer
 from validation.cli.printing.answer import FAILURES_SHOWN, SCREEN, Ran
 from validation.engine.measured import Judged
+from validation.gates.changes import Change
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -94,6 +95,20 @@ def test_of_very_many_failures_the_rest_is_counted_by_metric(made: Results) -> N
     lines = said(ran(made, [run_of("made", many)]), 200)
     assert sum(line.startswith(f"FAIL {CASE.name}") for line in lines) == FAILURES_SHOWN
     assert "FAIL and 7 more gates: displacement.l2 7; --verbose shows every one" in lines
+
+
+def test_plain_data_hold_what_the_text_says(made: Results) -> None:
+    change = Change("made", GATE.id, "PASS", "FAIL", 0.035, 0.0512)
+    data = answer.as_data(replace(ran(made, [run_of("made", [judge(GATE, 0.0512), NOT_RUN], ENDS)]), changes=[change]))
+    (study,) = data["studies"]
+    assert study == {
+        "study": "made", "passed": 0, "failed": 1, "not_run": 1, "seconds": 1.25,
+        "outcomes": {"completed": 1, "overflow": 1, "timeout": 1, "not applicable": 1},
+    }  # fmt: skip
+    assert data["alarms"] == {"hidden tension": 2, "contact ringing": 1}
+    assert (data["changes"][0]["before"], data["changes"][0]["after"]) == ("PASS", "FAIL")
+    assert data["ended_badly"] == [f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3"]
+    assert data["messages"] == ["a: no case was measured"] and data["status"] == 1
 
 
 FAILING = """

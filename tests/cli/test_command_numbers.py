@@ -45,6 +45,12 @@ def test_solve_prints_the_last_values_and_the_duration(scene_file: Path, tmp_pat
     assert history.time[-1] == pytest.approx(0.1) and history.displacement[-1] != history.displacement[0]
 
 
+def test_solve_says_what_a_solver_does_not_report(scene_file: Path) -> None:
+    done = typed("solve", scene_file, "--solver", "bar", "--set", 'run.columns=["displacement", "rotation"]')
+    assert done.returncode == 0 and done.stderr.splitlines()[-1] == "note: not reported: rotation"
+    assert "rotation" not in done.stdout
+
+
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

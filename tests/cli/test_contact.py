@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 from conftest import SCENE, refused, typed
+from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact_page
+from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
+from validation.runs.run import Outcome
 
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
@@ -64,6 +67,39 @@ def test_a_locked_scene_is_told_how_to_unlock(tmp_path: Path) -> None:
     path.write_text(SCENE.replace("steps = 50", "steps = 2"))
     assert "--set contact.law=unilateral" in refused("contact", path)
     assert typed("contact", path, "--set", "contact.law=unilateral").returncode == 0
+
+
+def test_each_line_of_the_table_has_its_own_metric_in_its_own_unit() -> None:
+    run = {
+        "switches.count": 6.0, "contact.open_share": 0.25, "contact.gap": 2e-3, "contact.penetration": 3e-3,
+        "contact.peak_force": 4e6, "contact.impulse": 5e6, "contact.landing_speed": 1.5, "contact.restitution": 0.7,
+        "contact.restitution_first": 0.8, "contact.restitution_mean": 0.9, "energy.switching_gain": 0.01,
+        "energy.rise": 0.02, "contact.slip": 7e-3, "contact.slip_rate": 8e-3, "energy.lost_algorithmic": 1100.0,
+        "energy.lost_kinetic_damping": 1200.0, "energy.lost_switching": 1300.0, "energy.lost_friction": 1400.0,
+        "contact.mean_solves": 1.25, "contact.most_solves": 3.0, "horizon.time": 0.05,
+        "switches.first_opening": 0.016, "switches.first_closing": 0.02,
+    }  # fmt: skip
+    scene = load_scene("slope-sliding").expand()[0]
+    _, *lines = contact_page.table(scene, {"dda": run})
+    assert lines == [
+        ("first opening", "0.016 s"), ("first landing", "0.02 s"), ("switches", "6"),
+        ("share of the time open", "25 %"), ("largest gap", "2 mm"), ("largest penetration", "3 mm"),
+        ("peak contact force", "4 MN"), ("impulse of the contact", "5 MN s"), ("fastest landing", "1.5 m/s"),
+        ("restitution of the block", "0.7"),
+        ("restitution of the first contact", "0.8"), ("restitution, mean of contacts", "0.9"),
+        ("energy gained by switching", "1 %"), ("energy, greatest above the start", "2 %"), ("slip", "7 mm"),
+        ("slip per second, at the end", "8 mm/s"), ("energy lost by the scheme", "1.1 kJ"),
+        ("energy lost by gg", "1.2 kJ"), ("energy lost by switching", "1.3 kJ"), ("energy lost by friction", "1.4 kJ"),
+        ("solves per step, mean and most", "1.25, 3"), ("histories agree up to", "0.05 s"),
+    ]  # fmt: skip
+
+
+def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = made_row("dda", outcome=Outcome.NO_CONTACT_STATE, notes=("at step 3",))
+    monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
+    done = typed("contact", "unlocked-constant", *SHORT)
+    assert done.returncode == 3
+    assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
 
 
 def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:

@@ -42,6 +42,13 @@ def test_numbers_of_a_block_are_those_of_the_formulas(
     assert "dt stable" not in found and "Omega" not in found
 
 
+def test_a_wave_crosses_the_height_and_the_load_stands_on_the_width(scene_file: Path) -> None:
+    found = single(shown(scene_file, "--set", "block.width=3.0", "--set", "block.height=1.25"))
+    c = math.sqrt(1e9 / 2700)
+    wanted = {"m": 2700 * 3.75, "h/c": 1.25 / c, "c dt/h": c * 0.002 / 1.25, "F/2p": 5e6 * 3 / 2e9}
+    assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=1e-9)
+
+
 def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: Path) -> None:
     explicit = ("--set", "time.alpha=0", "--set", "time.delta=0.5", "--set", "time.allow_unstable=true")
     found = shown(scene_file, *explicit)

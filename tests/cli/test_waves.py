@@ -30,6 +30,28 @@ def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option:
     assert np.array_equal(table, response(SCENE, np.linspace(2, 180, 7), "bar", exact).table())
 
 
+def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_noted_beyond_half_the_sampling() -> None:
+    options = ["--from", "1", "--to", "200", "--points", "200"]
+    lines = said("response", *CASE, *options).splitlines()
+    for label, exact in (("as stepped", False), ("exact in time", True)):
+        found = response(SCENE, np.linspace(1, 200, 200), "dda", exact)
+        ((f, moved), *_), ((g, pressed), *_) = found.peaks("displacement"), found.peaks("contact_pressure")
+        first = next(line for line in lines if line.startswith(label))
+        assert first.split()[-4:] == [f"{value:.6g}" for value in (f, moved, g, pressed)]
+    assert lines[1].split() == ["peak", "[Hz]", "displacement", "[m]", "peak", "[Hz]", "contact", "pressure", "[Pa]"]
+    assert not [line for line in lines if line.startswith("note")]
+    (note,) = [line for line in said("response", *CASE, "--to", "251", "--points", "2").splitlines() if "note" in line]
+    assert "above 250 Hz, 1 / (2 dt)" in note
+
+
+def test_the_least_ratio_of_a_step_is_told_in_per_cent_at_its_frequency_in_hertz() -> None:
+    rows = [line.split() for line in said("rayleigh", "--dt", "0.01", "--gg", "0.99").splitlines()]
+    (leading,) = [row[2:] for row in rows if row[:2] == ["leading", "order"]]
+    a0, a1 = 0.01 / 0.01, 0.5 * 0.01
+    least, at = 100 * np.sqrt(a0 * a1), np.sqrt(a0 / a1) / (2 * np.pi)
+    assert [float(cell) for cell in leading] == pytest.approx([a0, a1, least, at], rel=1e-5)
+
+
 @pytest.mark.long
 def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(tmp_path: Path) -> None:
     for ending in ("svg", "pdf", "png"):

@@ -13,8 +13,11 @@ from faults import seams
 from oracles.made_cases import made_history, made_row
 from oracles.pages import table
 
+from validation.engine import measure, origin
+from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate
+from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.gates.gate import Gate, Status, judge
 from validation.metrics import growth
@@ -26,7 +29,8 @@ from validation.runs.files import read_csv
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import Results
-from validation.scenes.scene import load_scene
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.studies import pack
 
@@ -290,3 +294,44 @@ def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkey
     assert found["python"] == platform.python_version()
     assert (found["packages"]["numpy"], found["packages"]["scipy"]) == (np.__version__, scipy.__version__)
     assert (found["commit"], found["processor"]) == ("the commit", "the processor")
+
+
+# ---- rows ---------------------------------------------------------------------------------------------------------
+
+
+def test_what_differs_between_rows_is_told_with_the_number_of_each() -> None:
+    rows = [made_row("dda", provenance={"commit": commit}) for commit in ("then", "now", "then")]
+    assert origin.of_rows(rows)["commit"] == "then (2 rows); now (1 row)"
+
+
+def test_a_timed_run_keeps_the_least_seconds_of_each_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    timings = iter([{"setup": 3.0, "stepping": 1.0}, {"setup": 1.0, "stepping": 4.0}, {"setup": 2.0, "stepping": 2.0}])
+    monkeypatch.setattr(measure, "attempt", lambda *case: (None, Run(Outcome.COMPLETED, seconds=next(timings))))
+    case = Case(load_scene("figure-8"), "dda", repeats=3)
+    found = measure._repeated(Run(Outcome.COMPLETED, seconds={"setup": 9.0, "stepping": 9.0}), get_solver("dda"), case)
+    assert found.seconds == {"setup": 1.0, "stepping": 1.0}
+    assert found.notes == ("least seconds of 3 repeats, spread 1 s",)
+
+
+def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Scene, tmp_path: Path) -> None:
+    """Without savings the solver dda is what is called dda:full, and its row is of the same key."""
+    alike = scene.model_copy(update={"name": "alike"})
+    first, second = (Study(name, "t", "p", [scene], ("dda",)) for name in ("first", "second"))
+    finish([Case(scene, "dda", without_savings=True)], first, Results(tmp_path))
+    (row,) = finish([Case(alike, "dda:full")], second, Results(tmp_path)).rows.values()
+    assert len(Results(tmp_path).rows()) == 1
+    assert (row.scene, row.solver, row.study) == ("alike", "dda:full", "second")
+
+
+def test_a_verdict_carries_the_alarms_of_its_case_and_of_its_whole_scene(scene: Scene, tmp_path: Path) -> None:
+    first, second = swept = scene.model_copy(update={"sweep": {"time.step": [0.001, 0.002]}}).expand()
+    raised: Any = [{"kind": kind, "scene": name, "sentence": "", "values": {}} for kind, name in
+                   (("of all", scene.name), ("of one", first.name), ("of another", "elsewhere"))]  # fmt: skip
+    gates = tuple(Gate(case.name, ("dda",), "displacement.static", -1.0, 1.0, "r") for case in swept)
+    run_study(
+        Study("s", "t", "p", swept, ("dda",), gates=lambda: gates,
+              annotate=lambda scenes, finished: {"alarms": raised, "budgets": []}),
+        Results(tmp_path),
+    )  # fmt: skip
+    told = {verdict["scene"]: verdict["alarms"] for verdict in Results(tmp_path).verdicts()}
+    assert told == {first.name: ["of all", "of one"], second.name: ["of all"]}

@@ -12,7 +12,7 @@ from conftest import SCENE
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, load_scene
 from validation.solvers.fenicsx import FEniCSx
 
 ROOT = Path(__file__).parents[2]
@@ -78,14 +78,33 @@ def test_what_is_measured_enters_the_key(scene: Scene) -> None:
     assert len({case.key() for case in cases}) == len(cases) - 1  # no names: all that the usual measures hold
 
 
+def keys_of(scene: Scene, solver: str, file: Path, texts: tuple[str, str]) -> set[str]:
+    """Return the keys of a scene as a file that it names has one content and another."""
+    keys = set()
+    for text in texts:
+        file.write_text(text)
+        keys.add(Case(scene, solver).key())
+    return keys
+
+
 def test_the_content_of_a_record_enters_the_key(scene: Scene, tmp_path: Path) -> None:
     record = tmp_path / "record.csv"
     moved = scene.with_values({"load.base_motion": str(record)})
-    keys = set()
-    for last in ("0.001", "0.002"):
-        record.write_text(f"time,x\n0,0\n1,{last}\n")
-        keys.add(Case(moved, "dda").key())
-    assert len(keys) == 2
+    assert len(keys_of(moved, "dda", record, ("time,x\n0,0\n1,0.001\n", "time,x\n0,0\n1,0.002\n"))) == 2
+
+
+def test_the_content_of_a_column_s_record_enters_the_key(tmp_path: Path) -> None:
+    record = tmp_path / "record.csv"
+    site = load_scene("waves-site").with_values({"input.record": str(record)})
+    texts = "time,velocity\n0,0\n1,0.1\n", "time,velocity\n0,0\n1,0.2\n"
+    assert len(keys_of(site, "layers", record, texts)) == 2
+
+
+def test_the_content_of_a_mesh_enters_the_key_of_who_reads_it(scene: Scene, tmp_path: Path) -> None:
+    mesh = tmp_path / "block.msh"
+    meshed = scene.with_values({"fem.mesh": str(mesh)})
+    assert len(keys_of(meshed, "fem", mesh, ("one", "another"))) == 2
+    assert len(keys_of(meshed, "dda", mesh, ("one", "another"))) == 1
 
 
 @pytest.mark.long

@@ -50,6 +50,11 @@ def test_the_table_has_a_cell_for_every_program_that_ran() -> None:
     assert table.notes[-1] == "Not installed: Two."
 
 
+def test_what_is_allowed_is_the_band_that_decides_most_often() -> None:
+    other = cells() | {("locked", "two"): Cell("locked", "two", FAIL, FAIL, "damped", "rotation", 0.5, 0.02, 0.1, 1.0)}
+    assert by_problem(Field(PROBLEMS, PROGRAMS, other)).rows[0] == ("allowed [%]", "5.7", "1.5", "")
+
+
 def test_causes_and_reasons_stand_with_program_and_problems() -> None:
     assert failures(FIELD).rows == (
         ("DDA by habit", "locked", "numerical damping"),

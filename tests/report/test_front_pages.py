@@ -17,7 +17,7 @@ from validation.report.figures.front import charts
 from validation.report.figures.front.model import model_figure
 from validation.report.front import closed, decisions, first
 from validation.report.front.found import paper_scene
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene, load_scene, parse_scene
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 OTHER = PAPER.with_values(
@@ -67,6 +67,14 @@ def test_what_a_discount_does_is_what_the_scheme_does() -> None:
     assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
     assert closed.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
     assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
+
+
+def test_a_wave_runs_through_the_height_and_the_load_stands_on_the_width() -> None:
+    data = PAPER.definition()
+    del data["block"]["side"]
+    oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
+    assert closed.transit(oblong) == pytest.approx(1.25 / math.sqrt(1e9 / 2700))
+    assert closed.penetration(oblong) == pytest.approx(3.0 * 5e6 / (2 * 1e9))
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from oracles.made_cases import between, made_case, made_group, made_history
 
+from validation.report.appendix import alarms as appendix_alarms
 from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
@@ -50,7 +51,7 @@ def test_every_gate_has_a_line_with_place_pair_value_and_band() -> None:
 
 
 def test_of_very_many_gates_those_of_one_kind_share_a_line() -> None:
-    many = [verdict(f"a[x={i}]", 0.1 + i / 10_000) for i in range(MOST_LINES)]
+    many = [verdict(f"a[x={i}]", 0.1 + (i + 9) % MOST_LINES / 10_000) for i in range(MOST_LINES)]
     assert len(lines_of(many)[0][2]) == MOST_LINES
     others = [verdict("b[x=1]", 0.1, (0.0, 0.2)), verdict("b[x=2]", 0.1), verdict("c", 0.3)]
     ((_, _, lines),) = lines_of([*many, *others])
@@ -172,6 +173,30 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
     assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
+
+
+def raised(scene: str, **values: float) -> Any:
+    named = {name.replace("_", " " if name == "time_error" else "."): value for name, value in values.items()}
+    return {"kind": "k", "scene": scene, "sentence": "s", "values": named}
+
+
+@pytest.mark.parametrize(
+    ("tell", "told"),
+    [
+        ("agreement", "dt = 2: DDA within 1\u00a0% of the elastic block, of whose motion damping removed 90\u00a0%; "
+         "both are 30\u00a0% off in time."),
+        ("tension", "dda −2.50 MPa at 4 ms, tension for 6 ms."),
+        ("ringing", "dt = 2: root −0.9900, |λ| = 0.9900: 458 steps to fall to 1 %."),
+    ],
+)  # fmt: skip
+def test_of_the_alarms_of_a_kind_the_worst_is_told_with_its_numbers(tell: str, told: str) -> None:
+    mild = raised("a", agreement=0.2, removed=0.6, time_error=0.1, dda_minimum=-1e6, dda_time=0.1, dda_duration=0.2,
+                  root=-0.95, radius=0.95)  # fmt: skip
+    worst = raised("b", agreement=0.01, removed=0.9, time_error=0.3, dda_minimum=-2.5e6, dda_time=4e-3,
+                   dda_duration=6e-3, root=-0.99, radius=0.99)  # fmt: skip
+    labels = {"a": "dt = 1", "b": "dt = 2"}
+    for alarms in ([mild, worst], [worst, mild]):
+        assert getattr(appendix_alarms, tell)(alarms, labels) == told
 
 
 @pytest.mark.parametrize(

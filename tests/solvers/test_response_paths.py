@@ -12,6 +12,7 @@ from oracles.stepped_vibration import fit
 import dda.system.response
 import fem_reference.history.response
 from validation import Solver, load_scene, response, solve
+from validation.advice.response import Response
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 
@@ -145,6 +146,12 @@ def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
         assert found.displacement[0] == pytest.approx(-0.01, rel=1e-9)
         assert found.contact_pressure[0] == pytest.approx(5e6, rel=1e-9)
         assert abs(found.displacement[1]) < 1e-12  # (1/2, 1): W2 has no bound at half the sampling frequency
+
+
+def test_peaks_are_the_local_maxima_the_highest_first() -> None:
+    size = np.array([9.0, 1.0, 3.0, 2.0, 5.0, 4.0, 8.0])
+    found = Response("s", "dda", True, False, np.arange(1.0, 8.0), {"displacement": size * 1j})
+    assert found.peaks("displacement") == [(5.0, 5.0), (3.0, 3.0)]  # the ends of the range are none
 
 
 def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:

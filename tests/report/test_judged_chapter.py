@@ -1,0 +1,61 @@
+"""The page of a judged answer: error and allowed in per cent, numbers beside, curves of the answer and of the truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import line_in, made_history
+
+from validation.problems.bands import Band, Standard
+from validation.problems.judge import Column, Judgement, Word
+from validation.problems.problem import problem
+from validation.problems.told import Told
+from validation.report.blocks import Callout, Table
+from validation.report.chapters import judged as chapter
+from validation.report.figures.curves import style_of
+
+EXACT = made_history(0.1, [-1e-3, -2e-3, -3e-3], [1e6, 2e6, 3e6])
+ANSWER = made_history(0.1, [-1e-3, -1e-3, -2e-3, 9.0], [1e6, 1e6, 1e6, 9.0])  # one row longer
+
+
+def judged() -> chapter.Judged:
+    columns = (
+        Column("displacement", Word.FAIL, 0.125, 0.05, 0.3, "", 0.1),
+        Column("contact_pressure", Word.PASS, 0.0125, 0.025, 0.2, "", 0.2),
+        Column("rotation", Word.NOT_JUDGED, None, None, 0.3, "it is zero throughout"),
+    )
+    found = Judgement("locked", columns, (Told("first peak", "mm", 2.0, 3.0),))
+    bands: Any = {name: Band(0.05, datum, 3, 0.3) for name, datum in
+                  (("displacement", "block.young"), ("contact_pressure", "load.pressure"))}  # fmt: skip
+    held = Standard(EXACT, {}, bands)
+    return chapter.Judged(problem("locked"), ANSWER, held, found, None, (("program", "mine"),))
+
+
+def test_each_column_has_its_error_and_what_is_allowed_in_per_cent(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    blocks = chapter.page(judged(), tmp_path)
+    (said,) = [block.text for block in blocks if isinstance(block, Callout)]
+    assert said == "FAIL; rotation not judged: it is 12 % off in displacement_m, where 5 % is allowed."
+    columns, beside, about = [block for block in blocks if isinstance(block, Table)]
+    assert [column.title for column in columns.columns][2:] == ["Error [%]", "Allowed [%]", "Set by", "Until [s]"]
+    assert columns.rows == (
+        ("displacement_m", "FAIL", "12", "5", "block.young", "0.3000"),
+        ("contact_pressure_Pa", "PASS", "1.2", "2.5", "load.pressure", "0.2000"),
+        ("rotation_rad", "not judged", "–", "–", "–", "0.3000"),
+    )
+    assert columns.notes[-1] == "rotation_rad: it is zero throughout."
+    assert [column.title for column in beside.columns] == ["Number", "Answer", "Exact", "Unit"]
+    assert beside.rows == (("first peak", "2.000", "3.000", "mm"),) and about.rows == (("program", "mine"),)
+
+
+def test_the_curves_are_those_of_the_answer_beside_the_exact_ones(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    chapter.figures(judged(), tmp_path)
+    assert [*drawn] == ["judged-displacement.svg", "judged-contact_pressure.svg"]
+    for file, values, exact in zip(drawn, ([-1, -1, -2], [1, 1, 1]), ([-1, -2, -3], [1, 2, 3]), strict=True):
+        axes = drawn[file].axes[0]
+        for name, wanted in (("answer", values), ("exact", exact)):
+            x, y = line_in(axes, to_hex(style_of(name).color))
+            assert np.allclose(x, [0.1, 0.2, 0.3]) and np.allclose(y, wanted), (file, name)  # mm, MPa

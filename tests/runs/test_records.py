@@ -1,0 +1,45 @@
+"""Records are read where they bear themselves out: a verdict by its own value and band, a gate once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from validation.runs.records import Judged, sound, unique
+
+
+def judged(verdict: str, value: Any, band: tuple[float, float] = (1.0, 2.0), name: str = "g") -> Judged:
+    return {"id": name, "study": "s", "value": value, "band": list(band), "verdict": verdict}
+
+
+@pytest.mark.parametrize(
+    ("verdict", "value"),
+    [
+        ("PASS", 1.0),
+        ("PASS", 2.0005),  # 2 to the digits that are kept
+        ("FAIL", 2.0005),
+        ("FAIL", 0.9),
+        ("FAIL", "undefined"),
+        ("FAIL", None),
+        ("NOT RUN", None),
+    ],
+)
+def test_a_verdict_that_its_value_bears_out_is_taken(verdict: str, value: Any) -> None:
+    record = judged(verdict, value)
+    assert sound(record) is record
+
+
+@pytest.mark.parametrize(
+    ("verdict", "value"), [("PASS", 2.01), ("PASS", 0.99), ("PASS", None), ("PASS", "undefined"), ("FAIL", 1.5)]
+)
+def test_a_verdict_that_its_value_does_not_bear_out_is_refused(verdict: str, value: Any) -> None:
+    with pytest.raises(ValueError, match=rf"g says {verdict}, got {value!r} in \[1, 2\]"):
+        sound(judged(verdict, value))
+
+
+def test_two_verdicts_of_one_gate_are_refused() -> None:
+    two = [judged("PASS", 1.5), judged("PASS", 1.5, name="h")]
+    assert unique(two) == two
+    with pytest.raises(ValueError, match="g appears twice in the study s"):
+        unique([*two, judged("FAIL", 3.0)])
