@@ -116,6 +116,16 @@ def test_slip_and_changes_of_state_are_counted() -> None:
     assert measured(MADE)["contact.state_changes"] == "not reported"
 
 
+def test_what_a_slope_and_its_discount_give_by_hand() -> None:
+    """10800 kg on 28.9 degrees: F = m g cos b, H = m g sin b; F^2 / 4p + H^2 / 4ps + F^2 h / 2Ea, with h = a."""
+    scene = load_scene("slope-sliding").expand()[0].with_values({"contact.shear_stiffness": 4e8, "time.gg": 0.9})
+    down, along = 10800 * 9.81 * np.cos(np.radians(28.9)), 10800 * 9.81 * np.sin(np.radians(28.9))
+    assert opened.pushing(scene) == pytest.approx(down)
+    assert opened.given_energy(scene) == pytest.approx(down**2 / 4e9 + along**2 / 1.6e9 + down**2 / 2e9)
+    gained = 10800 * np.cumsum([-1.0, -2.0 + 0.9]) + down * scene.time.step * np.array([1, 2])
+    assert opened.balanced(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
+
+
 def test_corners_that_switch_together_open_once() -> None:
     switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
     found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
