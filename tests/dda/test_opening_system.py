@@ -26,6 +26,7 @@ from dda import (
     subdivided,
 )
 from dda.contact.iteration import NONE
+from dda.system.opening import Length, start_state
 from fem_reference.events.bar_events import solve as bar_motion
 from fem_reference.events.bar_model import BarProblem
 
@@ -57,6 +58,18 @@ def test_one_sub_block_is_the_block(seed, run_):
         assert apart(one.columns[name], values) < 1e-9, name
     for name, values in block.energies.items():
         assert np.max(np.abs(values - one.energies[name])) < 1e-9 * size(block), name
+
+
+def test_two_halves_of_a_step_are_free_fall_of_the_whole():
+    model = replace(PAPER, pressure=0.0, gravity=9.81, contact=Unilateral(1e9, 1e9, gap=1.0), velocity=-0.5)
+    opening = opening_subdivided(model, 2, 1, GLUE)
+    scheme = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
+    half, state = Length(opening, scheme, 0.5), start_state(opening, scheme)
+    for share in (0.5, 1.0):
+        state, _ = half.advance(state, 6)
+        fallen, time = state.D.reshape(-1, 6)[:, 1], scheme.step * share
+        assert fallen == pytest.approx(np.full(2, -0.5 * time - 9.81 * time**2 / 2), rel=1e-9)
+        assert state.points.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
 
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.2])

@@ -205,6 +205,20 @@ def test_energy_and_mean_velocity_from_the_fields(seed: int) -> None:
     assert np.abs(energy.sum(axis=1) - start).max() <= 1e-11 * np.abs(energy).max()
 
 
+def test_the_fields_are_smooth_between_their_breaks() -> None:
+    """Their mean velocity is that of the motion, by a quadrature that meets no front."""
+    problem = replace(PAPER, width=1.5, gravity=30.0, gap=0.02, velocity=-3.0)
+    motion = solve(problem, 4 * problem.travel)
+    node, weight = np.polynomial.legendre.leggauss(10)
+    for time in np.array([0.3, 1.2, 2.6]) * problem.travel:
+        means = []
+        for low, high in pairwise(motion.breaks(time)):
+            field = motion.fields(time, (low + high) / 2 + node * (high - low) / 2)
+            means.append(weight @ field.velocity * (high - low) / 2 / problem.height)
+        assert sum(means) == pytest.approx(motion.at([time]).mean_velocity[0], rel=1e-9)
+    assert 0.7 * problem.height in motion.breaks(0.3 * problem.travel)  # the load's own front
+
+
 def gauss(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights between breaks, where the fields are smooth but may decay by exp(-100)."""
     node, weight = np.polynomial.legendre.leggauss(24)
@@ -290,5 +304,7 @@ def test_bad_input_is_refused_by_name() -> None:
         motion.at([-0.02])
     with pytest.raises(ValueError, match="points"):
         motion.fields(0.01, [2.1])
+    count = len(solve(PAPER, 0.04).switches)
+    assert len(solve(PAPER, 0.04, limit=count).switches) == count == 3
     with pytest.raises(TooManySwitchesError):
-        solve(PAPER, 0.2, limit=3)
+        solve(PAPER, 0.04, limit=count - 1)

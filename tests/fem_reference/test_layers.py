@@ -165,3 +165,9 @@ def test_no_rate_without_velocity() -> None:
     scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
     with pytest.raises(ValueError, match="gg = 0 has no rate"):
         layers.solve_layers(Ground((SOIL,), "shear"), scheme, 10, drive, ("displacement",))
+
+
+def test_the_moduli_of_plane_waves() -> None:
+    """E = 300 MPa and mu = 1/4: G = E / 2.5, and M = E (1 - mu) / ((1 + mu) (1 - 2 mu)) = 1.2 E."""
+    assert SOIL.modulus("shear") == pytest.approx(1.2e8)
+    assert SOIL.modulus("pressure") == pytest.approx(3.6e8)

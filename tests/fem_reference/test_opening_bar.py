@@ -118,6 +118,15 @@ def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
     assert found == pytest.approx(order, abs=0.1)
 
 
+def test_a_bar_at_rest_stays_closed_and_the_least_touch_closes_it():
+    problem = replace(make(), pressure=0.0)
+    still = OpeningBar.of(problem).solve(CONSTANT, 5)
+    assert np.all(still.closed == 1) and not still.gap.any() and not still.displacement.any()
+    gap = 10 * CONSTANT.step  # a free bar of one metre a second is there in the tenth step
+    touched = OpeningBar.of(problem, gap * (1 - 1e-9), -1.0).solve(CONSTANT, 10)
+    assert touched.closed.tolist() == [0.0] * 9 + [1.0] and touched.contact_pressure[-1] > 0
+
+
 def test_twice_the_load_moves_twice_as_far_with_the_same_switches():
     problem = replace(make(UPRIGHT), gravity=5.0)
     twice = replace(problem, pressure=2 * problem.pressure, gravity=10.0)

@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import Scheme, Unilateral, solve_unilateral
+from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper
 
@@ -164,6 +164,16 @@ def test_what_is_stored_and_what_is_lost_add_up_to_the_start(scheme, contact):
         plain = solve_unilateral(problem, scheme, 120, replace(contact, gap=1e-4, velocity=-0.5, rule="newmark"))
         assert np.diff(plain.columns["algorithmic_loss"] + plain.columns["switching_loss"]).min() < -1e-3 * size
     assert run.columns["cuts"].max() > 0 or contact.limit > 2
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit"])
+def test_the_work_of_a_base_that_moves_is_counted(rule):
+    motion = Motion((0.0, 0.01, 0.02), (0.0, 1e-3, 0.0), (0.0, 2e-3, -1e-3))
+    problem = replace(make(elements=3, degree=1, poisson=0.25, shear=4e8), gravity=9.81, motion=motion)
+    contact = replace(GLUED, rule=rule, gap=1e-4, velocity=-0.5)
+    run = solve_unilateral(problem, replace(AVERAGE, start="zero"), 60, contact)
+    energies = np.array([run.columns[name] for name in (*ENERGIES, *LOSSES)])
+    assert np.abs(energies.sum(axis=0) - 2700.0 * 4 * 0.5**2 / 2).max() <= 1e-10 * np.abs(energies).max()
 
 
 def test_the_velocity_is_that_of_the_centre_of_mass():

@@ -49,6 +49,20 @@ def test_what_became_of_a_gate(before: str | None, after: str | None, kind: str)
     assert [change.kind for change in changes(old, new)] == [kind]
 
 
+@pytest.mark.parametrize(
+    ("band", "kind"),
+    [
+        ([-1e-3, 1.0], "worse"),  # lets pass what failed before, at either edge
+        ([0.0, 1.001], "worse"),
+        ([0.1, 0.9], "band"),
+        ([0.0, 1 + 1e-9], None),  # the last digits are the processor's
+    ],
+)
+def test_a_wider_band_is_worse_at_either_edge(band: list[float], kind: str | None) -> None:
+    found = changes([verdict("a", "PASS")], [verdict("a", "PASS") | {"band": band}])
+    assert [change.kind for change in found] == ([] if kind is None else [kind])
+
+
 def test_only_what_differs_is_told_and_the_worse_first() -> None:
     old = [verdict("a", "PASS"), verdict("b", "PASS"), verdict("c", "FAIL", 3.0), verdict("d", "PASS", "undefined")]
     new = [

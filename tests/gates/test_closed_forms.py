@@ -82,3 +82,18 @@ def test_numbers_of_the_independent_computation() -> None:
 def test_a_number_of_an_independent_program_is_not_called_exact() -> None:
     gates = [gate for gate in CORE.gates() if "independent program" in gate.reason]
     assert gates and {gate.reference_kind for gate in gates} == {"other code"}
+
+
+def test_plane_strain_is_plane_stress_of_other_moduli() -> None:
+    """E / (1 - mu^2) and mu / (1 - mu): at mu = 1/4 16/15 E and 1/3."""
+    strain = BASE.with_values({"block.hypothesis": "plane strain", "block.poisson": 0.25})
+    assert closed_forms.moduli(strain) == pytest.approx((strain.block.young * 16 / 15, 1 / 3))
+
+
+@pytest.mark.parametrize(("start", "share"), [("zero", 0.25), ("consistent", 0.5)])
+def test_the_first_step_of_a_mode_is_by_its_start(start: str, share: float) -> None:
+    """x1 = Omega^2 share / (1 + alpha Omega^2): alpha from A0 = 0, alpha + (1/2 - alpha) from A0 = w^2."""
+    values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": start, "time.steps": 4}
+    omega = np.array([0.3, 2.0])
+    found = closed_forms.bar_response(BASE.with_values(values), omega)
+    assert found[0] == pytest.approx(share * omega**2 / (1 + 0.25 * omega**2), rel=1e-14)

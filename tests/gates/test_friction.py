@@ -79,6 +79,7 @@ def test_at_the_threshold_the_forces_balance(changes: dict[str, object]) -> None
     at = case.with_values({"load.slope": limit})
     forces = friction.along(at), friction.coefficient(at) * friction.across(at), friction.adhesion(at)
     assert forces[0] == pytest.approx(forces[1] + forces[2], rel=1e-12)
+    assert at.block.mass * forces[2] == pytest.approx(at.contact.cohesion * at.block.base_length, rel=1e-12)
     assert friction.run_out(case.with_values({"load.slope": limit - 1e-3}), 1.0) == 0
     assert friction.run_out(case.with_values({"load.slope": limit + 1e-3}), 1.0) > 0
 

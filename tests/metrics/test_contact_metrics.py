@@ -21,6 +21,7 @@ from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.runs.contact import LOST, ContactRecord, rebounds_of_steps
 from validation.runs.history import History
+from validation.runs.modes import Switch
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
@@ -113,6 +114,30 @@ def test_slip_and_changes_of_state_are_counted() -> None:
     seen = solo(Measurable(History(np.arange(4.0), states), STEP, contact=MADE), ("switches",))
     assert seen["contact.state_changes"] == 4
     assert measured(MADE)["contact.state_changes"] == "not reported"
+
+
+def test_what_a_slope_and_its_discount_give_by_hand() -> None:
+    """10800 kg on 28.9 degrees: F = m g cos b, H = m g sin b; F^2 / 4p + H^2 / 4ps + F^2 h / 2Ea, with h = a."""
+    scene = load_scene("slope-sliding").expand()[0].with_values({"contact.shear_stiffness": 4e8, "time.gg": 0.9})
+    down, along = 10800 * 9.81 * np.cos(np.radians(28.9)), 10800 * 9.81 * np.sin(np.radians(28.9))
+    assert opened.pushing(scene) == pytest.approx(down)
+    assert opened.given_energy(scene) == pytest.approx(down**2 / 4e9 + along**2 / 1.6e9 + down**2 / 2e9)
+    gained = 10800 * np.cumsum([-1.0, -2.0 + 0.9]) + down * scene.time.step * np.array([1, 2])
+    assert opened.balanced(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
+
+
+def test_corners_that_switch_together_open_once() -> None:
+    switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
+    found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
+    told = ("switches.count", "switches.first_opening", "switches.second_opening", "switches.second_closing")
+    assert [found[name] for name in told] == [4.0, 0.5, 1.5, "undefined"]
+
+
+def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too() -> None:
+    assert measured(replace(MADE, time=np.array([0.5, 3.5, 4.0, 4.5])))["contact.open_share"] == pytest.approx(1 / 3)
+    kinetic, lost = MADE.energies["kinetic"] - ONES, MADE.energies | {"friction": ONES}
+    assert measured(replace(MADE, energies=lost | {"kinetic": kinetic}))["energy.imbalance"] == pytest.approx(0.0)
+    assert measured(replace(MADE, energies=lost))["energy.imbalance"] == pytest.approx(1 / 12)
 
 
 def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:

@@ -110,3 +110,27 @@ def test_a_slow_history_is_measured_over_more_than_its_first_samples() -> None:
     decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
     found = pencil.poles(np.real(decay ** np.arange(9000)) * (1 + 1e-9 * np.cos(np.arange(9000) ** 2)), dt, order=2)[0]
     assert found.frequency == pytest.approx(frequency, rel=1e-6)
+
+
+def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read() -> None:
+    """It turns by 2.9 rad a step, and ten of them look like a mode of 0.26 rad in ten steps."""
+    n, frequency, dt = np.arange(6000), 200.0, 1e-4
+    found = pencil.poles(np.cos(frequency * dt * n) + 0.5 * np.cos(2.9 * n), dt)
+    assert [pole.frequency for pole in found] == pytest.approx([frequency], rel=1e-6)
+
+
+def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps() -> None:
+    growth, n = 1 + 1e-6, np.arange(10_000)
+    root = np.exp(0.5j)
+    history = History(n + 1.0, {"displacement": 1 + 0.1 * growth**n * np.cos(0.5 * n)})
+    m = Measurable(history, 1.0, {"displacement": 1.0}, (Mode(0.5, 1.0, (root, root.conjugate())),))
+    assert solo(m, ("energy",))["energy.drift"] == pytest.approx(2 * 6000e-6, rel=1e-2)  # 6000 steps between the two
+
+
+def test_the_horizon_is_the_last_step_that_two_codes_agree_at() -> None:
+    time, x = np.arange(1.0, 6.0), np.array([1.0, -2.0, 2.0, 1.0, 0.0])
+    apart = {0.0: 0, 3.0: 3, 5.0: 5}  # horizon to steps that agree
+    for horizon, agreed in apart.items():
+        other = History(time, {"displacement": x + 3e-6 * (np.arange(5) >= agreed)})
+        m = Measurable(History(time, {"displacement": x}), 1.0, switches=(), shadow=lambda other=other: other)
+        assert solo(m, ("horizon",))["horizon.time"] == horizon

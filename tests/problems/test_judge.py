@@ -162,3 +162,7 @@ def test_data_that_a_scene_has() -> None:
     assert set(changes(load_scene("field-column"))) == {"Young's modulus", "the density"}
     larger = changes(load_scene("field-creep"))["tan(phi) of friction"]["contact.friction"]
     assert math.tan(math.radians(larger)) == pytest.approx(1.01 * math.tan(math.radians(22.0)))
+    own, harder = load_scene("field-creep").contact, changes(load_scene("field-creep"))["the springs"]
+    assert own.shear_stiffness is not None
+    assert harder["contact.stiffness"] == pytest.approx(1.01 * own.stiffness)
+    assert harder["contact.shear_stiffness"] == pytest.approx(1.01 * own.shear_stiffness)
