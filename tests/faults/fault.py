@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from faults.seams import Seam
@@ -23,11 +24,11 @@ def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[
     """Hand a function a changed scheme."""
 
     def wrap(sound: Callable[..., object]) -> Callable[..., object]:
-        def faulty(*arguments: object) -> object:
+        def faulty(*arguments: object, **named: object) -> object:
             scheme = arguments[position]
             values = {name: change(getattr(scheme, name)) for name, change in changes.items()}
             changed = replace(scheme, **values)
-            return sound(*arguments[:position], changed, *arguments[position + 1 :])
+            return sound(*arguments[:position], changed, *arguments[position + 1 :], **named)
 
         return faulty
 
@@ -58,8 +59,26 @@ def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
 
 
 def told(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:
-    """Change fields of what a function returns, a dataclass."""
-    return lambda sound: lambda *a, **k: (lambda found: replace(found, **change(found)))(sound(*a, **k))
+    """Change fields of what a function returns, a dataclass, or what that makes when it is asked for."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(*a: object, **k: object) -> object:
+            found = sound(*a, **k)
+            return changed(found, change(found))
+
+        return faulty
+
+    return wrap
+
+
+def changed(found: Any, values: Mapping[str, object]) -> Any:
+    """Return a dataclass with other values of its fields and properties."""
+    stored = {one.name for one in fields(found)} & values.keys()
+    other = replace(found, **{name: values[name] for name in stored})
+    made = {name: value for name, value in values.items() if name not in stored}
+    assert all(hasattr(found, name) for name in made), f"{type(found).__name__} has no {sorted(made)}"
+    object.__setattr__(other, "__class__", type(type(found).__name__, (type(found),), made))
+    return other
 
 
 def of_first(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:

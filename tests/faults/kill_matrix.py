@@ -20,6 +20,7 @@ from validation.engine.study import Study
 from validation.gates.gate import Gate, Status
 from validation.runs.history import History
 from validation.runs.results import Results
+from validation.runs.run import Outcome
 
 
 class Overlay(Results):
@@ -35,6 +36,12 @@ class Overlay(Results):
 
 def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
     return {gate.id for gate in gates if evaluate(gate, finished).status is Status.FAIL}
+
+
+def whole(fault: str, faulty: Finished) -> None:
+    """Refuse a fault that breaks a solver instead of changing its numbers: without a row every gate fails."""
+    broken = {row.notes[-1] for row in faulty.rows.values() if row.outcome is Outcome.RAISED}
+    assert not broken, f"{fault}: breaks the solver, which bites every gate: {sorted(broken)}"
 
 
 def cases_of(study: Study, gates: Sequence[Gate]) -> list[Case]:
@@ -95,6 +102,7 @@ def killed(
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             fault.seam.wrap(patch, fault.replacement)
             faulty = finish(reached, study, results)
+        whole(fault.name, faulty)
         yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
 
 

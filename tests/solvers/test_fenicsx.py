@@ -13,7 +13,7 @@ import pytest
 from conftest import SCENE, typed
 from faults import seams
 from faults.fault import Fault, late, no_discount, times, with_scheme
-from faults.kill_matrix import Overlay
+from faults.kill_matrix import Overlay, whole
 from oracles.elements import INCLINED
 
 from validation import solve
@@ -333,6 +333,7 @@ def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> 
         fault.seam.wrap(patch, fault.replacement)
         faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
     worker.close_all()
+    whole(fault.name, faulty)
     return failed(Finished(sound.rows | faulty.rows, faulty.results))
 
 

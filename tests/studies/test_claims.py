@@ -10,6 +10,7 @@ import pytest
 from conftest import refused
 from faults import seams
 from faults.fault import of_first, soft_springs, told, with_scheme
+from faults.kill_matrix import whole
 
 from dda import Unilateral, UnilateralResult
 from validation.engine.finished import Finished
@@ -69,9 +70,9 @@ def damped(delta: float) -> float:
 
 def held(found: UnilateralResult) -> dict[str, object]:
     """Count the corners as closed, with 1e6 J more."""
-    shut = np.ones_like(found.closed_m)
+    shut = np.ones_like(found.closed)
     energies = found.energies and found.energies | {"kinetic": found.energies["kinetic"] + 1e6}
-    return {"closed_m": shut, "closed_n": shut, "energies": energies}
+    return {"closed": shut, "energies": energies}
 
 
 def rubbing(**changes: object) -> Callable[..., Callable[..., object]]:
@@ -108,6 +109,7 @@ def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[st
         with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
             seam.wrap(patch, replacement)
             faulty = run(tmp_path_factory.mktemp("faulty"), OPENED if seam is seams.DDA_OPENED else NEEDED - OPENED)
+            whole(fault, faulty)
             found[fault] = {gate.id for gate in PAPER.gates() if evaluate(gate, faulty).status is Status.FAIL}
     return found
 

@@ -24,9 +24,7 @@ FAULTS = [
     Fault("bar: gap", BAR, seams.EVENTS_BAR, scaled(gap=1 + 1e-9)),
     Fault("bar: density", BAR, seams.EVENTS_BAR, scaled(density=1 + 1e-8)),
     Fault("bar: springs a hundredth as stiff", BAR, seams.EVENTS_BAR, scaled(base_stiffness=0.01)),
-    Fault(
-        "dda: gaps", ("dda",), seams.DDA_OPENED, told(lambda r: {"gap_m": 1.001 * r.gap_m, "gap_n": 1.001 * r.gap_n})
-    ),
+    Fault("dda: gaps", ("dda",), seams.DDA_OPENED, told(lambda r: {"gap": 1.001 * r.gap})),
 ]
 
 

@@ -60,6 +60,7 @@ FAULTS = [
     Fault("gg left out", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": 1.0})),
     Fault("work of friction a hundredth high", DDA, seams.DDA_OPENED, energy_changed("friction", lambda e: 1.01 * e)),
     Fault("kinetic energy doubled", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: 2.0 * e)),
+    Fault("energy of the load left out", DDA, seams.DDA_OPENED, energy_changed("load", np.zeros_like)),
     Fault("slip counted on", DDA, seams.DDA_OPENED, told(lambda found: {"slip": found.slip + found.time * 1e-6})),
 ]  # fmt: skip
 

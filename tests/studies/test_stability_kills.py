@@ -35,7 +35,7 @@ def unscaled_modes(sound):
 
     def faulty(form):
         squares, shapes = scipy.linalg.eigh(np.diag(form.K), form.M)
-        return ModalForm(np.sqrt(np.abs(squares)), shapes, shapes.T @ form.F)
+        return ModalForm(np.sqrt(np.abs(squares)), shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
 
     return faulty
 
@@ -51,10 +51,10 @@ def offset(sound):
 class AccelerationFirst(fem_reference.scheme.newmark.Stepper):
     """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
 
-    def advance(self, state):
+    def advance(self, state, F=None):
         s = self.scheme
         ahead = fem_reference.scheme.newmark.predictor(state, s)
-        A = self._solve(self.F - self.K @ ahead)
+        A = self.solve((self.F if F is None else F) - self.K @ ahead)
         D = ahead + s.alpha * s.step**2 * A
         return fem_reference.scheme.newmark.State(D, fem_reference.scheme.newmark.velocity(state, A, s), A)
 
