@@ -100,7 +100,12 @@ def departure_of(found: Found, ids: Sequence[str]) -> Departure | None:
     """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
     if all(CAUSES[name].benign for name in ids):
         return None
-    return Departure(1 if "sign" in ids else found.first or 1, "offset")
+    return Departure(_first(found, ids) or 1, "offset")
+
+
+def _first(found: Found, ids: Sequence[str]) -> int | None:
+    """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
+    return 1 if "sign" in ids else found.first
 
 
 def stages(found: Found, read: Read) -> list[Stage]:
@@ -153,7 +158,8 @@ def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
     allowed = f", allowing for {' and '.join(benign)}" if benign else ""
     if not faults:
         return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
-    where = f" from step {found.first} on" if found.first else ""
+    first = _first(found, ids)
+    where = f" from step {first} on" if first else ""
     return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
 
 
