@@ -57,13 +57,20 @@ def test_the_papers_figures_are_in_their_units(
     history = made_history(0.002, np.full(40, -0.012), np.full(40, 6.5e6))
     group = made_group(made_case(BASE, {"dda": PAPER_METRICS}, {"dda": history}))
     figure = PaperFigure(3, "s", quantity, 30, "Caption", relative)
-    chapters_paper.figure_block(figure, group, tmp_path)
+    caption = chapters_paper.figure_block(figure, group, tmp_path).caption
+    assert ("Dashed: step from which DDA stays" in caption) == (settled is not None)
     (axes,) = drawn["figure-3.svg"].axes
     orange = to_hex(style_of("dda").color)
     (line,) = [y for own, x, y in lines_of(axes) if own == orange and x.size == 30]
     assert np.allclose(line, value) and axes.get_ylabel().endswith(unit)
     assert rules_of(axes, GREY) == ([pytest.approx(level)], [])
     assert rules_of(axes, orange) == ([], [] if settled is None else [settled])
+
+
+def test_each_figure_of_the_paper_shows_what_its_caption_says() -> None:
+    assert [figure.number for figure in chapters_paper.FIGURES] == [3, 4, 5, 6, 7, 8, 9]
+    for figure in chapters_paper.FIGURES:
+        assert figure.quantity in figure.caption.lower() and figure.relative == ("Relative error" in figure.caption)
 
 
 def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dict[str, Figure], tmp_path: Path) -> None:

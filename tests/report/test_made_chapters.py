@@ -67,6 +67,16 @@ def test_waves_in_blocks_have_their_speed_error_in_per_cent_and_their_share() ->
     assert row[2] == f"{case.scene.time.alpha:g}, {case.scene.time.delta:g}, {case.scene.time.discount:g}"
 
 
+def test_glue_is_told_by_its_stiffness_over_that_of_a_block() -> None:
+    case, rows = of_scene("waves-glue", wave_speed_error=0.0, wave_left=1.0)
+    column = case.scene.column
+    assert column is not None and column.glue is not None
+    (layer,) = column.layer
+    (row,) = waves._others({"waves-glue": made_group(case)}, rows).rows
+    height = layer.thickness / layer.blocks
+    assert float(row[1]) == pytest.approx(column.glue * height / column.modulus(layer), rel=5e-3)
+
+
 def test_a_joint_tells_what_goes_through_what_comes_back_and_both() -> None:
     case, rows = of_scene("waves-joint", joint_transmitted=0.8, joint_reflected=0.6, joint_energy=1.0)
     (row,) = waves._joints({"waves-joint": made_group(case)}, rows).rows
