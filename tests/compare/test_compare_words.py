@@ -355,6 +355,16 @@ def test_the_command_prints_misfit_and_compliance_in_per_cent(capsys: pytest.Cap
     ]
 
 
+def test_the_best_schemes_are_listed_and_each_stage_is_right_or_wrong(capsys: pytest.CaptureFixture[str]) -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(cli_compare.SHOWN + 2)]
+    stages = [Stage(name, agrees, "words", {}) for name, agrees in (("rest", True), ("period", False), ("load", None))]
+    cli_compare._print(replace(ANSWER, ranking=ranked, evidence=tuple(stages)))
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [line[0] for line in lines if len(line) > 2 and line[1:2] == ["n"]] == [f"m{i}" for i in range(6)]
+    marks = {line[0]: line[1] for line in lines if line[2:] == ["words"]}
+    assert marks == {"rest": "right", "period": "wrong", "load": "-"}
+
+
 def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.CaptureFixture[str]) -> None:
     exact = [row("dda", 5e-14, -3e-16, "constant acceleration", 0.5)]
     told = {"alpha": Interval(0.5, 4e-15), "softness": Interval(-3e-17, 2e-7)}
