@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from oracles.made_cases import (
 )
 
 from validation.report.appendix import provenance as appendix_provenance
+from validation.report.blocks import Paragraph
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
@@ -221,6 +223,14 @@ def test_the_headline_gives_displacement_pressure_code_and_mesh_each_its_own_num
         "displacement's difference code and rounding are at most 1.1×10⁻¹³ and the finite-element mesh is at most "
         "2.1×10⁻⁶, so that neither explains it: it is one strain in the block in place of a wave."
     )
+
+
+def test_two_cases_have_a_ledger_and_one_has_none(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    one, two = ledger_group(), replace(ledger_group(), name="other")
+    assert chapters_ledger.ledger_blocks([one], "s", tmp_path) == []
+    _, said, figure = chapters_ledger.ledger_blocks([one, two], "s", tmp_path)
+    assert said == Paragraph(chapters_ledger.headline([one, two]))
+    assert [*drawn] == ["s-ledger.svg"] and "model form: dda − bar" in figure.caption  # type: ignore[union-attr]
 
 
 def test_code_and_mesh_are_told_by_the_worst_of_the_cases() -> None:

@@ -15,7 +15,7 @@ from validation.gates import friction
 from validation.report.blocks import Callout, Table
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.data import Group
-from validation.report.chapters.opened import rebound
+from validation.report.chapters.opened import rebound, turning
 from validation.report.chapters.slopes import creeping, sliding
 from validation.report.chapters.vibrations import response
 from validation.runs.history import History
@@ -94,6 +94,25 @@ def test_a_base_that_shakes_has_the_rigid_slide_dda_s_the_difference_and_what_is
     assert isinstance(table, Table)
     (row,) = table.rows
     assert [row[0], *map(float, row[3:])] == ["2 Hz", 50.0, 50.1, 0.25, 0.5]
+
+
+def test_what_is_judged_of_a_shaken_base_is_what_stands_beside_the_rigid_block() -> None:
+    case = made_case(load_scene(study.SHAKEN).expand()[0], {})
+    verdicts = [{"scene": case.name, "pair": pair, "metric": metric, "value": len(pair)}
+                for pair in ([study.RIGID], ["dda", "bar"]) for metric in ("slide", "largest difference")]  # fmt: skip
+    ((found, own),) = sliding.judged(made_group(case, verdicts=tuple(verdicts)))
+    assert found is case and {v["value"] for v in own.values()} == {1}
+    assert sliding.judged(made_group(case, verdicts=tuple(verdicts[1:]))) == []
+
+
+# ---- toppling -----------------------------------------------------------------------------------------------------
+
+
+def test_a_fall_has_its_number_before_the_edges_of_its_band() -> None:
+    case = made_case(load_scene("toppling-static").expand()[0], {})
+    verdicts = ({"scene": case.name, "metric": "turned", "value": 0.5, "band": [0.25, 0.75]},)
+    table = turning.fall_table([replace(made_group(case, verdicts=verdicts), name="toppling-static")])
+    assert table.rows == (("static", "greatest turn [rad]", "0.5", "0.25", "0.75"),)
 
 
 # ---- rebound ------------------------------------------------------------------------------------------------------
