@@ -412,6 +412,23 @@ def test_the_page_shows_the_same_in_per_cent_and_the_curves_in_millimetres(
     assert any(isinstance(b, FigureBlock) for b in blocks) and Paragraph("a note", "small") in blocks
 
 
+def test_the_page_lists_the_best_schemes_what_is_left_and_which_stages_are_right() -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(chapters_compare.LINES + 2)]
+    marks = (("at_rest", True), ("period", False), ("load", None))
+    stages = tuple(Stage(name, agrees, "words", {}) for name, agrees in marks)
+    given = replace(ANSWER, causes=[], ranking=ranked, nearest={"causes": ["gg"]}, unexplained=0.25, evidence=stages)
+    assert [line[0] for line in chapters_compare._ranking(given).rows] == [f"m{i}" for i in range(5)]
+    (facts,), (evidence,) = chapters_compare._facts(given), chapters_compare._evidence(given)
+    assert isinstance(facts, Table) and facts.rows[0] == ("nearest", "gg: 25 % left")
+    assert isinstance(evidence, Table)
+    assert [line[:2] for line in evidence.rows] == [("at rest", "right"), ("period", "wrong"), ("load", "–")]
+
+
+def test_causes_that_give_the_same_rows_are_named_with_their_numbers() -> None:
+    one = {"causes": ["gg", "sign"], "values": {"gg": 0.9812345}}
+    assert cli_compare._listed(one) == "gg 0.98123 and sign"
+
+
 def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answer) -> None:
     runs = {name: solve(SCENE.with_values({"contact.stiffness": p, "contact.shear_stiffness": 1e9}), "dda")
             for name, p in (("the file", 5e8), ("dda", 1e9), ("best", 5e8))}  # fmt: skip
