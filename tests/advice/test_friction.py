@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 from conftest import typed
+from oracles.made_cases import made_row
 
 from validation import load_scene, solve
 from validation.advice import friction as advice
 from validation.advice.alarms import alarms
 from validation.engine.run import finish
 from validation.engine.study import Study
+from validation.gates import friction
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
@@ -111,3 +114,14 @@ def test_the_page_says_what_a_stable_block_does() -> None:
     assert "22.8 mm/s" in said
     drag = "\n".join(advice.lines(SLIDES, advice.sliding(SLIDES)))  # type: ignore[arg-type]
     assert "it cuts 1.22 m to 0.689 m" in drag
+    braked = advice.sliding(SLIDES)
+    assert braked is not None
+    limit = braked.acceleration * SLIDES.time.step / (1 - SLIDES.time.discount)
+    assert f"no speed beyond {limit:.3g} m/s" in drag
+
+
+def test_ringing_that_a_step_hides_is_told_by_its_period() -> None:
+    told = {alarm.kind: alarm for alarm in advice.friction_alarms(STANDS, {"dda": made_row("dda")})}[advice.HIDES]
+    period = 2 * math.pi / friction.normal_frequency(STANDS)
+    assert f"of the period {period:.3g} s" in told.sentence
+    assert told.values["phase"] == pytest.approx(2 * math.pi * STANDS.time.step / period)

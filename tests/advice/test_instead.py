@@ -63,6 +63,22 @@ def test_of_two_steps_that_do_the_one_that_changes_less_is_named(steps: tuple[fl
     assert found.words == f"Change the time step instead: time.step = {kept:g} gives it (--solve-for dt)."
 
 
+def test_of_two_discounts_under_average_acceleration_the_gentler_is_named() -> None:
+    class Discounts(Found):
+        def solutions(self, target: float) -> list[float]:
+            return [-0.5, -0.99]  # less the discount: a search runs from gg = 1 on
+
+        def settings(self, s: float) -> dict[str, float]:
+            return {"time.gg": -s}
+
+    def over_gg(scene: Scene) -> Any:
+        return Discounts() if scene.time.delta == 0.5 else Found()
+
+    makes: Any = {"dt": lambda scene: Found(), "gg": over_gg, "scheme": lambda scene: Found()}
+    found = instead(BASE, "dt", 0.05, makes, 344.6)
+    assert found.settings == {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}
+
+
 def test_the_nearest_is_the_end_of_what_can_be_had() -> None:
     _, found = answer(0.6, "dt")
     assert (found.nearest, found.nearest_at) == (found.greatest, found.greatest_at)

@@ -157,6 +157,24 @@ def test_layers_of_a_column_are_cut_each_for_its_own_speed() -> None:
     assert -np.log(1 - advise_wave(lossy, 8.0, 0.1).present.loss) == pytest.approx(exponent, rel=0.01)
 
 
+def test_layers_share_the_phase_error_that_is_allowed() -> None:
+    scene = load_scene("waves-site")
+    found = advise_wave(scene, 8.0, 0.1)
+    cut = [replace(layer, blocks=n) for layer, n in zip(wave_advice.layers_of(scene), found.blocks, strict=True)]
+    way = wave_advice._Way(tuple(cut), 8.0, 1.0)
+    assert abs(way.passed(np.array([way.omega**2 + 0j]))[1][0]) <= 0.025  # half of it; the step has the other
+
+
+@pytest.mark.parametrize(
+    ("gg", "losses", "why"),
+    [(0.9, [0.2, 0.9], "gg"), (0.9, [0.05, 0.9], "scheme"), (1.0, [0.2, 0.9], "scheme")],
+)
+def test_the_discount_is_named_where_it_alone_loses_more_than_is_allowed(
+    gg: float, losses: list[float], why: str
+) -> None:
+    assert wave_advice._why_none(COLUMN.with_values({"time.gg": gg}), losses, 0.1) == why
+
+
 def test_a_block_that_is_no_rectangle_is_refused() -> None:
     with pytest.raises(InputError, match="must be an upright rectangle"):
         advise_wave(load_scene("quadrilateral"), 5.0, 0.1)

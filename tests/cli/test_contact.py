@@ -10,7 +10,7 @@ from conftest import SCENE, refused, typed
 from oracles.made_cases import made_row
 
 from validation import load_scene
-from validation.advice import contact_page
+from validation.advice import contact_page, friction
 from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
@@ -100,6 +100,31 @@ def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytes
     done = typed("contact", "unlocked-constant", *SHORT)
     assert done.returncode == 3
     assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
+
+
+def test_what_is_needed_is_told_with_its_own_step_depth_and_returns() -> None:
+    scene = load_scene("unlocked-constant").expand()[0].with_values({"time.gg": 0.9, "time.step": 0.01})
+    returns = {"mean": 0.5, "low": 0.25, "high": 0.75, "energy": 0.375}
+    need = {"stiffness": 2e9, "step": 1e-4, "step_now": 3e-4, "depth": 2e-5, "restitution": returns}
+    found = {"needed": need, "asked": {"restitution_error": 0.05, "penetration": 1e-5}, "landing_speed": 1.5,
+             "restitution_now": None}  # fmt: skip
+    text = list(contact_page._needed(scene, found))
+    assert "a restitution within 5 % and a penetration below 1e-05 m, landing at 1.5 m/s" in text[0]
+    assert text[1].endswith(": the exact block then penetrates 2e-05 m, and no stiffer ones were tried")
+    assert text[2] == "  time step   dt <= 0.0001 s at that p, 0.0003 s at the present one"
+    assert "returns 0.5 of its speed on average, 0.25 to 0.75, and 0.375 of its energy" in text[3]
+    left = 100 * friction.kept_way(0.9, 0.01, 1.0)
+    assert f"it leaves {left:.3g} % of the distance covered in a second" in text[-1]
+    assert contact_page._depth(need | {"depth": 1e-5}, 1e-5).endswith("penetrates 1e-05 m")
+
+
+def test_the_landing_is_the_exact_block_s_then_dda_s_then_that_of_a_free_fall() -> None:
+    scene = load_scene("unlocked-constant").expand()[0].with_values({"contact.gap": 0.2, "load.gravity": 10.0})
+    rows = {name: made_row(name, {"contact.landing_speed": speed})
+            for name, speed in ((contact_page.own(), 3.0), (contact_page.exact(), 1.5))}  # fmt: skip
+    assert contact_page.landing_speed(scene, rows) == 1.5
+    assert contact_page.landing_speed(scene, {contact_page.own(): rows[contact_page.own()]}) == 3.0
+    assert contact_page.landing_speed(scene, {}) == pytest.approx(2.0)  # sqrt(2 g h)
 
 
 def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:

@@ -355,6 +355,16 @@ def test_the_command_prints_misfit_and_compliance_in_per_cent(capsys: pytest.Cap
     ]
 
 
+def test_the_best_schemes_are_listed_and_each_stage_is_right_or_wrong(capsys: pytest.CaptureFixture[str]) -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(cli_compare.SHOWN + 2)]
+    stages = [Stage(name, agrees, "words", {}) for name, agrees in (("rest", True), ("period", False), ("load", None))]
+    cli_compare._print(replace(ANSWER, ranking=ranked, evidence=tuple(stages)))
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [line[0] for line in lines if len(line) > 2 and line[1:2] == ["n"]] == [f"m{i}" for i in range(6)]
+    marks = {line[0]: line[1] for line in lines if line[2:] == ["words"]}
+    assert marks == {"rest": "right", "period": "wrong", "load": "-"}
+
+
 def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.CaptureFixture[str]) -> None:
     exact = [row("dda", 5e-14, -3e-16, "constant acceleration", 0.5)]
     told = {"alpha": Interval(0.5, 4e-15), "softness": Interval(-3e-17, 2e-7)}
@@ -400,6 +410,23 @@ def test_the_page_shows_the_same_in_per_cent_and_the_curves_in_millimetres(
     _, y = line_in(below, to_hex(style_of("dda").color))
     assert np.allclose(y, 0.25)  # of the file's largest value
     assert any(isinstance(b, FigureBlock) for b in blocks) and Paragraph("a note", "small") in blocks
+
+
+def test_the_page_lists_the_best_schemes_what_is_left_and_which_stages_are_right() -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(chapters_compare.LINES + 2)]
+    marks = (("at_rest", True), ("period", False), ("load", None))
+    stages = tuple(Stage(name, agrees, "words", {}) for name, agrees in marks)
+    given = replace(ANSWER, causes=[], ranking=ranked, nearest={"causes": ["gg"]}, unexplained=0.25, evidence=stages)
+    assert [line[0] for line in chapters_compare._ranking(given).rows] == [f"m{i}" for i in range(5)]
+    (facts,), (evidence,) = chapters_compare._facts(given), chapters_compare._evidence(given)
+    assert isinstance(facts, Table) and facts.rows[0] == ("nearest", "gg: 25 % left")
+    assert isinstance(evidence, Table)
+    assert [line[:2] for line in evidence.rows] == [("at rest", "right"), ("period", "wrong"), ("load", "–")]
+
+
+def test_causes_that_give_the_same_rows_are_named_with_their_numbers() -> None:
+    one = {"causes": ["gg", "sign"], "values": {"gg": 0.9812345}}
+    assert cli_compare._listed(one) == "gg 0.98123 and sign"
 
 
 def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answer) -> None:

@@ -302,6 +302,7 @@ def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkey
 def test_what_differs_between_rows_is_told_with_the_number_of_each() -> None:
     rows = [made_row("dda", provenance={"commit": commit}) for commit in ("then", "now", "then")]
     assert origin.of_rows(rows)["commit"] == "then (2 rows); now (1 row)"
+    assert origin.of_rows(rows[1:2])["commit"] == "now"
 
 
 def test_a_timed_run_keeps_the_least_seconds_of_each_part(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,7 +72,7 @@ class Grower(Solver):
         return ()
 
 
-@pytest.mark.parametrize(("sound", "steps"), [(1.0, 50), (0.0, 50), (1.0, 400)])
+@pytest.mark.parametrize(("sound", "steps"), [(1.0, 50), (0.0, 50), (0.0, 400), (1.0, 400)])
 def test_growth_at_another_rate_is_named(scene, sound, steps):
     solver = Grower()
     solver.sound = sound

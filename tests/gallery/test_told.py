@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import made_history, made_row
+from oracles.made_cases import kept_study, made_history, made_row
 
-from validation.gallery import chapters, judged, pages, scene_data, verdicts, work
+from validation.errors import InputError
+from validation.gallery import chapters, judged, pages, scene_data, site, verdicts, work
 from validation.gallery.calculators import BLOCK, CALCULATORS, Control
-from validation.gallery.cases import GalleryCase, GalleryScene, GalleryStudy
+from validation.gallery.cases import GalleryCase, GalleryScene, GalleryStudy, studies_and_scenes
 from validation.gallery.histories import Sampling
+from validation.gallery.pages import Pages, environment
+from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
+from validation.report.blocks import Column, Table
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -109,6 +116,81 @@ def test_the_foot_names_the_newest_study_s_commit_and_version() -> None:
     ]  # fmt: skip
     assert pages._provenance(made) == {"date": "2025-03-04", "commit": "of b", "version": "2"}
     assert set(pages._provenance([]).values()) == {"unknown"}
+
+
+def page_of(*words: tuple[str, int]) -> Pages:
+    """Return the pages of two studies with two scenes; the first study's verdicts are those given, so many of each."""
+    verdicts_of = [verdict(word, "s:a:m", f"because {word}", 2.0) for word, n in words for _ in range(n)]
+    cases = tuple(GalleryCase(f"c{i}", f"c{i}", CASE, {}) for i in range(3))
+    scenes = [GalleryScene(name, f"The scene {name}", f"{name}.html", cases, (of,), ())
+              for name, of in (("one", "a"), ("two", "b"))]  # fmt: skip
+    studies = [GalleryStudy(name, f"study-{name}.html", {"study": name, "title": f"Of {name}"}, (), own)
+               for name, own in (("a", tuple(verdicts_of)), ("b", ()))]  # fmt: skip
+    return Pages(Results("nowhere"), studies, scenes)
+
+
+def test_the_first_page_lists_what_fails_with_value_before_band_and_counts_by_word() -> None:
+    text = " ".join(page_of(("PASS", 4), ("FAIL", 1), ("NOT RUN", 3)).index().split())
+    assert "4 passed" in text and "1 failed" in text and "3 not run" in text
+    assert "s, dda – bar, displacement.l2: 2, band 0 … 1. because FAIL [exact]</li>" in text
+    assert "because NOT RUN" not in text and text.count('<span class="fail">FAIL</span>') == 1
+
+
+def test_the_page_of_a_scene_names_its_own_studies_and_the_cases_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    pages = page_of()
+    monkeypatch.setattr(scene_data, "drawn", lambda scene, most: list(scene.cases[:2]))
+    text = pages.scene(pages._scenes[0], ())
+    assert 'href="study-a.html"' in text and 'href="study-b.html"' not in text and "of the study" in text
+    assert "2 of 3 cases are drawn" in text
+
+
+def test_a_table_of_a_chapter_keeps_its_notes() -> None:
+    table = Table((Column("a"),), (("1",),), "The caption", ("what it means",))
+    made = environment().from_string('{% import "parts.html.j2" as parts %}{{ parts.block(b) }}')
+    text = made.render(b=chapters.placed(table, Path(), Sheet()))
+    assert "<caption>The caption</caption>" in text and '<p class="small">what it means</p>' in text
+
+
+def test_metrics_have_their_unit_before_their_meaning(tmp_path: Path) -> None:
+    row = made_row("dda", {"displacement.peak": -0.02}, CASE.name)
+    results = Results(tmp_path)
+    results.append(row, made_history(0.002, [-0.01] * 4))
+    scene = replace(scene_named("s"), cases=(GalleryCase(CASE.name, "", CASE, {"dda": row}),))
+    (metric,) = scene_data.data(results, scene, 100, 100)["metrics"]
+    assert metric[:2] == ["displacement.peak", "m"] and "largest value" in metric[2].lower()
+
+
+@pytest.mark.parametrize("outcome", [Outcome.UNSTABLE, Outcome.NOT_APPLICABLE, Outcome.RAISED])
+def test_each_run_that_did_not_complete_is_told(outcome: Outcome, tmp_path: Path) -> None:
+    row = made_row("fem", {}, CASE.name, outcome=outcome, notes=("so it was",))
+    told = scene_data._case(Results(tmp_path), GalleryCase("c", "", CASE, {"fem": row}), 100)["told"]
+    assert told == [f"fem: {outcome}. {outcome.sentence} so it was"]
+
+
+def test_a_full_model_is_not_shown_beside_the_one_that_it_checks(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    rows = [made_row(solver, {}, CASE.name) for solver in ("fem", "fem:full")]
+    kept_study(results, [(CASE, row, made_history(0.002, [-0.01] * 4)) for row in rows])
+    _, (scene,) = studies_and_scenes(results, ["made"])
+    assert [list(case.rows) for case in scene.cases] == [["fem"]]
+
+
+def test_the_earlier_gallery_returns_where_the_new_one_cannot_take_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, move = tmp_path / "out", os.replace
+    out.mkdir()
+    (out / "page").write_text("earlier")
+
+    def stubborn(source: Path, target: Path) -> None:
+        if source.name == "new":
+            raise OSError(28, "No space left on device")
+        move(source, target)
+
+    monkeypatch.setattr(site.os, "replace", stubborn)
+    with pytest.raises(InputError, match="cannot be written: No space left"), site._whole(out) as place:
+        (place / "page").write_text("new")
+    assert (out / "page").read_text() == "earlier" and [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 # ---- error against cost, calculators --------------------------------------------------------------------------------

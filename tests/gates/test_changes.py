@@ -72,6 +72,14 @@ def test_only_what_differs_is_told_and_the_worse_first() -> None:
         verdict("d", "PASS", "undefined"),
     ]
     assert [(c.kind, c.id) for c in changes(old, new)] == [("worse", "b"), ("value", "c")]
+    moved = [verdict("a", "PASS", 0.5), *new[1:]]
+    assert [(c.kind, c.id) for c in changes(old, moved)] == [("worse", "b"), ("value", "a"), ("value", "c")]
+
+
+def test_a_summary_tells_why_a_gate_was_not_run_before_the_reason_of_its_band() -> None:
+    given = verdict("a", "NOT RUN", None) | {"why": "fenicsx is missing"}
+    assert "| `a` | - | 0 .. 1 | fenicsx is missing |" in markdown([given])
+    assert "| `a` | 2 | 0 .. 1 | a \\| b |" in markdown([verdict("a", "FAIL", 2.0)])
 
 
 def test_diff_is_a_table_and_a_status(tmp_path: Path) -> None:

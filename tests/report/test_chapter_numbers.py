@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
+from oracles.made_cases import kept_study, lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
 
+from validation.report.blocks import Heading, Table
 from validation.report.chapters import paper as chapters_paper
 from validation.report.chapters.limits import stability as chapters_stability
 from validation.report.chapters.limits import stiff_contact as chapters_contact
 from validation.report.chapters.limits.stability import Cell
 from validation.report.chapters.paper import PaperFigure
 from validation.report.figures.curves import style_of
+from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 
@@ -57,13 +59,20 @@ def test_the_papers_figures_are_in_their_units(
     history = made_history(0.002, np.full(40, -0.012), np.full(40, 6.5e6))
     group = made_group(made_case(BASE, {"dda": PAPER_METRICS}, {"dda": history}))
     figure = PaperFigure(3, "s", quantity, 30, "Caption", relative)
-    chapters_paper.figure_block(figure, group, tmp_path)
+    caption = chapters_paper.figure_block(figure, group, tmp_path).caption
+    assert ("Dashed: step from which DDA stays" in caption) == (settled is not None)
     (axes,) = drawn["figure-3.svg"].axes
     orange = to_hex(style_of("dda").color)
     (line,) = [y for own, x, y in lines_of(axes) if own == orange and x.size == 30]
     assert np.allclose(line, value) and axes.get_ylabel().endswith(unit)
     assert rules_of(axes, GREY) == ([pytest.approx(level)], [])
     assert rules_of(axes, orange) == ([], [] if settled is None else [settled])
+
+
+def test_each_figure_of_the_paper_shows_what_its_caption_says() -> None:
+    assert [figure.number for figure in chapters_paper.FIGURES] == [3, 4, 5, 6, 7, 8, 9]
+    for figure in chapters_paper.FIGURES:
+        assert figure.quantity in figure.caption.lower() and figure.relative == ("Relative error" in figure.caption)
 
 
 def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dict[str, Figure], tmp_path: Path) -> None:
@@ -77,6 +86,14 @@ def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dic
         captions.append(chapters_paper.figure_block(figure, made_group(case), tmp_path).caption)
     assert ["continuum is left out" in caption for caption in captions] == [False, True]
     assert [set(names_at(figure.axes[0])) for figure in drawn.values()] == [{"dda", "continuum"}, {"dda"}]
+
+
+def test_statements_and_slips_stand_under_their_own_headings(tmp_path: Path) -> None:
+    told = [{"id": name, "says": "it", "place": "p. 1", "why": "so", "condition": ""} for name in ("S1", "C1", "C2")]
+    blocks = chapters_paper.paper_chapter(Results(tmp_path), {"study": "paper", "data": {"claims": told}}, tmp_path)
+    at = [block.text if isinstance(block, Heading) else [row[0] for row in block.rows]
+          for block in blocks if isinstance(block, Heading | Table)]  # fmt: skip
+    assert at == ["paper", "Statements", ["C1", "C2"], "Slips of the equations", ["S1"], "The figures"]
 
 
 def test_the_operators_of_figure_1_lie_at_w_dt() -> None:
@@ -181,6 +198,17 @@ def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() ->
     )
     odd = [*found, extreme("dda", 1.0, 1.0, None, outcome=Outcome.MISPREDICTED)]
     assert chapters_stability.conclusion(odd).endswith("2 runs of dda left their bounds, all but 1 more as predicted.")
+
+
+def test_a_cell_of_extremes_has_its_stiffness_over_young_and_its_own_measure(tmp_path: Path) -> None:
+    results, scene = Results(tmp_path), BASE.with_values({"contact.stiffness": 4e9})
+    rows = [made_row(solver, {}, scene.name) for solver in ("dda", "bar", "continuum")]
+    apart = {"displacement.max": 0.1, "displacement.scaled": 0.2, "displacement.l2": 0.3}
+    pairs = [{"scene": scene.name, "solver": name, "reference": "x", "metrics": apart} for name in ("dda", "bar")]
+    manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
+    found = chapters_stability.cells(results, manifest)
+    assert [(cell.solver, cell.ratio, cell.step, cell.errors["displacement"]) for cell in found] == [
+        ("dda", 4.0, 0.002, 0.1), ("bar", 4.0, 0.002, 0.2)]  # fmt: skip
 
 
 def test_outcomes_are_counted_under_their_names() -> None:

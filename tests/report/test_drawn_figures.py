@@ -68,7 +68,9 @@ def test_the_difference_is_measured_from_the_reference_over_the_static_value() -
     )
     _, y = line_in(figure.axes[1], color("dda"))
     assert np.allclose(y, 0.1)
-    assert len(lines_of(figure.axes[1])) == 1
+    assert len(lines_of(figure.axes[1])) == 1 and figure.axes[1].get_ylabel() == "|Δ| / static"
+    panel = curves.Panel("", histories, {}, "bar")
+    assert motion.history_figure([panel], "displacement", apart=True).axes[1].get_ylabel() == "|Δ| / largest"
     assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
 
 
@@ -81,6 +83,7 @@ def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
         "bar": (pytest.approx(3.0), color("bar")),
         "dda": (pytest.approx(2.0), color("dda")),
     }
+    assert rules_of(axes, color("dda")) == ([2.0], [])
 
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
@@ -112,6 +115,8 @@ def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last
         drawn = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
         assert np.array_equal(drawn[0][0], steps[:50]) and np.array_equal(drawn[0][1], values[:50])
     assert rules_of(axes, GREY) == ([0.5], []) and rules_of(axes, color("dda")) == ([], [30.0])
+    low, high = axes.get_ylim()  # of what is drawn: later steps do not count
+    assert -0.2 < low < 0 and 1.96 < high < 2.2
     assert "30 steps" in [text.get_text() for text in axes.texts]
 
 
@@ -163,6 +168,13 @@ def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() ->
     assert names_at(axes) == {name: (pytest.approx(value, rel=1e-6), colors[name]) for name, value in wanted.items()}
     drawn = {(own, round(float(y[0]), 9)) for own, x, y in lines_of(axes) if x.size == 20}
     assert drawn == {(orange, 5.0), (violet, 20.0), (orange, 1.2), (orange, 0.15)}
+
+
+def test_the_damping_budget_names_a_part_where_it_ends() -> None:
+    budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
+    budget["modes"]["contact"]["total"] = [*np.linspace(0.9, 0.3, 15), *[None] * 5]
+    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
+    assert names_at(axes)["contact"][0] == pytest.approx(30)
 
 
 def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
@@ -230,8 +242,8 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
     assert shown[0] == {(0.2, 0.03): orange, (0.1, 0.04): orange, (0.05, 1e-11): "#ffffff"}  # hollow: below rounding
     assert shown[1] == {(0.2, 0.3): orange, (0.1, 0.5): orange, (0.05, 0.2): black}
     assert shown[3] == {(600.0, 0.3): orange, (60.0, 0.5): orange, (600.0, 0.2): black}
-    level = [line.get_ydata()[0] for line in figure.axes[1].lines if line.get_linestyle() == ":"]
-    assert level == [0.3]  # DDA at its finest step
+    dotted = [[line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == ":"] for axes in figure.axes[:2]]
+    assert dotted == [[0.03], [0.3]]  # DDA at its finest step
     assert {text.get_text(): to_hex(text.get_color()) for text in figure.texts} == {"dda": orange, "bar": black}
     grey = [line for line in figure.axes[0].lines if to_hex(line.get_color()) == GREY]
     assert [(list(line.get_xdata()), line.get_drawstyle()) for line in grey] == [([0.05], "steps-post")]

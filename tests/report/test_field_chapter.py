@@ -53,6 +53,8 @@ def test_the_table_has_a_cell_for_every_program_that_ran() -> None:
 def test_what_is_allowed_is_the_band_that_decides_most_often() -> None:
     other = cells() | {("locked", "two"): Cell("locked", "two", FAIL, FAIL, "damped", "rotation", 0.5, 0.02, 0.1, 1.0)}
     assert by_problem(Field(PROBLEMS, PROGRAMS, other)).rows[0] == ("allowed [%]", "5.7", "1.5", "")
+    other["locked", "two"] = replace(other["locked", "two"], band=0.2)  # neither the smallest nor the largest
+    assert by_problem(Field(PROBLEMS, PROGRAMS, other)).rows[0] == ("allowed [%]", "5.7", "1.5", "")
 
 
 def test_causes_and_reasons_stand_with_program_and_problems() -> None:
@@ -93,6 +95,8 @@ def test_programs_say_what_they_are() -> None:
         ("One, as it comes", "", "the same", "as it comes"),
     )
     assert [row[0] for row in table.rows] == ["DDA by habit", "One", "One, as it comes"]
+    stranger = (alike[0], replace(alike[1], about=beside | {"program": "Other", "version": "7"}))
+    assert programs(Field(PROBLEMS, stranger, cells())).rows[1] == ("One, as it comes", "7", "m", "as it comes")
 
 
 def test_the_sentence_counts_other_peoples_programs_only() -> None:
@@ -100,6 +104,8 @@ def test_the_sentence_counts_other_peoples_programs_only() -> None:
         "Other programs: 1, with 3 answers to 2 problems. Of these 1 pass and 2 fail, 1 of them with a cause that is "
         "certain."
     )
+    late = cells() | {("rocking", "one"): Cell("rocking", "one", FAIL, FAIL, "late", "rotation", 0.5, 0.1, 0.1, 1.0)}
+    assert "1 pass and 3 fail, 2 of them with a cause" in counted(Field(PROBLEMS, PROGRAMS, late))
     alone = Field(PROBLEMS, PROGRAMS[:1], {key: cell for key, cell in cells().items() if key[1] == "dda"})
     assert counted(alone).startswith("No other program is installed here")
 

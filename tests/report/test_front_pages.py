@@ -263,6 +263,8 @@ def test_ticks_are_numbers_or_powers_of_ten() -> None:
 
 def test_the_model_is_drawn_with_its_words() -> None:
     (axes,) = model_figure("a = 2 m", "q = 5 MPa").axes
+    place = {text.get_text(): text.get_position() for text in axes.texts}
+    assert place["M"][0] < place["A"][0] < place["N"][0] and place["B, fixed"][1] < place["M"][1] < place["A"][1]
     words = [text.get_text() for text in axes.texts]
     assert {"A", "B, fixed", "M", "N", "u", "v", "r", "a = 2 m", "q = 5 MPa, from t = 0 on"} <= set(words)
     assert words.count("p") == 4  # two springs a corner

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import between, made_case, made_group, made_history
+from oracles.made_cases import between, kept_study, made_case, made_group, made_history
 
 from validation.report.appendix import alarms as appendix_alarms
 from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
-from validation.report.appendix.provenance import parameter_table
+from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Lines
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
 from validation.report.chapters.scene import conclusion, gate_count, history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import Panel
+from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
@@ -72,6 +74,14 @@ def test_parameters_are_told_in_full_once_and_then_by_what_differs() -> None:
     assert other == ("b", "p = 1×10¹¹ N/m, dt = 0.002 s, one case")
 
 
+def test_what_holds_of_some_studies_only_is_told_with_their_names(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    for name, commit in (("a", "one"), ("b", "two"), ("c", "two")):
+        kept_study(results, [], study=name, provenance={"commit": commit, "system": "Linux"})
+    table = provenance(results, ["a", "b", "c"])[1]
+    assert table.rows == (("Commit", "one (a)"), ("System", "Linux"), ("Commit", "two (b, c)"))  # type: ignore[union-attr]
+
+
 def test_the_glossary_has_twelve_words() -> None:
     assert len(WORDS) == 12 and len(dict(WORDS)) == 12
     assert np.exp(-2 * np.pi * 0.05 / np.sqrt(1 - 0.05**2)) == pytest.approx(0.73, abs=5e-3)  # what it says of 5 %
@@ -106,6 +116,8 @@ def test_more_swings_than_can_be_drawn_are_a_band_with_their_start_below() -> No
     assert motion.start_of([panel(dda=1 - np.cos(0.05 * time))], "displacement") is not None  # 159
     span = motion.start_of([fast], "displacement")
     assert span == pytest.approx(12 * 2 * np.pi / 0.5 * 0.1, rel=0.01)  # 24 crossings, 12 periods
+    slower = panel(dda=1 - np.cos(0.25 * time))
+    assert motion.start_of([slower, fast], "displacement") == pytest.approx(2 * span, rel=0.01)
     top, start = motion.history_figure([fast], "displacement").axes
     assert top.collections and not start.collections  # a filled band, and lines
     assert start.get_xlim()[1] == pytest.approx(span, rel=0.01) and start.get_ylabel() == "its start"

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import between, made_case, made_group
+from matplotlib.figure import Figure
+from oracles.made_cases import between, lines_of, made_case, made_group
 
 from validation.report.blocks import Table
 from validation.report.chapters import subblocks, waves
@@ -67,6 +69,16 @@ def test_waves_in_blocks_have_their_speed_error_in_per_cent_and_their_share() ->
     assert row[2] == f"{case.scene.time.alpha:g}, {case.scene.time.delta:g}, {case.scene.time.discount:g}"
 
 
+def test_glue_is_told_by_its_stiffness_over_that_of_a_block() -> None:
+    case, rows = of_scene("waves-glue", wave_speed_error=0.0, wave_left=1.0)
+    column = case.scene.column
+    assert column is not None and column.glue is not None
+    (layer,) = column.layer
+    (row,) = waves._others({"waves-glue": made_group(case)}, rows).rows
+    height = layer.thickness / layer.blocks
+    assert float(row[1]) == pytest.approx(column.glue * height / column.modulus(layer), rel=5e-3)
+
+
 def test_a_joint_tells_what_goes_through_what_comes_back_and_both() -> None:
     case, rows = of_scene("waves-joint", joint_transmitted=0.8, joint_reflected=0.6, joint_energy=1.0)
     (row,) = waves._joints({"waves-joint": made_group(case)}, rows).rows
@@ -90,6 +102,32 @@ def test_a_site_is_told_off_at_the_surface_by_the_displacement_and_at_the_base_b
     apart = (between(scene.name, "dda", "layers", displacement_l2=0.14, pressure_l2=0.32),)
     said = waves._said([made_group(made_case(scene, {}), comparisons=apart)])
     assert "DDA is 14\u00a0% off at the surface and 32\u00a0% off on the base" in said
+
+
+def test_measured_waves_and_closed_forms_have_speed_beside_what_is_left() -> None:
+    case, rows = of_scene("waves-blocks", wave_speed_error=0.0167, wave_left=0.25)
+    (travel,) = waves.travels({"waves-blocks": made_group(case)}, rows)
+    assert (travel.scheme, list(travel.blocks), list(travel.speed), list(travel.left)) == (
+        "(1/2, 1)", [10.0], [0.0167], [0.25],
+    )  # fmt: skip
+    line = waves._curve({"scheme": "s", "courant": 0.5, "blocks": [8.0], "speed": [0.01], "left": [0.75]})
+    assert (list(line.blocks), list(line.speed), list(line.left)) == ([8.0], [0.01], [0.75])
+
+
+def test_a_site_draws_the_exact_layers_once_and_dda_at_each_step(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    found = {}
+    for n, name in enumerate(("waves-site", "waves-site-usual"), start=1):
+        columns = {"displacement": [1e-3 * n] * 4, "contact_pressure": [1e3 * n] * 4}
+        given = {solver: history(**columns) for solver in ("dda", "layers")}
+        values = {"time.step": 0.002 * n, "time.alpha": 0.25 * n, "time.delta": 0.5 * n}
+        found[name] = made_group(made_case(load_scene("waves-site").with_values(values), {}, given))
+    waves._site(found, tmp_path)
+    above, below = drawn["waves-site.svg"].axes
+    for axes in (above, below):
+        shown = [(color, float(y[0])) for color, _, y in lines_of(axes)]
+        assert shown == [("#999999", 1.0), (waves.COLORS[0.5], 1.0), (waves.COLORS[1.0], 2.0)]  # mm, kPa
+    assert [text.get_text().partition("\n")[0] for text in above.texts] == [
+        "exact layers", "dda, dt = 0.002 s,", "dda, dt = 0.004 s,"]  # fmt: skip
 
 
 # ---- rocking and toppling -----------------------------------------------------------------------------------------

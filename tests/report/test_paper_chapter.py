@@ -106,6 +106,15 @@ def test_a_budget_holds_curves_and_limits() -> None:
     assert first["total"][-1] is None and first["kinetic"][0] == 0
 
 
+def test_a_budget_s_viscous_part_is_what_the_tables_add() -> None:
+    scene = load_scene("figures-3-4").expand()[1].with_values({"damping.mass": 20.0})
+    (found,) = budget.budgets([scene])
+    first = found["modes"]["first axial"]
+    total, own, added = (first[part][0] for part in ("total", "algorithmic", "viscous"))
+    assert added == pytest.approx(20.0 / (2 * 344.5612), rel=1e-3)  # a0 / (2 w) at small dt
+    assert total == pytest.approx(own + added, rel=1e-3)
+
+
 def test_a_budget_splits_damping_and_keeps_a_rate() -> None:
     light = load_scene("figure-9").expand()[1]
     (found,) = budget.budgets([light])

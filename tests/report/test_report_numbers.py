@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from oracles.made_cases import (
 )
 
 from validation.report.appendix import provenance as appendix_provenance
+from validation.report.blocks import Paragraph
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
@@ -223,12 +225,28 @@ def test_the_headline_gives_displacement_pressure_code_and_mesh_each_its_own_num
     )
 
 
+def test_two_cases_have_a_ledger_and_one_has_none(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    one, two = ledger_group(), replace(ledger_group(), name="other")
+    assert chapters_ledger.ledger_blocks([one], "s", tmp_path) == []
+    _, said, figure = chapters_ledger.ledger_blocks([one, two], "s", tmp_path)
+    assert said == Paragraph(chapters_ledger.headline([one, two]))
+    assert [*drawn] == ["s-ledger.svg"] and "model form: dda − bar" in figure.caption  # type: ignore[union-attr]
+
+
+def test_code_and_mesh_are_told_by_the_worst_of_the_cases() -> None:
+    scenes = [BASE.with_values({"time.step": step}, label=True) for step in (0.002, 0.001)]
+    pairs = [between(s.name, "fem", "bar", displacement_l2=e) for s, e in zip(scenes, (0.01, 0.04), strict=True)]
+    group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=tuple(pairs))
+    assert "the finite-element mesh is at most 4\u00a0%, so that" in chapters_ledger._shares([group], 0.05)
+    assert "so that" not in chapters_ledger._shares([group], 0.02)
+
+
 def test_the_cost_of_a_solver_is_summed_over_its_own_runs(tmp_path: Path) -> None:
     first = {"unknowns": 6, "factorisations": 1, "solves": 40, "steps": 41}
     second = {"unknowns": 9, "factorisations": 2, "solves": 100, "steps": 102}
     costs = [("a", first, {"setup": 0.25, "stepping": 0.5}), ("b", second, {"setup": 1.0, "stepping": 2.0})]
     results = Results(tmp_path)
-    cases = [(BASE, made_row("dda", {}, name, work=work, seconds=spent), None) for name, work, spent in costs]
+    cases = [(BASE, made_row("dda", {}, name, work=work, seconds=spent), None) for name, work, spent in reversed(costs)]
     manifest = kept_study(results, [*cases, (BASE, made_row("fem", {}, "c", seconds={"setup": 9.0}), None)])
     table = appendix_provenance.cost_table(results, [manifest, manifest | {"study": "other"}])
     assert [c.title for c in table.columns][1:] == [

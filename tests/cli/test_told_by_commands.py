@@ -1,0 +1,149 @@
+"""What commands print and how they end, from answers, rows and runs made by hand: each word with its own number."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import typer
+from conftest import typed
+from oracles.made_cases import made_row
+from rich.console import Console
+
+from validation import load_scene, response
+from validation.advice import rayleigh
+from validation.advice.rayleigh import scheme_of
+from validation.cli import judge as cli_judge
+from validation.cli import waves as cli_waves
+from validation.cli.printing import numbers, scene_page, tables
+from validation.engine import measure
+from validation.gates.changes import changes
+from validation.problems import pack as problems_pack
+from validation.report.figures import response as figures
+from validation.runs.run import Outcome, Run
+from validation.studies import pack
+from validation.studies.contact import pack as contact_pack
+from validation.studies.contact import slipping_pack
+from validation.studies.waves import pack as waves_pack
+
+SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
+SITE = load_scene("waves-site").with_values({"time.steps": 10})
+SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
+
+
+# ---- statuses -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("outcome", [Outcome.TIMEOUT, Outcome.RAISED, Outcome.OVERFLOW, Outcome.COMPLETED])
+def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
+    outcome: Outcome, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        cli_judge._history(Run(outcome, notes=("so it was",)), "locked", "mine")
+    assert ended.value.exit_code == 3
+    assert capsys.readouterr().out == f"locked mine: {outcome}: {outcome.sentence} so it was\n"
+
+
+def test_exact_motions_do_not_stand_for_a_run_of_dda_that_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ended(case: Any, key: str, study: str) -> tuple[Any, None]:
+        outcome = Outcome.OVERFLOW if case.solver == "dda" else Outcome.COMPLETED
+        return made_row(case.solver, {}, case.scene.name, outcome=outcome), None
+
+    monkeypatch.setattr(measure, "execute", ended)
+    assert typed("contact", "unlocked-constant", *SHORT).returncode == 3
+
+
+# ---- counts and colours -------------------------------------------------------------------------------------------
+
+
+def test_a_pack_counts_each_of_its_parts_under_its_own_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for module, name, count in (
+        (pack, "write_pack", pack.Written(scenes=1, histories=2, bands=3)),
+        (contact_pack, "write_contact_pack", 4),
+        (slipping_pack, "write_slipping_pack", 5),
+        (waves_pack, "write_waves_pack", 6),
+        (problems_pack, "write_problems", 7),
+    ):
+        monkeypatch.setattr(module, name, lambda *_, count=count: count)
+    assert typed("export-pack", tmp_path / "p").stdout == (
+        f"wrote {tmp_path / 'p'}: 1 scenes, 2 histories, 3 bands; of contact that opens 4 exact numbers, "
+        "of contact that slips 5, of waves 6; 7 problems for any program\n"
+    )
+
+
+def test_what_got_worse_is_red_and_what_got_better_green(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = io.StringIO()
+    terminal = Console(file=told, force_terminal=True, width=150, color_system="standard")
+    monkeypatch.setattr(tables, "console", lambda: terminal)
+    records = [[{"study": "s", "id": name, "verdict": word, "value": 1.0, "band": [0.0, 1.0]}
+                for name, word in (("a", a), ("b", b))] for a, b in (("PASS", "FAIL"), ("FAIL", "PASS"))]  # fmt: skip
+    tables.print_changes(changes(*records))  # type: ignore[arg-type]
+    assert "\x1b[1;31mworse" in told.getvalue() and "\x1b[32mbetter" in told.getvalue()
+
+
+def test_one_solver_on_several_cases_is_told_to_name_another() -> None:
+    alone = {(scene, "dda"): Outcome.COMPLETED for scene in ("a", "b")}
+    assert tables._alone(alone).startswith("next: name two solvers or more")
+    assert "1 of 2 did" in tables._alone({("a", "dda"): Outcome.COMPLETED, ("a", "bar"): Outcome.OVERFLOW})
+
+
+# ---- show ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_thinnest_block_of_a_column_sets_its_stable_step() -> None:
+    explicit = SITE.with_values({"time.alpha": 0.0, "time.delta": 0.5})
+    (found,) = [number.value for number in numbers.numbers(explicit) if number.name == "dt stable"]
+    heights, speeds = np.array([1.5, 1.0, 0.5, 0.5]), np.array([500.0, 350.0, 220.0, 150.0])
+    assert found == pytest.approx(float(np.min(2 * heights / (np.sqrt(12) * speeds))), rel=1e-3)
+
+
+def test_a_column_is_drawn_with_its_top_layer_above() -> None:
+    text = list(scene_page.column(SITE))
+    densities = [line.partition("rho = ")[2].split()[0] for line in text if "rho =" in line]
+    assert densities == ["1800", "1900", "2000", "2100"] and "transmitting base" in text[-1]
+
+
+@pytest.mark.parametrize(
+    ("start", "words"), [("zero", "zero acceleration"), ("consistent", "the acceleration of the load")]
+)
+def test_a_start_is_told_by_its_acceleration(start: str, words: str) -> None:
+    facts = dict(line for line in scene_page._facts(SCENE.with_values({"time.start": start}), 1) if len(line) == 2)
+    assert facts["steps"].endswith(f"of dt = 0.002 s, from {words}")
+
+
+# ---- figures of frequencies ---------------------------------------------------------------------------------------
+
+
+def test_what_is_stepped_is_drawn_up_to_half_the_sampling_and_the_exact_answer_to_the_end(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    caught: list[Any] = []
+    monkeypatch.setattr(figures, "response_figure", lambda curves, *rest: caught.extend(curves))
+    monkeypatch.setattr(figures, "save_as", lambda figure, path: path)
+    frequency = np.array([100.0, 249.0, 251.0, 900.0])
+    answers = {"dda": response(SCENE, frequency, "dda"), cli_waves.EXACT: response(SCENE, frequency, "dda", True)}
+    cli_waves._draw(SCENE, answers, False, tmp_path / "r.svg")
+    seen = {curve.name: np.isfinite(curve.columns["displacement"][0]).tolist() for curve in caught}
+    every = [True] * 4
+    assert seen == {"dda as stepped": [True, True, False, False], "dda, exact in time": every, "continuum": every}
+    assert [curve.dashed for curve in caught] == [False, True, False]
+
+
+def test_ratios_are_drawn_under_their_own_names(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    caught: dict[str, Any] = {}
+    monkeypatch.setattr(figures, "ratio_figure", lambda frequency, lines: caught.update(lines, f=frequency))
+    monkeypatch.setattr(figures, "save_as", lambda figure, path: path)
+    scheme = scheme_of({"step": 0.01, "gg": 0.9})
+    cli_waves._draw_ratios(scheme, (1.0, 30.0), tmp_path / "r.svg")
+    f = caught.pop("f")
+    wanted = {
+        "as stepped": rayleigh.ratio(scheme, f),
+        "Rayleigh, leading order": rayleigh.hidden(scheme).ratio(f),
+        "Rayleigh, exact at both ends": rayleigh.matched(scheme, 1.0, 30.0).ratio(f),
+    }
+    assert all(np.allclose(caught[name], wanted[name]) for name in wanted) and list(caught) == list(wanted)
+    middle = [float(values[150]) for values in caught.values()]
+    assert len({round(value, 4) for value in middle}) == 3
