@@ -67,7 +67,7 @@ def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_p
     kept = rows_of(results)
     assert "Traceback" not in said
     assert {row.solver for row in kept.values()} == {"dda", "bar"}
-    assert all(Results(results).has(row) for row in kept.values())
+    assert all(Results(results).history(row.key) is not None for row in kept.values())
     assert not list(results.glob("histories/.*")) or number == signal.SIGKILL
     before = (results / "rows.jsonl").read_bytes()
     (tmp_path / "go").touch()

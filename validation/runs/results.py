@@ -131,10 +131,6 @@ class Results:
     def _history_file(self, key: str) -> Path:
         return self.directory / "histories" / f"{key}.npz"
 
-    def has(self, row: Row) -> bool:
-        """Whether the row's history is there as well (a completed case always keeps one)."""
-        return row.outcome is not Outcome.COMPLETED or self._history_file(row.key).exists()
-
     def write_json(self, name: str, data: object) -> None:
         """Write a JSON file of the directory atomically."""
         text = json.dumps(data, indent=1, allow_nan=False) + "\n"
