@@ -70,7 +70,8 @@ def _solutions(model: Model, loads: Complex, W2: Complex, S: Complex) -> Complex
     M, C, K = (coo_array(part[model.free][:, model.free]) for part in (model.M, model.C, model.K))
     order = reverse_cuthill_mckee((abs(M) + abs(K)).tocsr(), symmetric_mode=True)
     place = np.argsort(order)
-    width = max(int(np.max(np.abs(place[part.row] - place[part.col]), initial=0)) for part in (M, K))
+    # at least one diagonal on each side, also of one unknown: older SciPy look for the main one in the second row
+    width = max(int(np.max(np.abs(place[part.row] - place[part.col]), initial=1)) for part in (M, K))
     found = np.empty_like(loads)
     for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
         band = np.zeros((2 * width + 1, len(order)), complex)
