@@ -20,13 +20,16 @@ from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers import registry
-from validation.solvers.contract import Solver
+from validation.solvers.contract import Role, Solver
 from validation.solvers.registry import by_role, get_solver, role, solver_names
 from validation.studies import Study
 from validation.studies.catalogue import check_words
 
 JOINTS = "rusty joints"
-EXACT = ["layers", "bar-events", "continuum"]  # the highest rank first
+OWN = (  # a solver that is added leaves the roles of these as they are
+    *("dda", "dda-textbook", "fem", "fenicsx", "bar", "continuum", "layers", "block-events", "bar-events"),
+    *("dda-60", "fem-60", "bar-60"),
+)
 
 
 class Jointed(Solver):
@@ -93,9 +96,13 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Sce
 
 
 def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
-    assert by_role("judged") == ["dda"]
-    assert [name for name in by_role("reference") if name in ("bar", "fem")] == ["bar", "fem"]
-    assert [name for name in by_role("truth") if name in EXACT] == EXACT
+    for word in Role:
+        found = by_role(word)
+        assert set(found) == {name for name in registry.BUILT_IN if role(name) == word}
+        assert [*map(registry.rank, found)] == sorted(map(registry.rank, found), reverse=True)
+    assert {name for name in OWN if role(name) == "judged"} == {"dda"}
+    assert [name for name in by_role("reference") if name in OWN] == ["bar", "fem"]
+    assert [name for name in by_role("truth") if name in OWN] == ["layers", "bar-events", "continuum"]
     assert role("fem:full") == "repeat" and role("jointed") == "other"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.rank("jointed") < registry.rank("dda")
