@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from validation.runs.row import Row
+    from validation.runs.run import Run
     from validation.scenes.scene import Scene
 
 PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
@@ -84,6 +86,24 @@ def one_case(source: str, assignments: list[str] | None) -> Scene:
     check_words(scene, source)
     features.refuse_sweep(scene, source)
     return scene
+
+
+def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
+    """Refuse as bad input what a solver refused or does not apply to; what else a run ended in is left alone.
+
+    Raises
+    ------
+    InputError
+        With the solver's own reason.
+    """
+    from validation.errors import InputError
+    from validation.runs.run import Outcome
+
+    why = "; ".join(ended.notes)
+    if ended.outcome is Outcome.REFUSED:
+        raise InputError(why)
+    if ended.outcome is Outcome.NOT_APPLICABLE:
+        raise InputError(f"{scene}: solver {solver} does not apply: {why}")
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import NUMERICAL_FAILURE, PASSED, SceneArgument, SetOption, app, one_case
+from validation.cli.app import NUMERICAL_FAILURE, PASSED, SceneArgument, SetOption, app, one_case, refuse_bad_input
 from validation.cli.damping import JsonOption
 
 if TYPE_CHECKING:
@@ -72,16 +72,13 @@ def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
     from validation.advice.contact_page import own
     from validation.engine.case import Case
     from validation.engine.measure import execute
-    from validation.errors import InputError
     from validation.runs.run import Outcome
 
     rows, absent = {}, {}
     for name, scene in scenes.items():
         row, _ = execute(Case(scene, name), "", "contact")
-        if name == own() and row.outcome is Outcome.REFUSED:
-            raise InputError("; ".join(row.notes))
-        if name == own() and row.outcome is Outcome.NOT_APPLICABLE:
-            raise InputError(f"{scene.name}: solver {name} does not apply: {'; '.join(row.notes)}")
+        if name == own():
+            refuse_bad_input(scene.name, name, row)
         if row.outcome is Outcome.COMPLETED:
             rows[name] = row
         else:

@@ -41,6 +41,7 @@ from validation.cli.app import (
     app,
     known_targets,
     one_case,
+    refuse_bad_input,
 )
 
 FEW = 12  # gates of a scene that are shown one by one unasked
@@ -267,10 +268,7 @@ def solve(
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
     done = _solved(chosen, case, full or solver.endswith(FULL), fields)
-    if done.outcome is Outcome.REFUSED:
-        raise InputError("; ".join(done.notes))
-    if done.outcome is Outcome.NOT_APPLICABLE:
-        raise InputError(f"{case.name}: solver {solver} does not apply: {'; '.join(done.notes)}")
+    refuse_bad_input(case.name, solver, done)
     if csv is not None and done.outcome is Outcome.COMPLETED and done.history is not None:
         write_csv(done.history, csv)
     if done.outcome is Outcome.NOT_RUN:

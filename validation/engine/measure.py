@@ -200,7 +200,7 @@ def _measures(case: Case, run: Run) -> set[str]:
         asked -= {"stability"}
     if "history" in asked and features.UNILATERAL in features.of(case.scene):
         asked |= {"switches"}
-        if case.make_solver().role not in EXACT_IN_TIME:
+        if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
             asked |= {"horizon"}
     return asked if "history" in asked else asked - {"modes"}
 

@@ -32,7 +32,7 @@ class Role(enum.StrEnum):
     OTHER = "other"  # brought by a user
 
 
-EXACT_IN_TIME = (Role.LIMIT, Role.TRUTH)  # computed in so many digits that nothing is amplified
+EXACT_IN_TIME = (Role.LIMIT, Role.TRUTH)  # no time step enters the motion
 
 
 @dataclass(frozen=True)

@@ -141,8 +141,10 @@ def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> Non
 def _check_linear(scene: Scene, source: str) -> None:
     """Refuse a gate on a metric of linear scenes where no case is linear: it would be dropped without a word."""
     asked = [(number, each.metric) for number, each in enumerate(scene.gate) if CATALOGUE[each.metric].linear]
-    cases = scene.expand() if asked else ()
-    if asked and not any(map(features.linear, cases)):
+    if not asked:
+        return
+    cases = scene.expand()
+    if not any(map(features.linear, cases)):
         number, metric = asked[0]
         has = ", ".join(features.of(cases[0]))
         raise InputError(f"{source}: gate.{number}.metric: {metric} exists for linear scenes only, got one with {has}")

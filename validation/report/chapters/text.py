@@ -243,10 +243,13 @@ def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
 def _of_others(scene: Scene, told: set[str]) -> Iterator[tuple[str, str]]:
     """Yield the data of a block without words of their own here, by their keys, where they are not the defaults."""
     tables = {"block": scene.stated_block, "contact": scene.stated_contact, "load": scene.stated_load}
+    known = told | OF_POLYGONS
     for name, table in (tables | {"damping": scene.damping}).items():
-        for key, field in [] if table is None else type(table).model_fields.items():
+        if table is None:
+            continue
+        for key, field in type(table).model_fields.items():
             value = getattr(table, key)
-            if f"{name}.{key}" not in told | OF_POLYGONS and value != field.default:
+            if f"{name}.{key}" not in known and value != field.default:
                 yield f"{name}.{key}", f"{key.replace('_', ' ')} = {value}"
 
 
