@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 from conftest import SCENE, thinned, typed
 
+from validation import solve
 from validation.cli.printing import scene_page
+from validation.cli.printing.numbers import numbers
+from validation.errors import InputError
 from validation.scenes.scene import load_scene, scene_names
 
 
@@ -58,6 +61,26 @@ def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: P
     assert list(found["remarks"]) == ["dt is beyond the stability limit: the solution grows without bound"]
     below = shown(scene_file, *explicit, "--set", f"time.step={0.99 * numbers['dt stable']}")["remarks"]
     assert not [text for text in below if "grow" in text]
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]}), ("figures-5-6", {})],
+)
+def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[str, Any]) -> None:
+    """Glue and joints count, and all modes of sub-blocks, not the lowest that are reported."""
+    explicit = {"time.alpha": 0.0, "time.delta": 0.5, "time.steps": 2, "time.allow_unstable": True}
+    case = load_scene(name).expand()[0].with_values(explicit | values)
+    limit = next(number.value for number in numbers(case) if number.name == "dt stable")
+    strict = case.with_values({"time.allow_unstable": False})
+    assert solve(strict.with_values({"time.step": limit}), "dda").time.size == 2
+    with pytest.raises(InputError, match="the stability limit"):
+        solve(strict.with_values({"time.step": 1.0001 * limit}), "dda")
+
+
+def test_a_scheme_without_a_stable_step_shows_none() -> None:
+    found = numbers(load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.delta": 0.4}))
+    assert next(number.value for number in found if number.name == "dt stable") == 0
 
 
 def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file: Path) -> None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.advice import contact
-from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names
+from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.scenes.scene import Scene
@@ -104,8 +104,7 @@ def _modes(scene: Scene) -> Iterator[Number]:
             if name in named:
                 yield from _mode(scene, short, name, named[name].frequency)
         if not scene.damping.present:
-            limit = closed_forms.critical_omega(scene) / max(mode.frequency for mode in modes)
-            yield Number("dt stable", limit, "s", "largest stable step of the DDA block")
+            yield Number("dt stable", stable_step(scene), "s", "largest stable step of the DDA block")
 
 
 def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Number]:
@@ -152,16 +151,18 @@ def _column(scene: Scene) -> Iterator[Number]:
     column = scene.column
     if column is None:
         return
-    top, limit, travel = 0.0, math.inf, 0.0
+    top, travel = 0.0, 0.0
     for number, layer in enumerate(column.layer, start=1):
         speed = math.sqrt(column.modulus(layer) / layer.density)
         height = layer.thickness / layer.blocks
         travel += layer.thickness / speed
         top = layer.density * speed
-        limit = min(limit, closed_forms.critical_omega(scene) * height / (math.sqrt(12) * speed))
         yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
     yield Number("H/c", travel, "s", "travel time of the wave through the column")
-    yield Number("dt stable", limit, "s", "largest stable step of welded blocks")
+    with suppress(InputError):  # DDA does not take the column
+        yield Number(
+            "dt stable", stable_step(scene), "s", "largest stable step of the blocks, glue and joints included"
+        )
     if column.impedance is not None:
         lowest = column.layer[0]
         own = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
