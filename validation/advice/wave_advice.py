@@ -68,7 +68,7 @@ class Passage:
     heights: tuple[float, ...]  # of a block of each layer [m]
     loss: float  # share of the amplitude that is lost [1]
     delay: float  # of the arrival [periods]
-    damping: float  # damping ratio of the step at the frequency [1]
+    damping: float  # steady ratio -Im W / |W| of the step at the frequency [1]
 
 
 @dataclass(frozen=True)
@@ -304,7 +304,7 @@ def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> _Larg
 
 
 def _stability(scene: Scene, way: _Way) -> Callable[[float], bool]:
-    """Return whether a step is stable on the advised blocks as DDA's solver has them, glue, joints and springs included.
+    """Return whether a step is stable on the advised blocks, as DDA's solver has them with glue, joints and springs.
 
     A discount that keeps its rate changes with the step, and with it the critical w dt of the scheme.
     """
@@ -354,9 +354,9 @@ def _sentence(scene: Scene, way: _Way, present: Passage) -> str:
     kind = "algorithmic" if mass == 0 else "kinetic" if stiffness == 0 else "algorithmic and kinetic"
     distance = way.times * sum(layer.thickness for layer in way.layers)
     late = "late" if present.delay >= 0 else "early"
-    size = f"{percent(present.damping)} {kind}" if present.damping else "no"
+    damping = f"has a steady ratio of {percent(present.damping)}, {kind}," if present.damping else "damps nothing"
     return (
-        f"Your dt = {present.step:g} s is {size} damping at {way.frequency:g} Hz: "
+        f"Your dt = {present.step:g} s {damping} at {way.frequency:g} Hz: "
         f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {way.wavelengths:.3g} wavelengths, "
         f"{abs(present.delay):.3g} periods {late}."
     )
