@@ -13,16 +13,16 @@ PLACE = "not in the paper: said where block codes are checked on inclines"
 
 
 def standing(e: Evidence) -> dict[str, float]:
-    """Return the slip in a second by the lagged rules over the step, and what consistent ones leave of it."""
+    """Return the slip over the step by both rules, its growth from the coarsest to the finest, and what goes on."""
     found = {}
+    growth = {}
     for rule, names in (("lagged", LAGGED), ("consistent", CONSISTENT)):
-        for name in names:
-            step = CREEP[name].time.step
-            found[f"slip in a second at dt = {step:g}, {rule}, mm"] = 1e3 * e.number(name, "contact.slip")
-    slips = [e.number(name, "contact.slip") for name in LAGGED]
-    found["slip at the finest step over that at the coarsest, lagged"] = slips[FINE] / slips[COARSE]
+        slips = [e.number(name, "contact.slip") for name in names]
+        for name, slip in zip(names, slips, strict=True):
+            found[f"slip at dt = {CREEP[name].time.step:g}, {rule}, mm"] = 1e3 * slip
+        growth[f"slip at the finest step over that at the coarsest, {rule}"] = slips[FINE] / slips[COARSE]
     rates = [e.number(name, "contact.slip_rate") for name in CONSISTENT]
-    return found | {"greatest slip a second at the end, consistent, m/s": max(rates)}
+    return found | growth | {"greatest slip a second at the end, consistent, m/s": max(rates)}
 
 
 def beyond(e: Evidence) -> dict[str, float]:
@@ -43,11 +43,15 @@ ON_SLOPES = (
         "A block below its angle of friction stands, the better the finer the time step.",
         by_dda((*LAGGED, *CONSISTENT)),
         standing,
-        (Band("slip at the finest step over that at the coarsest, lagged", 0, 1),),
-        Finding.CONDITIONAL,
-        "where friction is that of the pass before, a stable block creeps, the faster the finer the step",
-        "where stick and slip are states of the iteration, under constant acceleration, which damps the ringing",
-        (Band("greatest slip a second at the end, consistent, m/s", 0, STANDS),),
+        (
+            Band("slip at the finest step over that at the coarsest, lagged", 0, 1),
+            Band("slip at the finest step over that at the coarsest, consistent", 0, 1),
+            Band("greatest slip a second at the end, consistent, m/s", 0, STANDS),
+        ),
+        Finding.REFUTED,
+        "the finer the step the farther it slides by either rule: what stops it is the damping of its ringing by the "
+        "step, and without that the exact block creeps for ever; where stick and slip are states of the iteration, "
+        "constant acceleration does bring it to rest, after a way of about 1/dt",
     ),
     Claim(
         "C21",
