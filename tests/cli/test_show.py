@@ -105,10 +105,30 @@ def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
     assert numbers["tan b"] == pytest.approx(math.tan(math.radians(30))) and numbers["w/h"] == 1
     assert "tan b > tan phi: the block slides" in found["remarks"]
     assert "tan b > w/h: the block topples" not in found["remarks"]
-    flat = shown(scene_file, "--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")[
-        "remarks"
-    ]
-    assert "tan b > w/h: the block topples" in flat and "tan b > tan phi: the block slides" not in flat
+    slender = ("--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")
+    remarks = {phi: shown(scene_file, *slender, "--set", f"contact.friction={phi}")["remarks"] for phi in (25, 18, 10)}
+    topples, slides = "tan b > w/h: the block topples", "tan b > tan phi: the block slides"
+    assert topples in remarks[25] and slides not in remarks[25]
+    assert topples in remarks[18] and slides in remarks[18]
+    assert topples not in remarks[10] and slides in remarks[10]  # tan(phi) < w/h: its friction cannot tip it
+    scene_file.write_text(text)
+    assert topples not in shown(scene_file, *slender)["remarks"]  # locked
+
+
+@pytest.mark.parametrize(("friction", "topples"), [(25.0, True), (18.0, True), (10.0, False)])
+def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction: float, topples: bool) -> None:
+    """Half a metre by two on 20 degrees, as DDA moves it with the outline anew at every step: w/h = tan(14 degrees)."""
+    slender = load_scene("slope-sliding").expand()[0].with_values(
+        {
+            "block.width": 0.5, "block.height": 2.0, "block.young": 1.0e11,
+            "contact.stiffness": 1.0e10, "contact.shear_stiffness": 1.0e10, "contact.friction": friction,
+            "load.slope": 20.0, "time.step": 2.0e-3, "time.steps": 300, "run.geometry": "updated",
+            "run.columns": ["displacement", "rotation"],
+        }
+    )  # fmt: skip
+    turned = abs(solve(slender, "dda").history.columns["rotation"][-1])
+    assert (turned > 0.1) == topples
+    assert topples or turned < 0.01
 
 
 def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:

@@ -128,3 +128,16 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: f
         held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
         until = friction.damped_creep(case) / friction.creep_scale(case)
         assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)
+
+
+@pytest.mark.parametrize("gg", [0.98, 0.9, 0.5])
+def test_a_discount_brings_a_body_to_its_terminal_speed_with_the_time_constant_of_its_drag(gg: float) -> None:
+    """The speed is a dt (1 - gg^n) / (1 - gg): terminal speed a dt / (1 - gg), time constant -dt / ln(gg)."""
+    case = scene(time__gg=gg, time__start="consistent", time__steps=2000)
+    t = case.time
+    _, speed = friction.free_motion(case, 1.0)
+    terminal = friction.time_constant(case)
+    decay = -np.polyfit(t.step * np.arange(1, 11), np.log(1 - speed[:10] / terminal), 1)[0]
+    assert decay == pytest.approx(friction.drag_rate(case), rel=1e-9)
+    assert terminal * friction.drag_rate(case) == pytest.approx(-np.log(gg) / (1 - gg), rel=1e-12)  # above 1: shorter
+    assert speed[-1] == pytest.approx(terminal, rel=1e-6)

@@ -158,3 +158,14 @@ def test_with_a_discount_both_ratios_agree_only_while_they_are_small(gg: float, 
     steady, free = steady_ratio(w_dt, AVERAGE, gg), float(spectral.damping_ratio(w_dt, *AVERAGE, gg))
     assert steady / free - 1 == pytest.approx(apart, abs=1e-3)
     assert (abs(steady / free - 1) < 0.014) == (free < 0.1)
+
+
+@pytest.mark.parametrize(("scheme", "order"), [(AVERAGE, 2.0), (CONSTANT, 1.0)])
+def test_a_joint_tends_to_the_continuum_with_the_order_of_the_scheme(scheme: tuple[float, float], order: float) -> None:
+    """At c dt/h = 1/2; the blocks alone have order 2, but the step is refined with them."""
+    errors = []
+    for blocks in (20, 40, 80, 160):
+        stepping, omega = wave(blocks, 0.5, scheme)
+        transmitted, _ = waves.joint_in_column(COLUMN, stepping.squared_frequency(omega), 2000.0 * SPEED * omega)
+        errors.append(abs(abs(transmitted) - waves.joint_transmission(1.0)))
+    assert np.polyfit(np.log([20, 40, 80, 160]), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.06)

@@ -322,7 +322,7 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
         left = 100 * kept_way(solution.value, solution.step, 1.0)
-        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered in a second"
+        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered from rest in a second"
         return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {braked}"
     return ""
 

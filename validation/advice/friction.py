@@ -54,9 +54,9 @@ class Sliding:
     run_out: float  # way of a sliding block over the scene's time [m]; zero where it stands
     braked: float  # the same with the scene's scheme and discount [m]
     offset: float  # by which springs that give put it ahead [m]
-    creep: float  # g / w_n, by which a stable block creeps on springs that ring [m/s]
+    creep: float  # g / w_n, with which the creep of a stable block on ringing springs scales [m/s]
     rate: float | None  # -ln(gg) / dt [1/s]; None where gg = 0, which takes the whole velocity in every step
-    constant: float  # dt / (1 - gg), in which a discount stops a body [s]
+    constant: float  # dt / (1 - gg), terminal speed over acceleration [s]
 
     @property
     def stands(self) -> bool:
@@ -113,8 +113,8 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
     yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg:"
     if found.stands:
         yield (
-            f"  stable      undamped springs ring and let it creep by the order of g / w_n = {1e3 * found.creep:.3g} "
-            f"mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
+            "  stable      undamped springs ring and let it creep at a speed that scales with g / w_n = "
+            f"{1e3 * found.creep:.3g} mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
         )
     else:
         yield (
@@ -183,6 +183,7 @@ def _hides(scene: Scene, found: Sliding) -> Iterator[Alarm]:
     if scene.load.slope and damps and phase > COARSE and found.creep > 0:
         said = (
             f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "
-            f"s, is damped before it can show; the exact block creeps by the order of {1e3 * found.creep:.3g} mm/s"
+            "s, is damped before it can show; the exact block creeps at a speed that scales with g / w_n = "
+            f"{1e3 * found.creep:.3g} mm/s"
         )
         yield Alarm(HIDES, scene.name, said, {"phase": phase, "scale": found.creep})

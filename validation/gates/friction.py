@@ -88,9 +88,10 @@ def normal_frequency(scene: Scene) -> float:
 
 
 def creep_scale(scene: Scene) -> float:
-    """Speed g / w_n by which a stable block creeps while its normal springs ring undamped [m/s].
+    """Speed g / w_n, with which that of a stable block on undamped ringing springs scales [m/s].
 
-    Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2.
+    Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2: 0.8 g / w_n at 20
+    degrees under 30, and from 0.03 (5 under 30) to 12 (40 under 45) times it on other slopes.
     """
     return scene.load.gravity / normal_frequency(scene)
 
@@ -107,10 +108,10 @@ def lag(scene: Scene) -> float:
 def ringing_decay(scene: Scene) -> float:
     """Rate at which scheme and discount damp the slowest normal ringing [1/s].
 
-    w_1^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
+    w_1^2 (delta - 1/2) dt / 2 - ln(gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
     """
     t = scene.time
-    return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + (1 - t.discount) / (2 * t.step)
+    return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + drag_rate(scene) / 2
 
 
 def damped_creep(scene: Scene) -> float:
@@ -133,7 +134,10 @@ def drag_rate(scene: Scene) -> float:
 
 
 def time_constant(scene: Scene) -> float:
-    """Time dt / (1 - gg) in which the discount brings a free body near its terminal speed [s]."""
+    """Terminal speed of a free body over its acceleration, dt / (1 - gg) [s].
+
+    It comes near that speed with the time constant -dt / ln(gg), which is shorter: by 1 % at 0.98, 28 % at 0.5.
+    """
     lost = 1 - scene.time.discount
     return scene.time.step / lost if lost else math.inf
 

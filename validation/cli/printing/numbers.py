@@ -134,7 +134,7 @@ def _slope(scene: Scene) -> Iterator[Number]:
         yield Number("tan b", abs(slope), "", "of the slope: friction coefficient that it needs at rest")
         if scene.block.vertices is None:
             width, height = closed_forms.size(scene)
-            yield Number("w/h", width / height, "", "slenderness: the tan b beyond which the block topples")
+            yield Number("w/h", width / height, "", "slenderness: the tan b beyond which it topples, unless it slides")
 
 
 def _steps(scene: Scene) -> Iterator[Number]:
@@ -208,7 +208,13 @@ def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
 
 def _steep(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     slope = found.get("tan b", 0.0)
-    if slope > found.get("tan phi", math.inf) and scene.contact.cohesion == 0:
+    if slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
+        return
+    grip = math.inf
+    if scene.contact.cohesion == 0:
+        grip = 0.0 if scene.contact.shear_stiffness == 0 else found.get("tan phi", math.inf)
+    if slope > grip:
         yield "tan b > tan phi: the block slides"
-    if slope > found.get("w/h", math.inf):
+    # The friction of a block that slides is tan(phi) N, whose moment does not tip it where tan(phi) < w/h.
+    if min(slope, grip) > found.get("w/h", math.inf):
         yield "tan b > w/h: the block topples"
