@@ -165,7 +165,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     >>> from validation import advise, load_scene
     >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
     >>> [round(s.value, 6) for s in advise(scene, damping=0.05, solve_for="dt").solutions]
-    [0.000585]
+    [0.000584]
     """
     if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
         raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
