@@ -110,7 +110,8 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
     t = scene.time
     slope = abs(scene.load.slope)
     side = "below" if found.stands else "above"
-    yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg:"
+    both = ", cohesion acting at both corners" if scene.contact.cohesion else ""
+    yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg{both}:"
     if found.stands:
         yield (
             "  stable      undamped springs ring and let it creep at a speed that scales with g / w_n = "

@@ -1,12 +1,13 @@
 """Closed forms of a block on an incline with Coulomb's friction, written apart from the solvers.
 
-Gravity is g (sin b, -cos b) along and across the base. While every corner slips one way or is open, the resultants of
-the contact obey T + tan(phi) N = -c a (downhill slip), whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
+Gravity is g (sin b, -cos b) along and across the base. While every corner slips downhill or, without cohesion, is open,
+the resultants of the contact obey T + tan(phi) N = -c a, whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
 displacements moves freely under
 
     a_s = g (sin b - tan(phi) cos b) - c a / m,
 
-for any springs, and in any Newmark scheme as a free body does in that scheme.
+for any springs, and in any Newmark scheme as a free body does in that scheme. A corner that opens loses its half of
+c a.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def adhesion(scene: Scene) -> float:
 def sliding_acceleration(scene: Scene) -> float:
     """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands.
 
-    g (sin |b| - tan(phi) cos b) - c a / m.
+    g (sin |b| - tan(phi) cos b) - c a / m, the cohesion acting over the whole base.
     """
     return abs(along(scene)) - coefficient(scene) * across(scene) - adhesion(scene)
 
