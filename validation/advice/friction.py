@@ -3,7 +3,8 @@
 creep of a stable block
     A block below its threshold slips on, long after it should stand.
 lagged friction
-    The friction of a slipping corner is that of the pass before: a stable block creeps, the faster the finer the step.
+    The friction of a slipping corner is that of the pass before: a stable block may creep, the faster the finer the
+    step (at 20 degrees under 30, 0.8 mm in a second at 1 ms and 6.1 mm at 0.2 ms; at 5 degrees hardly).
 slip hidden by the step
     The step is too long for the ringing that moves the exact block: it stands because it is damped.
 no contact state
@@ -139,7 +140,7 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     found = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
         said = (
-            "friction at a slipping corner is that of the iteration before: a stable block creeps, the faster the "
+            "friction at a slipping corner is that of the iteration before: a stable block may creep, the faster the "
             'finer the step; contact.rules = "consistent" avoids it'
         )
         yield Alarm(LAGS, scene.name, said)
