@@ -199,7 +199,8 @@ def test_a_rate_that_is_kept_is_named() -> None:
          "not converge."),
         ("gg", "Set gg = 0.003 per step (c = 10.15 1/s): the first axial mode of the DDA block is then damped at 5 % "
          "of critical and the displacement settles within 40 steps (0.12 s); this gg is valid at dt = 0.003 s only, at "
-         "another dt keep the rate c; in flight or sliding it leaves 0.302 % of the distance covered in a second."),
+         "another dt keep the rate c; in flight or sliding it leaves 0.302 % of the distance covered from rest in a "
+         "second."),
         ("scheme", "Set delta = 0.003, alpha = 0.6: the first axial mode of the DDA block is then damped at 5 % of "
          "critical and the displacement settles within 40 steps (0.12 s)."),
     ],

@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 from conftest import SCENE, thinned, typed
 
+from validation import solve
 from validation.cli.printing import scene_page
+from validation.cli.printing.numbers import numbers
+from validation.errors import InputError
 from validation.scenes.scene import load_scene, scene_names
 
 
@@ -60,6 +63,26 @@ def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: P
     assert not [text for text in below if "grow" in text]
 
 
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]}), ("figures-5-6", {})],
+)
+def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[str, Any]) -> None:
+    """Glue and joints count, and all modes of sub-blocks, not the lowest that are reported."""
+    explicit = {"time.alpha": 0.0, "time.delta": 0.5, "time.steps": 2, "time.allow_unstable": True}
+    case = load_scene(name).expand()[0].with_values(explicit | values)
+    limit = next(number.value for number in numbers(case) if number.name == "dt stable")
+    strict = case.with_values({"time.allow_unstable": False})
+    assert solve(strict.with_values({"time.step": limit}), "dda").time.size == 2
+    with pytest.raises(InputError, match="the stability limit"):
+        solve(strict.with_values({"time.step": 1.0001 * limit}), "dda")
+
+
+def test_a_scheme_without_a_stable_step_shows_none() -> None:
+    found = numbers(load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.delta": 0.4}))
+    assert next(number.value for number in found if number.name == "dt stable") == 0
+
+
 def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file: Path) -> None:
     unlocked = ("--set", "contact.law=unilateral", "--set")
     numbers = single(shown(scene_file, *unlocked, "time.step=0.001"))
@@ -82,10 +105,30 @@ def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
     assert numbers["tan b"] == pytest.approx(math.tan(math.radians(30))) and numbers["w/h"] == 1
     assert "tan b > tan phi: the block slides" in found["remarks"]
     assert "tan b > w/h: the block topples" not in found["remarks"]
-    flat = shown(scene_file, "--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")[
-        "remarks"
-    ]
-    assert "tan b > w/h: the block topples" in flat and "tan b > tan phi: the block slides" not in flat
+    slender = ("--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")
+    remarks = {phi: shown(scene_file, *slender, "--set", f"contact.friction={phi}")["remarks"] for phi in (25, 18, 10)}
+    topples, slides = "tan b > w/h: the block topples", "tan b > tan phi: the block slides"
+    assert topples in remarks[25] and slides not in remarks[25]
+    assert topples in remarks[18] and slides in remarks[18]
+    assert topples not in remarks[10] and slides in remarks[10]  # tan(phi) < w/h: its friction cannot tip it
+    scene_file.write_text(text)
+    assert topples not in shown(scene_file, *slender)["remarks"]  # locked
+
+
+@pytest.mark.parametrize(("friction", "topples"), [(25.0, True), (18.0, True), (10.0, False)])
+def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction: float, topples: bool) -> None:
+    """Half a metre by two on 20 degrees, as DDA moves it with the outline anew at every step: w/h = tan(14 degrees)."""
+    slender = load_scene("slope-sliding").expand()[0].with_values(
+        {
+            "block.width": 0.5, "block.height": 2.0, "block.young": 1.0e11,
+            "contact.stiffness": 1.0e10, "contact.shear_stiffness": 1.0e10, "contact.friction": friction,
+            "load.slope": 20.0, "time.step": 2.0e-3, "time.steps": 300, "run.geometry": "updated",
+            "run.columns": ["displacement", "rotation"],
+        }
+    )  # fmt: skip
+    turned = abs(solve(slender, "dda").history.columns["rotation"][-1])
+    assert (turned > 0.1) == topples
+    assert topples or turned < 0.01
 
 
 def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:

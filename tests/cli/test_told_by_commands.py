@@ -97,7 +97,8 @@ def test_the_thinnest_block_of_a_column_sets_its_stable_step() -> None:
     explicit = SITE.with_values({"time.alpha": 0.0, "time.delta": 0.5})
     (found,) = [number.value for number in numbers.numbers(explicit) if number.name == "dt stable"]
     heights, speeds = np.array([1.5, 1.0, 0.5, 0.5]), np.array([500.0, 350.0, 220.0, 150.0])
-    assert found == pytest.approx(float(np.min(2 * heights / (np.sqrt(12) * speeds))), rel=1e-3)
+    free = float(np.min(2 * heights / (np.sqrt(12) * speeds)))  # of the thinnest block by itself
+    assert free <= found <= 1.02 * free  # the solver's own: neighbours hold it, so that its frequency is lower
 
 
 def test_a_column_is_drawn_with_its_top_layer_above() -> None:

@@ -54,7 +54,7 @@ def test_peaks_are_told_from_the_highest_on() -> None:
 def test_the_least_ratio_of_a_step_is_told_in_per_cent_at_its_frequency_in_hertz() -> None:
     rows = [line.split() for line in said("rayleigh", "--dt", "0.01", "--gg", "0.99").splitlines()]
     (leading,) = [row[2:] for row in rows if row[:2] == ["leading", "order"]]
-    a0, a1 = 0.01 / 0.01, 0.5 * 0.01
+    a0, a1 = 2 * 0.01 / 1.99 / 0.01, 0.5 * 0.01
     least, at = 100 * np.sqrt(a0 * a1), np.sqrt(a0 / a1) / (2 * np.pi)
     assert [float(cell) for cell in leading] == pytest.approx([a0, a1, least, at], rel=1e-5)
 
@@ -103,4 +103,15 @@ def test_rayleigh_translates_a_step_and_back(tmp_path: Path) -> None:
     assert "exactly at both frequencies: dt = 0.000578506 s" in back
     assert path.stat().st_size > 5000
     assert "dt = 0.004 s" in said("rayleigh", "--dt", "1", "--a1", "0.002")
-    assert "exactly: damping: no scheme" in said("rayleigh", "--dt", "1", "--ratio", "5=0.005", "--ratio", "50=0.05")
+    edge = said("rayleigh", "--dt", "1", "--ratio", "5=0.005", "--ratio", "50=0.05")
+    assert "within 0.021 % at both frequencies: dt = 0.0006367" in edge
+    none = said("rayleigh", "--dt", "1", "--ratio", "5=0.05", "--ratio", "50=0.5")
+    assert "exactly: damping: no scheme" in none
+
+
+def test_rayleigh_finds_the_scheme_of_ratios_that_none_has_to_leading_order() -> None:
+    ratios = ("--ratio", "50=0.046", "--ratio", "100=0.989")
+    text = said("rayleigh", "--dt", "1", "--alpha", "1", "--delta", "0.6", *ratios)
+    assert "to leading order: none (damping: to leading order in w dt no scheme hides a negative mass part" in text
+    assert "exactly at both frequencies: dt = 0.00199827 s" in text
+    assert "no scheme with dt = 0.002 s" in refused("rayleigh", "--dt", "0.002", "--keep-dt", *ratios)

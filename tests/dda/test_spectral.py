@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from oracles import real_roots
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, one_step_operator
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, one_step_operator, solve
 from dda.one_block.modes import modes
 from dda.scheme import spectral
 
@@ -148,3 +148,19 @@ def test_diagnostics_name_a_growing_scheme():
     assert calm.spectral_radius <= 1
     assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
     assert calm.scaled_residual < 1e-15
+
+
+@pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (0.5, 1.0)])
+@pytest.mark.parametrize("start", ["consistent", "zero"])
+def test_damping_by_the_stiffness_is_a_scheme_of_larger_alpha_and_delta_from_the_consistent_start(
+    alpha: float, delta: float, start: str
+) -> None:
+    """`compare` calls C = a1 K the scheme alpha + delta a1/dt, delta + a1/dt: the same rows, but for the first step."""
+    step, a1 = 1.0e-3, 2.0e-4
+    viscous = Scheme(alpha, delta, 1.0, step, start, stiffness_damping=a1)
+    larger = Scheme(alpha + delta * a1 / step, delta + a1 / step, 1.0, step, start)
+    rows, same = (
+        solve(square(), scheme, 200, ("displacement",)).columns["displacement"] for scheme in (viscous, larger)
+    )
+    apart = np.linalg.norm(rows - same) / np.linalg.norm(rows)
+    assert (apart < 1e-12) == (start == "consistent")

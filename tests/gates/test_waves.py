@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dda.scheme import spectral
 from validation.gates import waves
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
@@ -56,6 +57,9 @@ def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float
 
 
 def test_damping_of_constant_acceleration_is_the_sine_of_a_quarter_step() -> None:
+    """Up to half the sampling frequency, w dt = pi; beyond, the steps see the alias at 2 pi - w dt, with its ratio."""
+    assert steady_ratio(3.1, CONSTANT) == pytest.approx(np.sin(3.1 / 4), rel=1e-12)
+    assert abs(steady_ratio(4.0, CONSTANT)) == pytest.approx(np.sin((2 * np.pi - 4.0) / 4), rel=1e-12)
     w = 2 * np.pi * np.array([5.0, 10.0, 20.0])
     W = np.sqrt(waves.Stepping(0.01).squared_frequency(w))
     assert np.allclose(-W.imag / np.abs(W), np.sin(w * 0.01 / 4), rtol=1e-12)
@@ -124,3 +128,44 @@ def test_joint_in_a_column(blocks: float, courant: float, scheme: tuple[float, f
 def test_joint_in_a_continuum() -> None:
     found = waves.joint_transmission([0.25, 0.5, 1.0, 2.0])
     assert np.allclose(found, [0.4472136, 0.7071068, 0.8944272, 0.9701425], atol=5e-8)
+
+
+def steady_ratio(w_dt: float, scheme: tuple[float, float], gg: float = 1.0) -> float:
+    """Return -Im W / |W| at dt = 1 s."""
+    W = np.sqrt(waves.Stepping(1.0, *scheme, gg).squared_frequency(w_dt))
+    return float(-W.imag / abs(W))
+
+
+@pytest.mark.parametrize(
+    ("w_dt", "steady", "free"),
+    [
+        (0.1, 0.024997, 0.024958),
+        (0.3, 0.074930, 0.073902),
+        (0.4 * np.pi, 0.309017, 0.255449),
+        (3.0, 0.681639, 0.371090),
+    ],
+)
+def test_the_steady_ratio_is_not_the_damping_ratio_of_a_free_vibration(w_dt: float, steady: float, free: float) -> None:
+    """(1/2, 1): both are w dt / 4 to leading order, and within 1.4 % of each other up to w dt = 0.3, no further."""
+    assert steady_ratio(w_dt, CONSTANT) == pytest.approx(steady, abs=1e-6)
+    assert float(spectral.damping_ratio(w_dt, *CONSTANT)) == pytest.approx(free, abs=1e-6)
+    assert (steady / free - 1 <= 0.014) == (w_dt <= 0.3)
+
+
+@pytest.mark.parametrize(("gg", "w_dt", "apart"), [(0.98, 0.3, 0.006), (0.98, 0.05, -0.0552), (0.9, 0.1, -0.2495)])
+def test_with_a_discount_both_ratios_agree_only_while_they_are_small(gg: float, w_dt: float, apart: float) -> None:
+    """At small w dt a discount of a step is a large ratio: the free vibration is overdamped, the steady one is not."""
+    steady, free = steady_ratio(w_dt, AVERAGE, gg), float(spectral.damping_ratio(w_dt, *AVERAGE, gg))
+    assert steady / free - 1 == pytest.approx(apart, abs=1e-3)
+    assert (abs(steady / free - 1) < 0.014) == (free < 0.1)
+
+
+@pytest.mark.parametrize(("scheme", "order"), [(AVERAGE, 2.0), (CONSTANT, 1.0)])
+def test_a_joint_tends_to_the_continuum_with_the_order_of_the_scheme(scheme: tuple[float, float], order: float) -> None:
+    """At c dt/h = 1/2; the blocks alone have order 2, but the step is refined with them."""
+    errors = []
+    for blocks in (20, 40, 80, 160):
+        stepping, omega = wave(blocks, 0.5, scheme)
+        transmitted, _ = waves.joint_in_column(COLUMN, stepping.squared_frequency(omega), 2000.0 * SPEED * omega)
+        errors.append(abs(abs(transmitted) - waves.joint_transmission(1.0)))
+    assert np.polyfit(np.log([20, 40, 80, 160]), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.06)

@@ -1,5 +1,7 @@
 """Every code block of the documentation is run, in the order in which a reader meets it."""
 
+import doctest
+import importlib
 import os
 import shlex
 import subprocess
@@ -75,3 +77,18 @@ def test_every_public_name_has_a_docstring() -> None:
             value = getattr(package, name)
             if isinstance(value, type) or hasattr(value, "__code__"):
                 assert (value.__doc__ or "").strip(), f"{package.__name__}.{name}"
+
+
+EXAMPLES = [
+    path
+    for package in ("dda", "fem_reference", "validation")
+    for path in sorted((ROOT / package).rglob("*.py"))
+    if ">>>" in path.read_text()
+]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_of_docstrings_print_what_they_say(path: Path) -> None:
+    module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
+    found = doctest.testmod(module)
+    assert found.attempted > 0 and found.failed == 0

@@ -115,6 +115,18 @@ def test_a_fall_takes_about_as_many_steps_as_the_docs_say_and_ends_nearer_to_res
     assert ends[1] < 0.6 * ends[0] < 0.6
 
 
+@pytest.mark.parametrize(
+    ("omega", "factor", "left"), [(0.001, 2.46, 0.15), (0.01, 2.37, 0.32), (0.05, 2.17, 0.51), (0.2, 1.71, 0.70)]
+)
+def test_the_steps_of_a_fall_follow_the_power_law_at_small_steps_only(omega: float, factor: float, left: float) -> None:
+    scheme = dda.Scheme(0.25, 0.5, 1.0, omega, "consistent")
+    found = adapted_modes(scheme, np.ones(1), np.ones(1), int(3 / omega), 0.0)
+    falling = np.flatnonzero(found.discount < 1)
+    first = falling[: np.flatnonzero(np.append(np.diff(falling) > 1, True))[0] + 1]
+    assert len(first) == pytest.approx(factor * omega ** (-2 / 3), abs=1.5)
+    assert abs(found.modes[0, first[-1]] - 1) == pytest.approx(left, abs=0.03)
+
+
 def test_savings_change_nothing() -> None:
     scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2, "time.steps": 60})
     steps, found = scene.time.steps, columns(scene, "fem")

@@ -13,11 +13,14 @@ from faults.fault import of_first, soft_springs, told, with_scheme
 from faults.kill_matrix import whole
 
 from dda import Unilateral, UnilateralResult
+from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status
 from validation.runs.results import Results
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
 from validation.studies.paper.claims import REGISTER, Band, Claim, Evidence, Finding, page
 from validation.studies.paper.friction import ON_SLOPES
 from validation.studies.paper.open_close import OPEN_CLOSE
@@ -148,3 +151,47 @@ def test_the_page_in_docs_holds_no_digits_of_rounding() -> None:
 
 def test_the_command_needs_results(tmp_path: Path) -> None:
     assert "run paper" in refused("claims", "--results", tmp_path)
+
+
+SCHEMES = [(0.5, 1.0), (0.5625, 1.0), (0.5, 0.75), (0.25, 0.5), (0.5, 0.5)]
+
+
+def most_solves(alpha: float, delta: float, values: dict[str, float]) -> tuple[int, int]:
+    """Return the most solves of a step and the cuts of the paper's unlocked block, p = 100E, dt = 1 ms."""
+    scheme = {"time.alpha": alpha, "time.delta": delta, "time.steps": 200}
+    case = load_scene("open-close").expand()[0].with_values(scheme | values)
+    prepared = get_solver("dda").prepare(case)
+    prepared.run()
+    record = prepared.contact_record()
+    assert record.solves is not None and record.cuts is not None
+    return int(record.solves.max()), int(record.cuts.sum())
+
+
+@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
+def test_two_contacts_without_friction_converge_at_any_damping(alpha: float, delta: float) -> None:
+    for eccentricity, traction in ((0.0, 0.0), (0.4, 5e5), (0.6, 1e5)):
+        free = {"contact.shear_stiffness": 0.0, "load.eccentricity": eccentricity, "load.traction": traction}
+        solves, cuts = most_solves(alpha, delta, free)
+        assert solves <= 3 and cuts == 0
+
+
+def test_contacts_glued_in_shear_and_loaded_off_centre_may_need_many_solves_with_damping_as_without() -> None:
+    off_centre = [{"load.eccentricity": 0.4, "load.traction": 5e5}, {"load.eccentricity": 0.6, "load.traction": 1e5}]
+    damped = [most_solves(0.5625, 1.0, load)[0] for load in off_centre]
+    undamped = [most_solves(0.25, 0.5, load)[0] for load in off_centre]
+    assert max(damped) > 3 and max(undamped) > 3
+    assert most_solves(0.5625, 1.0, {})[0] <= 3  # in the middle both corners move as one
+
+
+# Ways in a second by an independent program of six unknowns and two corners [mm], by time step [s].
+WAYS = {0.01: 1.0790587, 0.002: 2.7461378, 0.001: 5.1759751, 0.0005: 10.0452057}
+
+
+@pytest.mark.parametrize("step", WAYS)
+def test_a_stable_block_slides_the_farther_the_finer_the_step_and_stands_in_the_end(step: float) -> None:
+    case = next(s for s in load_scene("creep-claim").expand() if s.contact.rules == "consistent")
+    columns = ["displacement", "contact_pressure", "horizontal_displacement", "slide_m", "slide_n"]
+    values = {"time.step": step, "time.steps": round(1 / step), "run.columns": columns}
+    way = solve(case.with_values(values), "dda").history.columns["horizontal_displacement"]
+    assert 1e3 * way[-1] == pytest.approx(WAYS[step], abs=1e-6)
+    assert np.ptp(way[-len(way) // 4 :]) < 1e-6  # of 1 mm and more: it stands

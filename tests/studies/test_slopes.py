@@ -23,7 +23,7 @@ from validation.gates import friction
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.scenes.record import base_record
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, load_scene
 from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.bands import cases
 from validation.studies.slopes import creep, sliding
@@ -177,3 +177,49 @@ def oracle(case: Scene, lagged: bool) -> Slider:
     c, t = case.contact, case.time
     pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
     return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)
+
+
+CREEP = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n in 0.4 s
+    (20.0, 30.0, 0.4, 0.811),
+    (20.0, 22.0, 0.4, 1.210),
+    (5.0, 30.0, 0.4, 0.0276),
+    (10.0, 30.0, 0.4, 0.171),
+    (20.0, 60.0, 0.4, 0.236),
+    (40.0, 45.0, 0.4, 12.4),
+    (20.0, 30.0, 0.1, 2.91),
+]
+
+
+@pytest.mark.parametrize(("slope", "phi", "shear", "factor"), CREEP)
+def test_the_creep_of_the_exact_block_scales_with_g_over_w_n_by_a_factor_of_slope_friction_and_springs(
+    slope: float, phi: float, shear: float, factor: float
+) -> None:
+    values = {"load.slope": slope, "contact.friction": phi, "contact.shear_stiffness": shear * 1e9}
+    case = load_scene("creep-exact").expand()[0].with_values(values)
+    history = solve(case, "block-events").history
+    way = creep.slid(history.columns)[-1]
+    assert way / history.time[-1] / friction.creep_scale(case) == pytest.approx(factor, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "delta", "start", "order"),
+    [
+        (1 / 3, 0.5, "consistent", 2.0),
+        (0.5, 0.5, "consistent", 2.0),
+        (0.25, 0.5, "zero", 1.0),
+        (0.3025, 0.6, "consistent", 1.0),
+    ],
+)
+def test_every_scheme_of_delta_one_half_has_order_two_from_the_consistent_start(
+    alpha: float, delta: float, start: str, order: float
+) -> None:
+    cases = load_scene("slope-exact-average").expand()[:3]
+    values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+    errors = []
+    for case in cases:
+        exact = solve(case, "block-events").history
+        own = solve(case.with_values(values), "dda").history
+        errors.append(np.linalg.norm(own.displacement - exact.displacement))
+    steps = [case.time.step for case in cases]
+    sizes = np.array(errors) / np.sqrt([case.time.steps for case in cases])
+    assert np.polyfit(np.log(steps), np.log(sizes), 1)[0] == pytest.approx(order, abs=0.12)

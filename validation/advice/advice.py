@@ -24,6 +24,7 @@ from validation.advice.spectra import (
     CONTACT,
     ModeDamping,
     dda_modes,
+    highest_frequency,
     mode_damping,
     mode_names,
     percent,
@@ -32,7 +33,6 @@ from validation.advice.spectra import (
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
-from validation.runs.modes import Mode
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
@@ -165,7 +165,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     >>> from validation import advise, load_scene
     >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
     >>> [round(s.value, 6) for s in advise(scene, damping=0.05, solve_for="dt").solutions]
-    [0.000585]
+    [0.000584]
     """
     if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
         raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
@@ -173,7 +173,8 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         raise InputError(f"solve_for: must be one of {', '.join(KINDS)}, got {solve_for!r}")
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
-    search = SEARCHES[solve_for](scene, modes[0].frequency, max(mode.frequency for mode in modes))
+    highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only
+    search = SEARCHES[solve_for](scene, modes[0].frequency, highest)
     values = search.solutions(damping)
     if not values and _everywhere(search, damping):
         values = [_own(search, scene, solve_for, modes[0].frequency)]
@@ -184,12 +185,11 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
     text = _sentence(scene, solve_for, damping, solutions, reach)
     answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    return answer if solutions else _with_another(answer, scene, modes)
+    return answer if solutions else _with_another(answer, scene, modes[0].frequency, highest)
 
 
-def _with_another(answer: Advice, scene: Scene, modes: Sequence[Mode]) -> Advice:
+def _with_another(answer: Advice, scene: Scene, first: float, highest: float) -> Advice:
     """Return an answer of "no" with the nearest that can be had and what to change."""
-    first, highest = modes[0].frequency, max(mode.frequency for mode in modes)
     makes = {kind: functools.partial(make, frequency=first, highest=highest) for kind, make in SEARCHES.items()}
     found = instead(scene, answer.solve_for, answer.target, makes, first)
     settings = None if found.settings is None else dict(found.settings)
@@ -322,7 +322,7 @@ def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
         left = 100 * kept_way(solution.value, solution.step, 1.0)
-        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered in a second"
+        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered from rest in a second"
         return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {braked}"
     return ""
 

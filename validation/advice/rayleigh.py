@@ -1,17 +1,23 @@
 r"""The Rayleigh damping that a scheme hides, and the scheme that hides a wanted one.
 
 A step answers a vibration as the undamped system does at the complex frequency W = sqrt(W2); its damping ratio is
-xi = -Im W / |W|. To leading order in w dt that is Rayleigh's xi = a0 / (2 w) + a1 w / 2 with
+xi = -Im W / |W|, the *steady ratio* (that of a free vibration is `damping_ratio` of `validation.advice.spectra`). For
+w dt -> 0 it is Rayleigh's xi = a0 / (2 w) + a1 w / 2, small ratios taken for granted, with
 
-    a0 = (1 - gg) / dt   (kinetic damping, C = a0 M),      a1 = (delta - 1/2) dt   (algorithmic damping, C = a1 K).
+    a0 = 2 (1 - gg) / ((1 + gg) dt)   (kinetic damping, C = a0 M),
+    a1 = (delta - 1/2) dt             (algorithmic damping, C = a1 K; for gg near 1).
 
-Codes that take a least ratio at a frequency are given xi_min = sqrt(a0 a1) at f_min = sqrt(a0 / a1) / (2 pi).
+The free decay of the discount is -ln(gg) / dt, and a0 = 2 tanh(-ln(gg) / 2) / dt: the same to second order in 1 - gg.
+To this order neither part is negative and no ratio rises faster than the frequency; at w dt of order one it may:
+(1/2, 0.6) at 2 ms has 3.47 times the ratio at 100 Hz that it has at 50 Hz. Codes that take a least ratio at a frequency
+are given xi_min = sqrt(a0 a1) at f_min = sqrt(a0 / a1) / (2 pi).
 """
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +26,10 @@ from numpy.typing import ArrayLike
 from validation.errors import InputError
 from validation.gates.waves import Stepping
 from validation.runs.history import Array
+
+STARTS = 30  # of the search for a scheme, where the leading order does not lead to one
+ROUNDING = 1e-9  # of a discount that is 0 or 1, or of a ratio
+WRITTEN = 0.005  # of a ratio: what the digits in which it is written leave open
 
 Point = tuple[float, float]  # frequency [Hz] and damping ratio [1]
 
@@ -124,12 +134,12 @@ def check_band(low: float, high: float) -> None:
 
 
 def hidden(stepping: Stepping) -> Rayleigh:
-    """Return the Rayleigh damping of a scheme to leading order in w dt."""
+    """Return the Rayleigh damping of a scheme in the limit w dt -> 0."""
     return Rayleigh(*stepping.rayleigh())
 
 
 def ratio(stepping: Stepping, frequency: ArrayLike) -> Array:
-    """Return the damping ratio xi = -Im W / |W| of a scheme at frequencies in Hz."""
+    """Return the steady ratio xi = -Im W / |W| of a scheme at frequencies in Hz."""
     W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(frequency, float)))
     return np.asarray(-W.imag / np.abs(W))
 
@@ -154,21 +164,29 @@ def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
     Raises
     ------
     InputError
-        No scheme hides it: a part is negative, delta = 1/2 has no algorithmic damping, or the discount is not positive.
+        To leading order no scheme hides it: a part is negative, delta = 1/2 has no algorithmic damping, or the discount
+        is not positive.
     """
     if wanted.a0 < 0 or wanted.a1 < 0:
         part = "mass" if wanted.a0 < 0 else "stiffness"
-        raise InputError(f"damping: no scheme hides a negative {part} part, got a0 = {wanted.a0:g}, a1 = {wanted.a1:g}")
+        raise InputError(
+            f"damping: to leading order in w dt no scheme hides a negative {part} part, got a0 = {wanted.a0:g}, "
+            f"a1 = {wanted.a1:g}"
+        )
     if keep_step:
         delta = 0.5 + wanted.a1 / scheme.step
         found = replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2))
     elif wanted.a1 == 0 and scheme.delta == 0.5:
         found = scheme  # any step does
     elif wanted.a1 == 0 or scheme.delta <= 0.5:
-        raise InputError(f"delta: {scheme.delta:g} hides no a1 = {wanted.a1:g} s at any step; keep dt and vary delta")
+        raise InputError(
+            f"delta: {scheme.delta:g} hides, to leading order, no a1 = {wanted.a1:g} s at any step; "
+            "keep dt and vary delta"
+        )
     else:
         found = replace(scheme, step=wanted.a1 / (scheme.delta - 0.5))
-    gg = 1 - wanted.a0 * found.step
+    half = wanted.a0 * found.step / 2  # (1 - gg) / (1 + gg)
+    gg = (1 - half) / (1 + half)
     if gg <= 0:
         raise InputError(
             f"damping: a0 = {wanted.a0:g} 1/s takes more than the whole velocity in a step of {found.step:g} s"
@@ -177,32 +195,119 @@ def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
 
 
 def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: bool = False) -> Stepping:
-    """Return the scheme whose own ratios at two frequencies in Hz are the wanted ones; `settings` is where it begins.
+    """Return the scheme whose steady ratios at two frequencies in Hz are the wanted ones.
+
+    The search begins at `settings`, and where that leads nowhere on a grid of all steps (or all delta) and discounts:
+    at w dt of order one a scheme may have ratios that none has to leading order. Of several the one with the smallest
+    step (or delta) is taken. A scheme without discount is an edge of what can be had: where it alone has both ratios to
+    the few digits in which ratios are written, it is returned.
 
     Raises
     ------
     InputError
-        No scheme hides them.
+        No scheme with its step below half a period of the higher frequency has them.
     """
+    frequencies = np.array([first[0], second[0]])
+    wanted = np.array([first[1], second[1]])
+    shortest_period = 1 / float(frequencies.max())
+    target = Rayleigh.through(first, second)
+
+    def candidate(size: float, gg: float) -> Stepping:
+        if keep_step:
+            delta = 0.5 + size
+            return replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2), gg=gg)
+        return replace(scheme, step=size, gg=gg)
+
+    def fits(found: Stepping) -> bool:
+        near = np.allclose(ratio(found, frequencies), wanted, rtol=1e-9, atol=1e-15)
+        return near and found.step <= shortest_period / 2 * (1 + 1e-9)
+
+    starts = []
+    with contextlib.suppress(InputError):
+        leading = settings(target, scheme, keep_step)
+        if fits(leading):
+            return leading
+        starts.append((leading.delta - 0.5 if keep_step else leading.step, leading.gg))
+    solutions = _solutions(candidate, fits, frequencies, wanted, starts)
+    if not solutions:
+        sizes = np.geomspace(1e-4, 10, 60) if keep_step else shortest_period / 2 * np.geomspace(1e-6, 1, 60)
+        solutions = _solutions(
+            candidate, fits, frequencies, wanted, _grid_starts(candidate, frequencies, wanted, sizes)
+        )
+        edge = None if solutions else _without_discount(candidate, frequencies, wanted, sizes)
+        if edge is not None and misfit(edge, first, second) <= WRITTEN:
+            return edge
+    if not solutions:
+        kept = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
+        raise InputError(f"damping: no scheme with {kept} has these two ratios; ask for smaller or closer ones")
+    return min(solutions, key=lambda found: (found.delta, found.step))
+
+
+def misfit(scheme: Stepping, *points: Point) -> float:
+    """Return by how much the steady ratios of a scheme miss wanted ones, the largest as a share of its wanted ratio."""
+    missed = [abs(float(ratio(scheme, f)) - xi) / max(xi, ROUNDING) for f, xi in points]
+    return max(missed)
+
+
+Candidate = Callable[[float, float], Stepping]  # of a step [s] or of delta - 1/2, and of gg
+
+
+def _grid_starts(candidate: Candidate, frequencies: Array, wanted: Array, sizes: Array) -> list[tuple[float, float]]:
+    """Return the points of a grid at which the ratios come nearest to the wanted ones, the nearest first."""
+    discounts = 1 - np.concatenate([[0.0], np.geomspace(1e-6, 0.99, 30)])
+    found = []
+    for size in sizes.tolist():
+        for gg in discounts.tolist():
+            with np.errstate(all="ignore"):  # a root at infinity
+                distance = float(np.abs(ratio(candidate(size, gg), frequencies) - wanted).max())
+            if math.isfinite(distance):
+                found.append((distance, size, gg))
+    return [(size, gg) for _, size, gg in sorted(found)[:STARTS]]
+
+
+def _without_discount(candidate: Candidate, frequencies: Array, wanted: Array, sizes: Array) -> Stepping:
+    """Return the scheme at gg = 1 whose ratios come nearest to the wanted ones."""
+    from scipy.optimize import minimize_scalar
+
+    def distance(log_size: float) -> float:
+        with np.errstate(all="ignore"):
+            found = ratio(candidate(math.exp(log_size), 1.0), frequencies)
+        return float(np.nan_to_num(np.abs(found / np.maximum(wanted, ROUNDING) - 1).max(), nan=math.inf))
+
+    logs = np.log(sizes)
+    near = int(np.argmin([distance(x) for x in logs.tolist()]))
+    bounds = (float(logs[max(near - 1, 0)]), float(logs[min(near + 1, len(logs) - 1)]))
+    best = minimize_scalar(distance, bounds=bounds, method="bounded", options={"xatol": 1e-12})
+    return candidate(math.exp(float(best.x)), 1.0)
+
+
+def _solutions(
+    candidate: Candidate,
+    fits: Callable[[Stepping], bool],
+    frequencies: Array,
+    wanted: Array,
+    starts: Sequence[tuple[float, float]],
+) -> list[Stepping]:
+    """Return the schemes with the wanted ratios that are reached from some starts (step or delta - 1/2, and gg)."""
     from scipy.optimize import root
 
-    start = settings(Rayleigh.through(first, second), scheme, keep_step)
-    frequencies, wanted = np.array([[first[0], second[0]], [first[1], second[1]]])
-    logs = np.log([start.delta - 0.5 if keep_step else start.step, max(1 - start.gg, 1e-9)])
+    scale = max(float(wanted.max()), 1e-15)
 
-    def made(x: Array) -> Stepping:
-        size, loss = np.exp(np.minimum(x, [math.log(1e6), 0.0]))
-        gg = 1 - float(loss)
-        if keep_step:
-            delta = 0.5 + float(size)
-            return replace(start, delta=delta, alpha=max(scheme.alpha, delta / 2), gg=gg)
-        return replace(start, step=float(size), gg=gg)
+    def residual(x: Array) -> Array:
+        # the formulas hold beyond gg = 1, so that a scheme without discount is no edge of the search
+        return (ratio(candidate(float(np.exp(min(x[0], 10.0))), float(x[1])), frequencies) - wanted) / scale
 
-    found = root(lambda x: ratio(made(x), frequencies) - wanted, logs, tol=1e-13)
-    answer = made(found.x)
-    if not np.allclose(ratio(answer, frequencies), wanted, rtol=1e-9):
-        raise InputError("damping: no scheme of this kind hides these two ratios; ask for smaller or closer ones")
-    return answer
+    solutions = []
+    for size, gg in starts:
+        with np.errstate(all="ignore"):  # a trial may lie where no step exists
+            found = root(residual, [math.log(size), gg], tol=1e-13).x
+        discount = float(found[1])
+        if not -ROUNDING <= discount <= 1 + ROUNDING:
+            continue
+        scheme = candidate(float(np.exp(min(found[0], 10.0))), min(max(discount, 0.0), 1.0))
+        if fits(scheme):
+            solutions.append(scheme)
+    return solutions
 
 
 def _check_points(*points: Point) -> None:

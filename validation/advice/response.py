@@ -97,7 +97,7 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     >>> from validation import load_scene, response
     >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
     >>> found = response(scene, [20.0, 52.0], "dda")
-    >>> [round(1e3 * abs(v), 6) for v in found.displacement]
+    >>> [round(1e3 * abs(complex(v)), 6) for v in found.displacement]
     [11.545937, 31.441911]
     """
     f = _checked(frequencies)

@@ -161,6 +161,33 @@ def checked(solver: str, scene: Scene) -> Solver:
     return chosen
 
 
+def stable_step(scene: Scene) -> float:
+    """Return the largest stable step of the scene as DDA's solver judges it [s]; infinite where every step is stable.
+
+    The critical w dt of the scheme over the highest natural frequency of the solver's own model, with its contact
+    springs, glue and joints: a spring between two blocks can be far faster than the blocks.
+
+    Raises
+    ------
+    InputError
+        DDA refuses the scene, or its model does not fit into memory.
+    """
+    t = scene.time
+    critical = spectral.critical_omega(t.alpha, t.delta, t.discount)
+    return critical if math.isinf(critical) else critical / highest_frequency(scene)
+
+
+def highest_frequency(scene: Scene) -> float:
+    """Return the highest natural frequency of DDA's model of the scene [rad/s].
+
+    Raises
+    ------
+    InputError
+        DDA refuses the scene, or its model does not fit into memory.
+    """
+    return checked("dda", scene).prepare(scene).highest_frequency()
+
+
 def damping(scene: Scene, references: bool = False) -> Damping:
     """Return the damping that a scene really has, mode by mode.
 

@@ -3,7 +3,8 @@ r"""Blocks and time step for a wave: how much of it a column of blocks under the
 In blocks of height h the scheme carries a wave e^{iwt - ikx} with cos(kh) = (6 - 2 L)/(6 + L), L = W2 h^2 rho / M
 (`validation.gates.waves`). Over a distance X it keeps exp(-|Im k| X) and arrives (Re k - w/c) X / (2 pi) periods late.
 The blocks are made small enough for half of the phase error in exact time; then the step is the largest with which the
-loss and the whole phase error are kept.
+loss and the whole phase error are kept. Under a conditionally stable scheme the step also stays below the limit of the
+solver's own model of these blocks, whose glue, joints and contact springs may be far faster than the blocks.
 """
 
 from __future__ import annotations
@@ -15,14 +16,16 @@ from typing import Any
 
 import numpy as np
 
+from dda.scheme.spectral import critical_omega
 from validation.advice.rayleigh import hidden, ratio
 from validation.advice.response import check_scene
-from validation.advice.spectra import percent
+from validation.advice.spectra import highest_frequency, percent
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.gates.waves import Column, Stepping
 from validation.runs.history import Array, Complex
 from validation.scenes import features
+from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
 
 MOST_BLOCKS = 10_000_000
@@ -38,7 +41,8 @@ class Layer:
     density: float  # [kg/m^3]
     modulus: float  # of the wave [Pa]
     blocks: int
-    glue: float | None = None  # of the springs between blocks [Pa/m]; None where they are welded
+    glue: float | None = None  # of the springs between blocks [Pa/m]; None where they are perfectly bonded
+    joints: tuple[float, ...] = ()  # heights of joints over the layer's foot, as shares of its thickness [1]
 
     @property
     def height(self) -> float:
@@ -64,7 +68,7 @@ class Passage:
     heights: tuple[float, ...]  # of a block of each layer [m]
     loss: float  # share of the amplitude that is lost [1]
     delay: float  # of the arrival [periods]
-    damping: float  # damping ratio of the step at the frequency [1]
+    damping: float  # steady ratio -Im W / |W| of the step at the frequency [1]
 
 
 @dataclass(frozen=True)
@@ -122,6 +126,16 @@ class _Way:
         return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *kept)
 
 
+@dataclass(frozen=True)
+class _LargestStep:
+    """The largest step with which a wave arrives, and what limits it; without one, the least loss at a stable step."""
+
+    step: float | None  # dt [s]; None where no step is good enough
+    limit: str
+    least_loss: float = 1.0  # share of the amplitude [1]
+    least_loss_at: float | None = None  # dt [s]; None where no step of the grid is stable
+
+
 def advise_wave(
     scene: Scene, frequency: float, loss: float, wavelengths: float | None = None, phase_error: float = 0.05
 ) -> WaveAdvice:
@@ -156,8 +170,8 @@ def advise_wave(
         way = replace(way, times=wavelengths / way.wavelengths)
     present = way.passage(Stepping.of(scene))
     cut, limits_height = _cut(way, phase_error / 2)
-    step, limits_step = (None, "blocks") if cut is None else _largest_step(scene, cut, loss, phase_error)
-    advised = None if cut is None or step is None else cut.passage(_stepping(scene, step))
+    largest = _LargestStep(None, "blocks") if cut is None else _largest_step(scene, cut, loss, phase_error)
+    advised = None if cut is None or largest.step is None else cut.passage(_stepping(scene, largest.step))
     return WaveAdvice(
         scene.name,
         frequency,
@@ -169,9 +183,9 @@ def advise_wave(
         advised,
         tuple(layer.blocks for layer in cut.layers) if cut is not None and advised is not None else (),
         limits_height,
-        limits_step,
+        largest.limit,
         _sentence(scene, way, present),
-        _advised(scene, way, advised, limits_height, limits_step),
+        _advised(scene, advised, limits_height, largest),
     )
 
 
@@ -185,7 +199,14 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
     """
     if scene.column is not None:
         c = scene.column
-        return tuple(Layer(x.thickness, x.density, c.modulus(x), x.blocks, c.glue) for x in c.layer)
+        layers = []
+        foot = 0.0
+        for x in c.layer:
+            shares = [(joint.height - foot) / x.thickness for joint in c.joint]
+            inside = tuple(share for share in shares if 0 < share < 1)
+            layers.append(Layer(x.thickness, x.density, c.modulus(x), x.blocks, c.glue, inside))
+            foot += x.thickness
+        return tuple(layers)
     b = scene.block
     points = b.outline
     upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
@@ -211,9 +232,23 @@ def _cut(way: _Way, allowed: float) -> tuple[_Way | None, str]:
         blocks = _fewest(alone, allowed * alone.wavelengths / total)
         if blocks is None:
             return None, "glue"
-        layers.append(replace(layer, blocks=blocks))
+        layers.append(replace(layer, blocks=_with_joints_between(layer, blocks)))
     single_block = all(layer.blocks == 1 for layer in layers)
     return replace(way, layers=tuple(layers)), "column" if single_block else "phase error"
+
+
+def _with_joints_between(layer: Layer, blocks: int) -> int:
+    """Return the least number of blocks from `blocks` on with which every joint lies where two blocks meet.
+
+    The present number does so, and with it every multiple of it.
+    """
+    if not layer.joints:
+        return blocks
+    last = math.ceil(blocks / layer.blocks) * layer.blocks
+    fitting = (
+        n for n in range(blocks, last) if all(abs(n * share - round(n * share)) <= NEAR * n for share in layer.joints)
+    )
+    return next(fitting, last)
 
 
 def _fewest(way: _Way, allowed: float) -> int | None:
@@ -234,35 +269,69 @@ def _fewest(way: _Way, allowed: float) -> int | None:
     return blocks
 
 
-def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> tuple[float | None, str]:
+def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> _LargestStep:
     """Return the largest step with which the wave arrives, and what limits it."""
+    is_stable = _stability(scene, way)
 
     def passed(step: float) -> tuple[float, float]:
         lost, delay = way.passed(_stepping(scene, step).squared_frequency([way.omega]))
         return float(lost[0]), float(abs(delay[0]))
 
-    def good(step: float) -> bool:
+    def arrives(step: float) -> bool:
         lost, delay = passed(step)
-        return lost <= loss and delay <= allowed and step <= stable
+        return lost <= loss and delay <= allowed
 
-    stable = _stable(scene, way)
+    def good(step: float) -> bool:
+        return is_stable(step) and arrives(step)
+
     steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID).tolist()
     found = next((i for i, step in enumerate(steps) if good(step)), None)
     if found is None:
-        return None, _why_none(scene, [passed(step)[0] for step in steps], loss)
+        stable = [step for step in steps if is_stable(step)]
+        if any(arrives(step) for step in steps):  # but not stably
+            limit = "stability"
+        else:
+            limit = _why_none(scene, [passed(step)[0] for step in steps], loss)
+        best = min(stable, key=lambda step: passed(step)[0], default=None)
+        return _LargestStep(None, limit) if best is None else _LargestStep(None, limit, passed(best)[0], best)
     if found == 0:
-        return steps[0], "half a period"
+        return _LargestStep(steps[0], "half a period")
     step = _edge(good, steps[found], steps[found - 1])
-    lost, _ = passed(step * (1 + 1e-6))
-    if step * (1 + 1e-6) > stable:
-        return step, "stability"
-    return step, "loss" if lost > loss else "phase error"
+    beyond = step * (1 + 1e-6)
+    if not is_stable(beyond):
+        return _LargestStep(step, "stability")
+    return _LargestStep(step, "loss" if passed(beyond)[0] > loss else "phase error")
 
 
-def _stable(scene: Scene, way: _Way) -> float:
-    """Return the largest stable step of welded blocks, whose highest frequency is sqrt(12) c / h [s]."""
-    critical = closed_forms.critical_omega(scene)
-    return min(critical * layer.height / (math.sqrt(12) * layer.speed) for layer in way.layers)
+def _stability(scene: Scene, way: _Way) -> Callable[[float], bool]:
+    """Return whether a step is stable on the advised blocks, as DDA's solver has them with glue, joints and springs.
+
+    A discount that keeps its rate changes with the step, and with it the critical w dt of the scheme.
+    """
+    t = scene.time
+    if 2 * t.alpha >= t.delta >= 0.5:
+        return lambda step: True
+    highest = highest_frequency(_advised_scene(scene, way))
+
+    def is_stable(step: float) -> bool:
+        stepping = _stepping(scene, step)
+        return step * highest <= critical_omega(stepping.alpha, stepping.delta, stepping.gg)
+
+    return is_stable
+
+
+def _advised_scene(scene: Scene, way: _Way) -> Scene:
+    """Return the scene with the advised blocks."""
+    counts = [layer.blocks for layer in way.layers]
+    if scene.column is not None:
+        layers = [
+            layer.model_dump() | {"blocks": blocks} for layer, blocks in zip(scene.column.layer, counts, strict=True)
+        ]
+        return scene.with_values({"column.layer": layers})
+    if scene.block.subdivide is None and counts == [1]:
+        return scene
+    columns = 1 if scene.block.subdivide is None else scene.block.subdivide[0]
+    return scene.with_values({"block.subdivide": [columns, counts[0]]})
 
 
 def _why_none(scene: Scene, losses: list[float], allowed: float) -> str:
@@ -285,32 +354,36 @@ def _sentence(scene: Scene, way: _Way, present: Passage) -> str:
     kind = "algorithmic" if mass == 0 else "kinetic" if stiffness == 0 else "algorithmic and kinetic"
     distance = way.times * sum(layer.thickness for layer in way.layers)
     late = "late" if present.delay >= 0 else "early"
-    size = f"{percent(present.damping)} {kind}" if present.damping else "no"
+    damping = f"has a steady ratio of {percent(present.damping)}, {kind}," if present.damping else "damps nothing"
     return (
-        f"Your dt = {present.step:g} s is {size} damping at {way.frequency:g} Hz: "
+        f"Your dt = {present.step:g} s {damping} at {way.frequency:g} Hz: "
         f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {way.wavelengths:.3g} wavelengths, "
         f"{abs(present.delay):.3g} periods {late}."
     )
 
 
-def _advised(scene: Scene, way: _Way, found: Passage | None, height: str, step: str) -> str:
+def _advised(scene: Scene, advised: Passage | None, height: str, largest: _LargestStep) -> str:
     """Say what is advised and what limits it, or why nothing is."""
-    if found is not None:
-        heights = ", ".join(f"{h:.4g}" for h in found.heights)
+    if advised is not None:
+        heights = ", ".join(f"{h:.4g}" for h in advised.heights)
         return (
-            f"Blocks of {heights} m and dt = {found.step:.4g} s lose {percent(found.loss)} of it and bring it "
-            f"{abs(found.delay):.3g} periods {'late' if found.delay >= 0 else 'early'}; "
-            f"the blocks are limited by the {height}, the step by the {step}."
+            f"Blocks of {heights} m and dt = {advised.step:.4g} s lose {percent(advised.loss)} of it and bring it "
+            f"{abs(advised.delay):.3g} periods {'late' if advised.delay >= 0 else 'early'}; "
+            f"the blocks are limited by the {height}, the step by the {largest.limit}."
         )
     if height == "glue":
         return "No block height does: the glue between them is too soft for the phase error; raise block.glue_ratio."
-    steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID)
-    losses = [way.passage(_stepping(scene, float(dt))).loss for dt in steps]
-    best = int(np.argmin(losses))
+    unconditional = "choose 2 alpha >= delta >= 1/2, which is stable at every step"
+    if largest.least_loss_at is None:
+        return f"No time step does: none above a millionth of a period is stable; {unconditional}."
     gg = "gg_rate" if scene.time.gg_rate is not None else "gg"
-    nearer = f"{gg} takes the rest, choose it nearer {0 if gg == 'gg_rate' else 1}"
-    why = nearer if step == "gg" else "choose another scheme"
-    return f"No time step does: at best {percent(losses[best])} is lost, at dt = {steps[best]:.3g} s; {why}."
+    cures = {
+        "gg": f"{gg} takes the rest, choose it nearer {0 if gg == 'gg_rate' else 1}",
+        "stability": f"larger steps are unstable, {unconditional}",
+        "scheme": "choose another scheme",
+    }
+    best = f"{percent(largest.least_loss)} is lost, at dt = {largest.least_loss_at:.3g} s"
+    return f"No time step does: at best {best}; {cures[largest.limit]}."
 
 
 def _check(frequency: float, loss: float, wavelengths: float | None, phase_error: float) -> None:

@@ -95,7 +95,7 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
         typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
         return
     typer.echo(f"{broken(found.sentence)}\n{broken(found.advice)}\n")
-    rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "damping")]
+    rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", found.present), ("advised", found.advised)):
         if passage is not None:
             shares = f"{100 * passage.loss:.4g} %", f"{passage.delay:+.4g}", f"{100 * passage.damping + 0.0:.4g} %"

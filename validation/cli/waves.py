@@ -200,21 +200,40 @@ def _scheme(scene: str | None, assignments: list[str] | None, given: dict[str, f
 
 
 def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
-    """Say which scheme hides a wanted damping, and return the best one."""
-    from validation.advice.rayleigh import exact_settings, settings
+    """Say which scheme hides a wanted damping, and return the best one.
+
+    Two ratios may belong to a scheme although none has them to leading order.
+
+    Raises
+    ------
+    InputError
+        Neither does.
+    """
+    from validation.advice.rayleigh import ROUNDING, exact_settings, misfit, settings
     from validation.errors import InputError
 
-    found = settings(wanted, scheme, keep_step)
-    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s\nto leading order: {found.words}")
-    if not points:
-        return found
+    leading = None
+    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s")
     try:
-        found = exact_settings(points[0], points[1], scheme, keep_step)
+        leading = settings(wanted, scheme, keep_step)
+        typer.echo(f"to leading order: {leading.words}")
     except InputError as error:
+        if not points:
+            raise
+        typer.echo(f"to leading order: none ({error})")
+    if not points:
+        return leading or scheme
+    try:
+        exact = exact_settings(points[0], points[1], scheme, keep_step)
+    except InputError as error:
+        if leading is None:
+            raise
         typer.echo(f"exactly: {error}")
-    else:
-        typer.echo(f"exactly at both frequencies: {found.words}")
-    return found
+        return leading
+    missed = misfit(exact, *points)
+    how = "exactly" if missed <= ROUNDING else f"within {100 * missed:.2g} %"
+    typer.echo(f"{how} at both frequencies: {exact.words}")
+    return exact
 
 
 def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
@@ -234,7 +253,7 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     frequency = np.geomspace(*band, 8)
     columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
     typer.echo("")
-    heads = ("frequency [Hz]", "xi [%]", "leading order")
+    heads = ("frequency [Hz]", "steady xi [%]", "leading order")
     print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
 
 

@@ -1,12 +1,13 @@
 """Closed forms of a block on an incline with Coulomb's friction, written apart from the solvers.
 
-Gravity is g (sin b, -cos b) along and across the base. While every corner slips one way or is open, the resultants of
-the contact obey T + tan(phi) N = -c a (downhill slip), whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
+Gravity is g (sin b, -cos b) along and across the base. While every corner slips downhill or, without cohesion, is open,
+the resultants of the contact obey T + tan(phi) N = -c a, whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
 displacements moves freely under
 
     a_s = g (sin b - tan(phi) cos b) - c a / m,
 
-for any springs, and in any Newmark scheme as a free body does in that scheme.
+for any springs, and in any Newmark scheme as a free body does in that scheme. A corner that opens loses its half of
+c a.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def adhesion(scene: Scene) -> float:
 def sliding_acceleration(scene: Scene) -> float:
     """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands.
 
-    g (sin |b| - tan(phi) cos b) - c a / m.
+    g (sin |b| - tan(phi) cos b) - c a / m, the cohesion acting over the whole base.
     """
     return abs(along(scene)) - coefficient(scene) * across(scene) - adhesion(scene)
 
@@ -88,9 +89,10 @@ def normal_frequency(scene: Scene) -> float:
 
 
 def creep_scale(scene: Scene) -> float:
-    """Speed g / w_n by which a stable block creeps while its normal springs ring undamped [m/s].
+    """Speed g / w_n, with which that of a stable block on undamped ringing springs scales [m/s].
 
-    Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2.
+    Each period 2 pi / w_n unloads the friction once, and the block then moves by some g / w_n^2: 0.8 g / w_n at 20
+    degrees under 30, and from 0.03 (5 under 30) to 12 (40 under 45) times it on other slopes.
     """
     return scene.load.gravity / normal_frequency(scene)
 
@@ -107,10 +109,10 @@ def lag(scene: Scene) -> float:
 def ringing_decay(scene: Scene) -> float:
     """Rate at which scheme and discount damp the slowest normal ringing [1/s].
 
-    w_1^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
+    w_1^2 (delta - 1/2) dt / 2 - ln(gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
     """
     t = scene.time
-    return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + (1 - t.discount) / (2 * t.step)
+    return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + drag_rate(scene) / 2
 
 
 def damped_creep(scene: Scene) -> float:
@@ -133,7 +135,10 @@ def drag_rate(scene: Scene) -> float:
 
 
 def time_constant(scene: Scene) -> float:
-    """Time dt / (1 - gg) in which the discount brings a free body near its terminal speed [s]."""
+    """Terminal speed of a free body over its acceleration, dt / (1 - gg) [s].
+
+    It comes near that speed with the time constant -dt / ln(gg), which is shorter: by 1 % at 0.98, 28 % at 0.5.
+    """
     lost = 1 - scene.time.discount
     return scene.time.step / lost if lost else math.inf
 

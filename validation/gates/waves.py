@@ -63,11 +63,12 @@ class Stepping:
         return np.asarray(turn * (1 + self.delta * turn) / (self.step * below), complex)
 
     def rayleigh(self) -> tuple[float, float]:
-        """Return (a0 [1/s], a1 [s]) of the Rayleigh damping that the step hides, to leading order in w dt.
+        """Return (a0 [1/s], a1 [s]) of the Rayleigh damping that the step hides, in the limit w dt -> 0.
 
-        a0 = (1 - gg) / dt is the kinetic part, a1 = (delta - 1/2) dt the algorithmic one.
+        a0 = 2 (1 - gg) / ((1 + gg) dt) is the kinetic part, -Im W2 / w there; a1 = (delta - 1/2) dt is the algorithmic
+        one, for gg near 1. A free vibration loses a0 = -ln(gg) / dt, the same to second order in 1 - gg.
         """
-        return (1 - self.gg) / self.step, (self.delta - 0.5) * self.step
+        return 2 * (1 - self.gg) / ((1 + self.gg) * self.step), (self.delta - 0.5) * self.step
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,10 @@ class Prepared:
         """Return the modes, the one with the largest share of the static response first."""
         raise NotReported("no modes are reported")
 
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency [rad/s], which a conditionally stable scheme must resolve."""
+        raise NotReported("no highest frequency is reported")
+
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition number and residual of the step."""
         raise NotReported("no diagnostics are reported")

@@ -71,7 +71,7 @@ class OneBlock(Prepared):
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, dda.COLUMNS)
-        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         with naming(self.scene):
             return to_run(self.scene, self.solved(self.scene.time.steps, self.scene.run.columns))
 
@@ -81,8 +81,8 @@ class OneBlock(Prepared):
 
         return dda.solve(self.model, self.scheme, steps, columns, self.full)
 
-    def fastest(self) -> float:
-        """Return the largest frequency that the load reaches [rad/s]."""
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency of the modes that the load reaches [rad/s]."""
         return max(mode.frequency for mode in self.modes())
 
     def static(self) -> Mapping[str, float]:
@@ -109,7 +109,7 @@ class OneBlock(Prepared):
         """Return the frequency response, mode by mode."""
         import dda
 
-        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         along = base_direction(self.scene)
         with naming(self.scene):
             return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
@@ -127,7 +127,7 @@ class AdaptiveBlock(Prepared):
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS))
-        check_step(self.scene, dda.spectral.critical_omega, self.block.fastest)
+        check_step(self.scene, dda.spectral.critical_omega, self.block.highest_frequency)
         t, own = self.scene.time, self.block
         columns, floor = self.scene.run.columns, self.scene.damping.floor
         with naming(self.scene):
@@ -152,8 +152,8 @@ class SubBlocks(OneBlock):
 
         return dda.solve_system(self.system, self.scheme, steps, columns, self.full)
 
-    def fastest(self) -> float:
-        """Return the largest frequency that the load reaches [rad/s]."""
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency that the load reaches, joints included [rad/s]."""
         import dda
 
         return dda.highest_frequency(self.system)
@@ -178,7 +178,7 @@ class SubBlocks(OneBlock):
         """Return the frequency response of the system."""
         import dda
 
-        check_step(self.scene, dda.spectral.critical_omega, self.fastest)
+        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         along = base_direction(self.scene)
         with naming(self.scene):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)

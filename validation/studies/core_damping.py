@@ -101,7 +101,10 @@ def ratio(scene: Scene) -> Iterator[Gate]:
     if name in RATIOS:
         value, half = RATIOS[name]
         why = "the mesh has no limit on point springs" if name.startswith("corner") else "the mesh error is below"
-        reason = f"model form, physics: a stiffer block is damped more at the same dt; own value, {why}"
+        reason = (
+            "model form, physics: under (1/2, 1), w dt below 3.27, a stiffer block is damped more at the same dt; own "
+            f"value, {why}"
+        )
         yield Gate(scene.name, pair, metric, *about(value, half), reason, OWN, half)
         return
     frequency = closed_forms.bar_frequency(scene)

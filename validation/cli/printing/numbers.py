@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.advice import contact
-from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names
+from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
 from validation.gates import closed_forms
 from validation.scenes.scene import Scene
@@ -104,8 +104,7 @@ def _modes(scene: Scene) -> Iterator[Number]:
             if name in named:
                 yield from _mode(scene, short, name, named[name].frequency)
         if not scene.damping.present:
-            limit = closed_forms.critical_omega(scene) / max(mode.frequency for mode in modes)
-            yield Number("dt stable", limit, "s", "largest stable step of the DDA block")
+            yield Number("dt stable", stable_step(scene), "s", "largest stable step of the DDA block")
 
 
 def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Number]:
@@ -135,7 +134,7 @@ def _slope(scene: Scene) -> Iterator[Number]:
         yield Number("tan b", abs(slope), "", "of the slope: friction coefficient that it needs at rest")
         if scene.block.vertices is None:
             width, height = closed_forms.size(scene)
-            yield Number("w/h", width / height, "", "slenderness: the tan b beyond which the block topples")
+            yield Number("w/h", width / height, "", "slenderness: the tan b beyond which it topples, unless it slides")
 
 
 def _steps(scene: Scene) -> Iterator[Number]:
@@ -152,16 +151,18 @@ def _column(scene: Scene) -> Iterator[Number]:
     column = scene.column
     if column is None:
         return
-    top, limit, travel = 0.0, math.inf, 0.0
+    top, travel = 0.0, 0.0
     for number, layer in enumerate(column.layer, start=1):
         speed = math.sqrt(column.modulus(layer) / layer.density)
         height = layer.thickness / layer.blocks
         travel += layer.thickness / speed
         top = layer.density * speed
-        limit = min(limit, closed_forms.critical_omega(scene) * height / (math.sqrt(12) * speed))
         yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
     yield Number("H/c", travel, "s", "travel time of the wave through the column")
-    yield Number("dt stable", limit, "s", "largest stable step of welded blocks")
+    with suppress(InputError):  # DDA does not take the column
+        yield Number(
+            "dt stable", stable_step(scene), "s", "largest stable step of the blocks, glue and joints included"
+        )
     if column.impedance is not None:
         lowest = column.layer[0]
         own = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
@@ -207,7 +208,13 @@ def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
 
 def _steep(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     slope = found.get("tan b", 0.0)
-    if slope > found.get("tan phi", math.inf) and scene.contact.cohesion == 0:
+    if slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
+        return
+    grip = math.inf
+    if scene.contact.cohesion == 0:
+        grip = 0.0 if scene.contact.shear_stiffness == 0 else found.get("tan phi", math.inf)
+    if slope > grip:
         yield "tan b > tan phi: the block slides"
-    if slope > found.get("w/h", math.inf):
+    # The friction of a block that slides is tan(phi) N, whose moment does not tip it where tan(phi) < w/h.
+    if min(slope, grip) > found.get("w/h", math.inf):
         yield "tan b > w/h: the block topples"

@@ -150,7 +150,7 @@ const calculators = (() => {
     return { values: { ...now, wavelength: speed / s.frequency },
       facts: [["Arrives of the amplitude", percent(1 - cleaned(now.loss))],
         [late < 0 ? "early by" : "late by", `${figure(Math.abs(late))} periods`],
-        ["Damping ratio of the step at F", percent(cleaned(now.damping))],
+        ["Steady ratio −Im W/|W| of the step at F", percent(cleaned(now.damping))],
         ["Error of the phase speed", percent(cleaned(now.speed_error))],
         ["Blocks a wavelength", figure(speed / s.frequency / s.side)],
         ["Steps a period", figure(1 / (s.frequency * s.step))], ["c dt / h", figure(speed * s.step / s.side)],

@@ -274,13 +274,13 @@ const formulas = (() => {
     return growing ? [2 * Math.PI / height - found[0], -found[1]] : found;
   }
 
-  // xi = -Im W / |W|, W = sqrt(W2) (validation.advice.rayleigh)
+  // The steady ratio xi = -Im W / |W|, W = sqrt(W2) (validation.advice.rayleigh); a free vibration has damping_ratio
   function ratio(scheme, frequency) {
     const W = root_of(squared_frequency(scheme, 2 * Math.PI * frequency));
     return -W[1] / modulus(W);
   }
 
-  // What becomes of a wave over a distance: share lost, periods late, damping ratio, w / Re k / c - 1
+  // What becomes of a wave over a distance: share lost, periods late, steady ratio, w / Re k / c - 1
   // (validation.advice.wave_advice.Passage, validation.gates.waves.Column.travelled)
   function passage(column, scheme, frequency, distance) {
     const omega = 2 * Math.PI * frequency, speed = Math.sqrt(column.young / column.density);

@@ -56,7 +56,7 @@ def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metr
 def ratio_figure(frequency: Array, lines: Mapping[str, Array]) -> Figure:
     """Draw damping ratios over frequency, the first line solid and the others dashed."""
     with house_style():
-        figure, axes = one_axes(46.0, Margins(14.0, 46.0, 3.0, 9.5), ("frequency [Hz]", "damping ratio [%]"))
+        figure, axes = one_axes(46.0, Margins(14.0, 46.0, 3.0, 9.5), ("frequency [Hz]", "steady ratio [%]"))
         axes.set(xscale="log", xlim=(frequency[0], frequency[-1]))
         colors = dict(zip(lines, itertools.cycle(COLORS), strict=False))
         for i, (name, values) in enumerate(lines.items()):

@@ -36,16 +36,20 @@ class BlockColumn(Prepared):
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
         no_fields("dda with a column", self.scene, fields)
-        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
+        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = Drive(**vars(motion_at(self.scene, instants)))
         with naming(self.scene):
             found = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
         return to_run(self.scene, found)
 
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency [rad/s], glue, joints and springs of the base included."""
+        return highest_frequency(self.column)
+
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
-        check_step(self.scene, dda.spectral.critical_omega, lambda: highest_frequency(self.column))
+        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         at = self.scene.input.at
         with naming(self.scene):
             found = column_response(self.column, self.scheme, frequencies, at, (DISPLACEMENT, PRESSURE), exact)

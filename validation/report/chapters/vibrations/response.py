@@ -87,6 +87,7 @@ def hidden(rows: Rows) -> str:
     if not said:
         return ""
     return (
-        f"At dt = 0.01 s the usual scheme damps a steady vibration by {', '.join(said)} of critical, measured on "
-        "stepped histories of a base that vibrates: sin(ω dt/4)."
+        f"At dt = 0.01 s the usual scheme has the steady ratios |Im W|/|W| = sin(ω dt/4) of {', '.join(said)}, "
+        "measured on stepped histories of a base that vibrates. The damping ratio of a free vibration is within 1.4 % "
+        "of it while ω dt is below 0.3, and smaller above: 25.5 % at 20 Hz."
     )
