@@ -123,6 +123,22 @@ def test_plain_data(tmp_path: Path, exact: History, undrawn: None) -> None:
     assert first["column"] == "displacement_m" and first["error"] == pytest.approx(0.01, rel=1e-6)
     assert first["allowed"] > first["error"] and first["until_s"] == pytest.approx(0.1)
     assert found["about"]["program"] == STATED["program"]
+    assert found["not_reported"] == []
+
+
+def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
+    tmp_path: Path, exact: History, undrawn: None
+) -> None:
+    place = submitted(tmp_path / "mine", table_of(exact, ["displacement"]), not_reported=["contact_pressure_Pa"])
+    done = typed("judge", place)
+    assert done.returncode == 1
+    assert "PARTIAL: PASS on displacement; contact_pressure not reported" in done.stdout
+    assert "no full PASS (exit status 1): the problem asks for contact_pressure_Pa too" in done.stdout
+    for file in ("badge.svg", "judged.html"):
+        text = (place / file).read_text(encoding="utf-8")
+        assert "PARTIAL" in text and "contact_pressure not reported" in text
+    found = json.loads(typed("judge", place, "--json").stdout)
+    assert (found["verdict"], found["not_reported"]) == ("PARTIAL", ["contact_pressure_Pa"])
 
 
 def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:

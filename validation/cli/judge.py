@@ -46,8 +46,9 @@ def judge(
     """Judge an answer to a problem against its exact motion, and write page and badge.
 
     The problems and a submission to fill in come with dda-validate export-pack. A column passes where its error is
-    below what one per cent of the problem's data changes. Exit status: 0 it passes, 1 it does not, 2 bad input, 3 the
-    solver ended in a named failure.
+    below what one per cent of the problem's data changes. PARTIAL: the columns that it reports pass, others that the
+    problem asks for are withheld. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver
+    ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
@@ -60,7 +61,7 @@ def judge(
         typer.echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
     else:
         _print(judged, program, written)
-    if judged.judgement.word != "PASS":
+    if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
         raise typer.Exit(GATE_FAILED)
 
 
@@ -171,6 +172,7 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
         "problem": judged.problem.name,
         "program": program,
         "verdict": str(judged.judgement.word),
+        "not_reported": [united(name) for name in judged.judgement.withheld],
         "cause": None if why is None else _cause_data(why),
         "columns": columns,
         "about": dict(judged.about),
@@ -185,9 +187,13 @@ def _cause_data(why: Cause) -> dict[str, Any]:
 def _print(judged: Judged, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
     from validation.problems.data import united
+    from validation.problems.judge import Word
     from validation.report.chapters.judged import datum, headline, per_cent, reached
 
     typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
+    if judged.judgement.word is Word.PARTIAL:
+        missing = ", ".join(map(united, judged.judgement.withheld))
+        typer.echo(f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged")
     if judged.cause is not None:
         typer.echo(f"cause: {judged.cause.sentence}")
         typer.echo(reached(judged))

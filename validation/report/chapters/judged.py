@@ -47,7 +47,8 @@ def headline(judged: Judged) -> str:
     if decides is None or decides.band is None:
         return f"{found.verdict}: no column of it is judged."
     off = f"{per_cent(decides.error)} off in {united(decides.name)}, where {per_cent(decides.band)} is allowed"
-    return f"{found.verdict}: it is at most {off}." if found.word is Word.PASS else f"{found.verdict}: it is {off}."
+    within = found.word in (Word.PASS, Word.PARTIAL)
+    return f"{found.verdict}: it is at most {off}." if within else f"{found.verdict}: it is {off}."
 
 
 def reached(judged: Judged) -> str:
