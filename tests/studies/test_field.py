@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-
 from oracles.made_cases import made_row
 
 from validation.engine import run_study

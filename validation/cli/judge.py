@@ -193,7 +193,9 @@ def _print(judged: Judged, program: str, written: list[Path]) -> None:
     typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
     if judged.judgement.word is Word.PARTIAL:
         missing = ", ".join(map(united, judged.judgement.withheld))
-        typer.echo(f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged")
+        typer.echo(
+            f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged"
+        )
     if judged.cause is not None:
         typer.echo(f"cause: {judged.cause.sentence}")
         typer.echo(reached(judged))
