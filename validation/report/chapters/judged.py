@@ -38,6 +38,7 @@ class Judged:
     judgement: Judgement
     cause: Cause | None  # of a failure
     about: tuple[tuple[str, str], ...]  # what the answer says of itself: field and text
+    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
 def headline(judged: Judged) -> str:
@@ -71,6 +72,7 @@ def page(judged: Judged, directory: Path) -> list[Block]:
     found = judged.judgement
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(found.word, "warn")
     blocks: list[Block] = [Callout(headline(judged), tone)]  # type: ignore[arg-type]
+    blocks += [Callout(sentence, "warn") for sentence in judged.warnings]
     if judged.cause is not None:
         blocks.append(Paragraph(f"Cause: {judged.cause.sentence}. {reached(judged)}"))
         if judged.cause.would_tell:
