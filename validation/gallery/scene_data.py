@@ -10,7 +10,7 @@ import numpy as np
 
 from validation.gallery.cases import GalleryCase, GalleryScene, readable
 from validation.gallery.histories import lines_of
-from validation.metrics.catalogue import CATALOGUE
+from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.text import bounded, cell
 from validation.report.figures.curves import COLUMNS, style_of
 from validation.runs.history import History
@@ -139,6 +139,7 @@ def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
 
 def _told(metric: str, value: Value) -> str:
     """Return a value as a page writes it: counts whole, a ratio at the level of rounding told to be below."""
-    counted = CATALOGUE[metric].unit == "step" or metric.endswith(".count")
-    text = str(int(value)) if counted and isinstance(value, float) and value.is_integer() else cell(value)
+    if is_count(metric) and isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    text = cell(value)
     return bounded(value, text) if isinstance(value, float) and value and CATALOGUE[metric].unit == "1" else text

@@ -11,7 +11,7 @@ from validation.problems.bands import Standard
 from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
-from validation.problems.told import Told
+from validation.problems.told import COUNTED, Told
 from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
 from validation.report.blocks import Column as TableColumn
 from validation.report.chapters.text import DASH, bounded, plain, short
@@ -129,12 +129,14 @@ def datum(column: Column, held: Standard) -> str:
 
 def _told(found: Sequence[Told]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
-    rows = [(one.name, _value(one.value), _value(one.exact), one.unit) for one in found]
+    rows = [(one.name, _value(one, one.value), _value(one, one.exact), one.unit) for one in found]
     return Table(titles, tuple(rows), "Further numbers, which are not judged.")
 
 
-def _value(value: float | None) -> str:
-    return DASH if value is None else bounded(value, plain(value))
+def _value(told: Told, value: float | None) -> str:
+    if value is None:
+        return DASH
+    return f"{value:.0f}" if told.name in COUNTED else bounded(value, plain(value))
 
 
 def _about(said: Sequence[tuple[str, str]]) -> Table:

@@ -9,7 +9,7 @@ import itertools
 import math
 import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -132,13 +132,21 @@ class Panel:
     histories: Mapping[str, History]
     static: Mapping[str, float]  # static values by column, in its unit
     reference: str | None  # the solver that differences are taken from
+    base: History | None = None  # of the reference, where its own line is not drawn
+    like_base: str | None = None  # the drawn line that the reference lies on
+    finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
+
+    def drawn(self, column: str) -> dict[str, History]:
+        """Return the histories that a column is drawn from, by solver."""
+        own = {name: self.finer.get(name, history) for name, history in self.histories.items()}
+        return {name: history for name, history in own.items() if column in history.columns}
 
 
 def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     found = [np.zeros(1)]
     for panel in panels:
-        found += [history.columns[column] for history in panel.histories.values() if column in history.columns]
+        found += [history.columns[column] for history in panel.drawn(column).values()]
     values = np.concatenate(found if len(found) > 1 else [np.zeros(1), np.ones(1)])
     values = values[np.isfinite(values)]
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
@@ -147,13 +155,17 @@ def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
 
 def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
     """Return the envelope of each solver's scaled difference from the reference."""
-    base = panel.histories.get(panel.reference or "")
+    base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:
         return {}
     scale = abs(panel.static.get(column, 0.0)) or float(np.abs(base.columns[column]).max()) or 1.0
     found = {}
     for solver, history in panel.histories.items():
-        if solver != panel.reference and history.time.size == base.time.size and column in history.columns:
+        if (
+            solver not in (panel.reference, panel.like_base)
+            and history.time.size == base.time.size
+            and column in history.columns
+        ):
             with np.errstate(all="ignore"):  # a run that blew up differs by infinity
                 scaled = (history.columns[column] - base.columns[column]) / scale
             found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))

@@ -17,6 +17,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from validation.report.figures.curves import (
     COLUMNS,
+    EXACT,
     HAIR,
     Panel,
     common_range,
@@ -37,12 +38,16 @@ from validation.report.figures.histories import (
     small_multiples,
 )
 from validation.runs.history import Array, History
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
 SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
 START = 24  # swings that the start shows
 BINS = 300  # of a band
 HALF = 0.05  # of the range: smaller swings are noise on larger ones
+TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
+MOST_DOTS = 400  # samples; more dots cannot be told apart
 FLOOR = 1e-9  # of the static value; smaller differences are not drawn
 Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
 
@@ -55,7 +60,7 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
     are left out.
     """
     on_one = twins(panels, columns)
-    drawn = [replace(panel, histories=_kept(panel, on_one)) for panel in panels]
+    drawn = [_with_lines(panel, on_one) for panel in panels]
     span = start_of(drawn, columns[0])
     apart = apart and any(differences(panel, columns[0]) for panel in drawn)
     names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
@@ -121,8 +126,11 @@ def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str
     return worst
 
 
-def _kept(panel: Panel, on_one: Twins) -> dict[str, History]:
-    return {name: history for name, history in panel.histories.items() if name in on_one}
+def _with_lines(panel: Panel, on_one: Twins) -> Panel:
+    """Return a panel with the histories that are drawn; of the reference, which may lie on another, the base."""
+    own = {name: history for name, history in panel.histories.items() if name in on_one}
+    alike = next((name for name, others in on_one.items() if panel.reference in others), None)
+    return replace(panel, histories=own, base=panel.histories.get(panel.reference or ""), like_base=alike)
 
 
 # ---- long histories -----------------------------------------------------------------------------------------------
@@ -146,7 +154,8 @@ def start_of(panels: Sequence[Panel], column: str) -> float | None:
 
 
 def _until(panel: Panel, span: float) -> Panel:
-    return replace(panel, histories={name: history.until(span) for name, history in panel.histories.items()})
+    cut = {name: history.until(span) for name, history in panel.histories.items()}
+    return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
 
 def band(x: Array, y: Array) -> tuple[Array, Array, Array]:
@@ -180,13 +189,9 @@ def _ends(some: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[s
     """Return where each line ends, in the last panel that has it."""
     factor, ends = _scale(panels, column)[0], {}
     for panel in some:
-        for solver, history in _with(panel, column).items():
+        for solver, history in panel.drawn(column).items():
             ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
     return ends
-
-
-def _with(panel: Panel, column: str) -> dict[str, History]:
-    return {name: history for name, history in panel.histories.items() if column in history.columns}
 
 
 def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: tuple[float, float]) -> None:
@@ -195,7 +200,7 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: 
     pad = 0.05 * (high - low) or 1.0
     for axes, panel in zip(row, panels, strict=False):
         axes.set_ylim(factor * (low - pad), factor * (high + pad))
-        for solver, history in _with(panel, column).items():
+        for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
             _draw(axes, solver, history.time, values, swings(history, column) > SWINGS)
         _time_axis(axes, panel)
@@ -204,7 +209,28 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: 
             axes.axhline(factor * panel.static[column], color="#bbbbbb", lw=HAIR, zorder=1)
 
 
+def is_sparse(solver: str, x: Array, y: Array) -> bool:
+    """Whether an exact solution has too few instants to be joined: its lines would be a zigzag that is no motion.
+
+    A history that is stepped is what its steps are, and is joined.
+    """
+    exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
+    if not exact or x.size < 3 or x.size > MOST_DOTS:
+        return False
+    turning = np.diff(y)[1:] * np.diff(y)[:-1] < 0
+    return bool(np.mean(turning) > TURNING)
+
+
+def is_sparse_in(panel: Panel, solver: str, columns: Sequence[str]) -> bool:
+    """Whether a solver's history is drawn as dots in some column of a panel."""
+    drawn = [(panel.drawn(column).get(solver), column) for column in columns]
+    return any(h is not None and is_sparse(solver, h.time, h.columns[column]) for h, column in drawn)
+
+
 def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
+    if is_sparse(solver, x, y):
+        axes.plot(x, y, "o", ms=2.0, color=style_of(solver).color, zorder=2 + style_of(solver).layer)
+        return
     if not dense:
         draw_line(axes, solver, *thin(x, y))
         return
