@@ -134,8 +134,8 @@ def test_the_force_is_judged_at_rest_and_on_the_way() -> None:
     assert said == (
         "At rest yes: every run tends to 5 MPa; during the motion no: against the bar under the same steps its first "
         "peak is off by −10\u00a0% at 10\u00a0ms, +5\u00a0% at 2\u00a0ms, +10\u00a0% at 0.1\u00a0ms (p = 1E): one "
-        "strain in place of a wave, which the damping of a long step hides. A relative L2 difference is mostly phase and "
-        "grows with its window: at 0.1\u00a0ms 21\u00a0% over 0.002 s, 74\u00a0% over 0.01 s."
+        "strain in place of a wave, which the damping of a long step hides. A relative L2 difference is mostly phase "
+        "and grows with its window: at 0.1\u00a0ms 21\u00a0% over 0.002 s, 74\u00a0% over 0.01 s."
     )
     wrong = made_group(case(pressure__static=4.9e6), comparisons=FOUND["model-form"].comparisons)
     assert "At rest no: not every run tends to the load" in first.force({"model-form": wrong})[1]  # type: ignore[index]

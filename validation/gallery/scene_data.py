@@ -12,7 +12,7 @@ from validation.gallery.cases import GalleryCase, GalleryScene, readable
 from validation.gallery.histories import lines_of
 from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.text import bounded, cell
-from validation.report.figures.curves import COLUMNS, style_of
+from validation.report.figures.curves import COLUMNS, is_sparse, style_of
 from validation.runs.history import History
 from validation.runs.results import KEPT, Results
 from validation.runs.row import Value
@@ -104,7 +104,14 @@ def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
         if row.outcome is not Outcome.COMPLETED
     ]
     limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
-    return {"label": readable(case.label), "limit": limit, "told": told} | lines_of(found, samples)
+    dots = [name for name, history in found.items() if any(_sparse(name, history))]
+    return {"label": readable(case.label), "limit": limit, "told": told, "dots": dots} | lines_of(found, samples)
+
+
+def _sparse(name: str, history: History) -> Iterator[bool]:
+    """Yield of each column whether it is an exact solution at too few instants to be joined."""
+    for values in history.columns.values():
+        yield is_sparse(name, history.time, values)
 
 
 def _histories(results: Results, case: GalleryCase) -> Iterator[tuple[str, History]]:

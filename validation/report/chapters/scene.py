@@ -255,7 +255,7 @@ def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> li
         said.append(f"Oscillations too dense to draw are the band that they fill; below, the first {plain(span, 2)} s.")
     if any(panel.static for panel in panels):
         said.append("Hairline: static value.")
-    sparse = {name for p in panels for name in p.histories if motion.is_sparse_in(p, name, columns)}
+    sparse = {name for panel in panels for name in panel.sparse(columns)}
     if sparse:
         said.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))

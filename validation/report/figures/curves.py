@@ -16,9 +16,11 @@ from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
 from validation.solvers.columns.names import AT_HEIGHTS
-from validation.solvers.contract import LineStyle
-from validation.solvers.registry import get_solver, is_solver
+from validation.solvers.contract import LineStyle, Role
+from validation.solvers.registry import by_role, get_solver, is_solver
 
+TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
+MOST_DOTS = 400  # samples; more dots cannot be told apart
 SMALL, HAIR = 7.0, 0.4  # pt
 GREY = "#6b6b6b"
 HOUSE_STYLE = {
@@ -136,6 +138,13 @@ class Panel:
     like_base: str | None = None  # the drawn line that the reference lies on
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
 
+    def sparse(self, columns: Sequence[str]) -> list[str]:
+        """Return the solvers that are drawn as dots in one of some columns."""
+        found = []
+        for column in columns:
+            found += [s for s, h in self.drawn(column).items() if is_sparse(s, h.time, h.columns[column])]
+        return found
+
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
         own = {name: self.finer.get(name, history) for name, history in self.histories.items()}
@@ -170,3 +179,15 @@ def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
                 scaled = (history.columns[column] - base.columns[column]) / scale
             found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
     return found
+
+
+def is_sparse(solver: str, x: Array, y: Array) -> bool:
+    """Whether an exact solution has too few instants to be joined: its lines would be a zigzag that is no motion.
+
+    A history that is stepped is what its steps are, and is joined.
+    """
+    exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
+    if not exact or x.size < 3 or x.size > MOST_DOTS:
+        return False
+    turning = np.diff(y)[1:] * np.diff(y)[:-1] < 0
+    return bool(np.mean(turning) > TURNING)

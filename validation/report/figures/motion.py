@@ -17,12 +17,12 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from validation.report.figures.curves import (
     COLUMNS,
-    EXACT,
     HAIR,
     Panel,
     common_range,
     differences,
     engineering,
+    is_sparse,
     style_of,
     thin,
 )
@@ -38,16 +38,12 @@ from validation.report.figures.histories import (
     small_multiples,
 )
 from validation.runs.history import Array, History
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
 
 TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
 SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
 START = 24  # swings that the start shows
 BINS = 300  # of a band
 HALF = 0.05  # of the range: smaller swings are noise on larger ones
-TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
-MOST_DOTS = 400  # samples; more dots cannot be told apart
 FLOOR = 1e-9  # of the static value; smaller differences are not drawn
 Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
 
@@ -207,24 +203,6 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: 
         axes.yaxis.set_major_locator(MaxNLocator(5))
         if column in panel.static:
             axes.axhline(factor * panel.static[column], color="#bbbbbb", lw=HAIR, zorder=1)
-
-
-def is_sparse(solver: str, x: Array, y: Array) -> bool:
-    """Whether an exact solution has too few instants to be joined: its lines would be a zigzag that is no motion.
-
-    A history that is stepped is what its steps are, and is joined.
-    """
-    exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
-    if not exact or x.size < 3 or x.size > MOST_DOTS:
-        return False
-    turning = np.diff(y)[1:] * np.diff(y)[:-1] < 0
-    return bool(np.mean(turning) > TURNING)
-
-
-def is_sparse_in(panel: Panel, solver: str, columns: Sequence[str]) -> bool:
-    """Whether a solver's history is drawn as dots in some column of a panel."""
-    drawn = [(panel.drawn(column).get(solver), column) for column in columns]
-    return any(h is not None and is_sparse(solver, h.time, h.columns[column]) for h, column in drawn)
 
 
 def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
