@@ -305,8 +305,18 @@ def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
     assert conclusion(group).startswith("Against bar-events, block-events differs by 2\u00a0% in displacement and 50")
 
 
+def test_cases_over_different_times_are_told_with_both_ends() -> None:
+    cases = [made_case(PAPER.with_values({"time.step": step}, label=True), {}) for step in (0.01, 0.001)]
+    pairs = [between(case.name, "dda", "bar", displacement_l2=0.02) | {"window": t} for case, t in
+             zip(cases, (2.0, 0.2), strict=True)]  # fmt: skip
+    said = conclusion(made_group(*cases, comparisons=tuple(pairs)))
+    assert said.startswith("Against bar, dda differs by 2\u00a0% in displacement (relative L2, 0.2 to 2\u00a0s);")
+
+
 def test_the_pair_of_a_users_own_solver_is_told() -> None:
     case = made_case(load_scene("figures-3-4").expand()[0], {})
     pair = between(case.name, "mine", "bar", **{"displacement.l2": 0.02})
     group = replace(made_group(case), comparisons=(pair,))
-    assert conclusion(group).startswith("Against bar, mine differs by 2\u00a0% in displacement (relative L2 over 1 s)")
+    assert conclusion(group).startswith(
+        "Against bar, mine differs by 2\u00a0% in displacement (relative L2 over 1\u00a0s)"
+    )

@@ -99,7 +99,12 @@ def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
             ANSWER: History(judged.history.time[:rows], {name: judged.history.columns[name][:rows]}),
         }
         panel = Panel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
-        caption = f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
+        if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
+            caption = f"The answer lies on the exact motion: {united(name)}."
+        else:
+            caption = (
+                f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
+            )
         figure = motion.history_figure([panel], name, apart=True)
         drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", caption))
     return drawn

@@ -119,7 +119,7 @@ def _windows(group: Group, solver: str, reference: str) -> str:
     if not longest or min(longest) <= 0:
         return ""
     low, high = min(longest), max(longest)
-    return f" over {short(low)} s" if high <= low * 1.001 else f" over each run, {short(low)} to {short(high)} s"
+    return f" over {short(low)}\u00a0s" if high <= low * 1.001 else f", {short(low)} to {short(high)}\u00a0s"
 
 
 def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list[float]:
