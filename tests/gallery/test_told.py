@@ -87,11 +87,11 @@ def test_a_case_tells_its_limit_how_its_runs_ended_and_its_numbers(tmp_path: Any
     results.append(own, made_history(0.002, [-0.01] * 4, [5e6] * 4))
     case = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "fem": late})
     found = scene_data._case(results, case, 100)
-    assert found["dots"] == []  # dda is stepped
+    assert found["dots"] == {}  # dda is stepped
     turning = made_row("continuum", {}, CASE.name)
     results.append(turning, made_history(0.002, [0.0, -0.02, 0.001, -0.019], [5e6] * 4))
     exact = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "continuum": turning})
-    assert scene_data._case(results, exact, 100)["dots"] == ["continuum"]
+    assert scene_data._case(results, exact, 100)["dots"] == {"displacement": ["continuum"]}
     assert (found["label"], found["limit"]) == ("dt = 2 ms", pytest.approx(0.06))
     assert found["told"] == [f"fem: timeout. {Outcome.TIMEOUT.sentence} after 5 s"]
     assert {name: list(lines) for name, lines in found["columns"].items()} == {

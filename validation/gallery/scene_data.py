@@ -104,14 +104,12 @@ def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
         if row.outcome is not Outcome.COMPLETED
     ]
     limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
-    dots = [name for name, history in found.items() if any(_sparse(name, history))]
+    dots: dict[str, list[str]] = {}
+    for name, history in found.items():
+        for column, values in history.columns.items():
+            if is_sparse(name, history.time, values):
+                dots.setdefault(column, []).append(name)
     return {"label": readable(case.label), "limit": limit, "told": told, "dots": dots} | lines_of(found, samples)
-
-
-def _sparse(name: str, history: History) -> Iterator[bool]:
-    """Yield of each column whether it is an exact solution at too few instants to be joined."""
-    for values in history.columns.values():
-        yield is_sparse(name, history.time, values)
 
 
 def _histories(results: Results, case: GalleryCase) -> Iterator[tuple[str, History]]:

@@ -175,15 +175,16 @@
       return chart(place, {
         x: instants(one, curves[0][1].length), xlabel: "time [s]", ylabel: `${title}${shown ? ` [${shown}]` : ""}`,
         range: [factor * (low - pad), factor * (high + pad)],
-        lines: curves.map(([solver, y]) => ({ label: solver, ...data.solvers[solver], dots: one.dots.includes(solver),
+        lines: curves.map(([solver, y]) => ({ label: solver, ...data.solvers[solver], dots: (one.dots[column] || []).includes(solver),
           y: y.map((v) => v === null ? null : factor * v) })) });
     });
     const tell = () => {
       const index = form.case.value, one = data.cases[index];
       section.querySelector(".drawn").textContent = one.whole ? `All ${one.steps} steps are drawn.` :
         `Of ${one.steps} steps the least and the greatest value of each of equal parts are drawn.`;
-      if (one.dots.length) section.querySelector(".drawn").textContent +=
-        ` Dots: ${one.dots.join(" and ")} at the steps, too few to be joined.`;
+      const dots = [...new Set(Object.values(one.dots).flat())];
+      if (dots.length) section.querySelector(".drawn").textContent +=
+        ` Dots: ${dots.join(" and ")} at the steps, too few to be joined.`;
       section.querySelector(".told").replaceChildren(...one.told.map((text) => element("li", { textContent: text })));
       numbers(section.querySelector(".numbers"), data, index);
       for (const option of form.column.options) option.disabled = !(names[option.index] in one.columns);

@@ -20,6 +20,7 @@ from validation.solvers.contract import LineStyle, Role
 from validation.solvers.registry import by_role, get_solver, is_solver
 
 TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
+RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
 MOST_DOTS = 400  # samples; more dots cannot be told apart
 SMALL, HAIR = 7.0, 0.4  # pt
 GREY = "#6b6b6b"
@@ -189,5 +190,7 @@ def is_sparse(solver: str, x: Array, y: Array) -> bool:
     exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
     if not exact or x.size < 3 or x.size > MOST_DOTS:
         return False
-    turning = np.diff(y)[1:] * np.diff(y)[:-1] < 0
+    changes = np.diff(y)
+    large = np.abs(changes) > RIPPLE * np.ptp(y)
+    turning = (changes[1:] * changes[:-1] < 0) & large[1:] & large[:-1]
     return bool(np.mean(turning) > TURNING)
