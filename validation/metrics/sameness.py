@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from validation.metrics.pairs import relative_l2
-from validation.metrics.values import UNDEFINED
 from validation.runs.history import History
 
 FEWEST_VALUES = 10  # different ones of a column: fewer may agree by chance, as at rest or over a few steps of free fall
@@ -43,7 +42,7 @@ def largest_difference(history: History, again: History) -> tuple[str, float]:
             continue
         with np.errstate(all="ignore"):
             difference = relative_l2(second, first)
-        size = float(difference) if difference != UNDEFINED and np.isfinite(difference) else np.inf
+        size = difference if isinstance(difference, float) and np.isfinite(difference) else np.inf
         if size > max(ROUNDING, worst[1]):
             worst = (name, size)
     return worst
