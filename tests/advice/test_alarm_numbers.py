@@ -254,7 +254,7 @@ def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
         return {"limits": {"wave transit": 1.0}, "floor": 1.0516, "gg": 1.0, "gg_rate": None} | changes
 
     plain = chapters_damping._caption([told()])
-    assert "DDA's first frequency is 1.052 times the bar's at any dt." in plain
+    assert "DDA's first natural frequency is 1.052 times the bar's;" in plain
     assert not any(word in plain for word in ("overdamped", "held as a rate", "gg acts per step"))
     assert "is 1.052 to 1.102 times the bar's" in chapters_damping._caption([told(floor=1.102), told()])
     assert "The discount is held as a rate." in chapters_damping._caption([told(gg=0.9, gg_rate=30.0)])

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from html import unescape
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from conftest import typed
+from oracles.processes import answer_here
 from oracles.submissions import STATED, submitted
 
 from validation.problems import cause
@@ -123,6 +125,22 @@ def test_plain_data(tmp_path: Path, exact: History, undrawn: None) -> None:
     assert first["column"] == "displacement_m" and first["error"] == pytest.approx(0.01, rel=1e-6)
     assert first["allowed"] > first["error"] and first["until_s"] == pytest.approx(0.1)
     assert found["about"]["program"] == STATED["program"]
+    assert found["not_reported"] == []
+
+
+def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
+    tmp_path: Path, exact: History, undrawn: None
+) -> None:
+    place = submitted(tmp_path / "mine", table_of(exact, ["displacement"]), not_reported=["contact_pressure_Pa"])
+    done = typed("judge", place)
+    assert done.returncode == 1
+    assert "PARTIAL: PASS on displacement; contact_pressure not reported" in done.stdout
+    assert "no full PASS (exit status 1): the problem asks for contact_pressure_Pa too" in done.stdout
+    for file in ("badge.svg", "judged.html"):
+        text = (place / file).read_text(encoding="utf-8")
+        assert "PARTIAL" in text and "contact_pressure not reported" in text
+    found = json.loads(typed("judge", place, "--json").stdout)
+    assert (found["verdict"], found["not_reported"]) == ("PARTIAL", ["contact_pressure_Pa"])
 
 
 def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:
@@ -168,6 +186,56 @@ def test_a_solver_is_judged_on_any_scene(tmp_path: Path, undrawn: None) -> None:
     fine = typed("judge", "field-locked", "--solver", "dda", *sets, "--out", tmp_path / "page")
     assert fine.returncode == 0, fine.stdout + fine.stderr
     assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "page" / "judged.html").exists()
+
+
+SAME_OR_NOT = """
+import numpy as np
+from validation import solve as suite
+
+def of_the_suite(scene):
+    return suite(scene, "dda").history
+
+def exact(scene):
+    return suite(scene, "block-events").history
+
+def noisy(scene):
+    columns = exact(scene).columns
+    return {name: x * (1 + 0.02 * np.random.default_rng().standard_normal(x.shape)) for name, x in columns.items()}
+
+def rounded(scene):
+    columns = exact(scene).columns
+    return {name: x * (1 + 1e-13 * np.random.default_rng().standard_normal(x.shape)) for name, x in columns.items()}
+"""
+
+
+@pytest.mark.parametrize(
+    ("solver", "said"),
+    [
+        ("of_the_suite", "It is bit for bit the history of dda"),
+        ("exact", "It is bit for bit the exact motion that it is judged by"),
+        ("noisy", "Not repeatable: a second run differs by "),
+        ("rounded", ""),
+    ],
+)
+def test_an_answer_of_the_suite_and_one_that_does_not_repeat_are_told_on_the_page(
+    solver: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None
+) -> None:
+    (tmp_path / "same_or_not.py").write_text(SAME_OR_NOT)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    answer_here(monkeypatch)
+    monkeypatch.setattr(cause, "cause", lambda *given: cause.Cause())
+    done = typed("judge", "locked", "--solver", f"same_or_not:{solver}", "--out", tmp_path / "page", "--json")
+    (*warnings,) = json.loads(done.stdout)["warnings"]
+    assert [sentence[: len(said)] for sentence in warnings] == ([said] if said else [])
+    page = unescape((tmp_path / "page/judged.html").read_text(encoding="utf-8"))
+    assert all(sentence in page for sentence in warnings)
+
+
+def test_the_exact_motion_of_the_pack_handed_in_is_told(tmp_path: Path, exact: History, undrawn: None) -> None:
+    (sentence,) = json.loads(typed("judge", answered(tmp_path / "mine", exact), "--json").stdout)["warnings"]
+    assert "bit for bit the exact motion" in sentence
+    (tmp_path / "mine/answer.csv").write_text(table_of(scaled(exact, 1.001), [*exact.columns]))
+    assert json.loads(typed("judge", tmp_path / "mine", "--json").stdout)["warnings"] == []
 
 
 def test_the_callers_own_scene(tmp_path: Path, scene_file: Path, undrawn: None) -> None:

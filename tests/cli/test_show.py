@@ -169,6 +169,15 @@ def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
         assert words in text
 
 
+def test_the_page_of_a_sweep_shows_the_steps_and_the_scheme_of_the_case_that_is_drawn() -> None:
+    page = typed("show", "figures-3-4").stdout
+    assert "200 of dt = 0.01 s" in page and "dt = 0.002 s" not in page  # the file's own step, 2 ms, is the second
+    assert "cases of the sweep (the first one is above):" in page
+    schemes = typed("show", "stiff-contact").stdout
+    first = load_scene("stiff-contact").expand()[0]
+    assert f"alpha = {first.time.alpha:.4g}, delta = {first.time.delta:g}" in schemes
+
+
 def test_a_tower_is_drawn_as_one(scene_file: Path) -> None:
     def inside(width: float) -> tuple[int, int]:
         sets = ("--set", f"block.width={width}", "--set", "block.height=2.0")

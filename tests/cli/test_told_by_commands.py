@@ -111,7 +111,8 @@ def test_a_column_is_drawn_with_its_top_layer_above() -> None:
     ("start", "words"), [("zero", "zero acceleration"), ("consistent", "the acceleration of the load")]
 )
 def test_a_start_is_told_by_its_acceleration(start: str, words: str) -> None:
-    facts = dict(line for line in scene_page._facts(SCENE.with_values({"time.start": start}), 1) if len(line) == 2)
+    scene = SCENE.with_values({"time.start": start})
+    facts = dict(line for line in scene_page._facts(scene, scene, 1) if len(line) == 2)
     assert facts["steps"].endswith(f"of dt = 0.002 s, from {words}")
 
 

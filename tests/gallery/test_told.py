@@ -59,11 +59,20 @@ def test_verdicts_are_counted_by_their_own_word() -> None:
     assert verdicts.counts(many) == {"PASS": 3, "FAIL": 1, "NOT RUN": 2}
 
 
-@pytest.mark.parametrize(("word", "color"), [(Word.PASS, "#1c6b2f"), (Word.FAIL, "#a80f0f")])
-def test_a_badge_is_green_or_red_by_its_verdict_and_tells_the_error(word: Word, color: str) -> None:
-    found: Any = SimpleNamespace(word=word, deciding=SimpleNamespace(error=0.13, band=0.057))
+@pytest.mark.parametrize(
+    ("word", "color", "withheld", "rest"),
+    [
+        (Word.PASS, "#1c6b2f", (), "</"),
+        (Word.PARTIAL, "#8a5a00", ("contact_pressure",), "; contact_pressure not reported</"),
+        (Word.FAIL, "#a80f0f", ("contact_pressure",), "; contact_pressure not reported</"),
+    ],
+)
+def test_a_badge_tells_its_verdict_by_color_the_error_and_what_is_withheld(
+    word: Word, color: str, withheld: tuple[str, ...], rest: str
+) -> None:
+    found: Any = SimpleNamespace(word=word, deciding=SimpleNamespace(error=0.13, band=0.057), withheld=withheld)
     text = judged.badge(SimpleNamespace(judgement=found, problem=SimpleNamespace(name="locked")))  # type: ignore[arg-type]
-    assert f"DDA field: locked: {word} 13 %" in text and f'fill="{color}"' in text
+    assert f"{word} 13 %{rest}" in text and f'fill="{color}"' in text
 
 
 # ---- scenes -------------------------------------------------------------------------------------------------------
@@ -78,6 +87,11 @@ def test_a_case_tells_its_limit_how_its_runs_ended_and_its_numbers(tmp_path: Any
     results.append(own, made_history(0.002, [-0.01] * 4, [5e6] * 4))
     case = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "fem": late})
     found = scene_data._case(results, case, 100)
+    assert found["dots"] == {}  # dda is stepped
+    turning = made_row("continuum", {}, CASE.name)
+    results.append(turning, made_history(0.002, [0.0, -0.02, 0.001, -0.019], [5e6] * 4))
+    exact = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "continuum": turning})
+    assert scene_data._case(results, exact, 100)["dots"] == {"displacement": ["continuum"]}
     assert (found["label"], found["limit"]) == ("dt = 2 ms", pytest.approx(0.06))
     assert found["told"] == [f"fem: timeout. {Outcome.TIMEOUT.sentence} after 5 s"]
     assert {name: list(lines) for name, lines in found["columns"].items()} == {

@@ -62,7 +62,8 @@ def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_e
     assert time[-1] / 3 < found.within < held.bands[column].until
     for more, word in ((0, Word.PASS), (1, Word.FAIL)):
         mended = np.where(np.arange(len(time)) < rows + more, seen, wanted)
-        assert judge(asked, History(time, {column: mended})).word is word
+        judged = {one.name: one.word for one in judge(asked, History(time, {column: mended})).columns}
+        assert judged[column] is word
     assert judge(asked, held.exact).within == pytest.approx(min(b.until for b in held.bands.values()))
     assert judge(asked, History(time, {column: 9 + wanted})).within == 0.0
     assert judge(asked, History(time, {column: np.where(time >= time[5], np.nan, wanted)})).within == time[4]
@@ -97,9 +98,12 @@ def test_a_column_that_is_absent_is_told() -> None:
     asked = short("locked")
     exact = standard(asked).exact
     found = judge(asked, History(exact.time, {DISPLACEMENT: exact.displacement}))
-    assert found.verdict == "PASS on displacement; contact_pressure not reported"
+    assert (found.word, found.withheld) == (Word.PARTIAL, (PRESSURE,))
+    assert found.verdict == "PARTIAL: PASS on displacement; contact_pressure not reported"
+    whole = judge(asked, exact)
+    assert (whole.word, whole.withheld) == (Word.PASS, ())
     failed = judge(asked, History(exact.time, {DISPLACEMENT: 2 * exact.displacement}))
-    assert failed.verdict == "FAIL; contact_pressure not reported"
+    assert failed.verdict == "FAIL; contact_pressure not reported" and failed.withheld == (PRESSURE,)
     assert judge(asked, History(exact.time, {})).word is Word.NOT_JUDGED
 
 

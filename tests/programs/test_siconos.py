@@ -3,6 +3,7 @@
 import functools
 import math
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -31,6 +32,12 @@ def installed():
 def program():
     if not installed():
         pytest.skip("NOT RUN: siconos is not installed")
+
+
+def test_a_python_without_numpy_has_no_siconos() -> None:
+    """Debian's own Python where the package is absent: -S leaves out what is installed beside the standard library."""
+    done = subprocess.run([sys.executable, "-I", "-S", str(siconos.PROGRAM), "none", "none"], capture_output=True)
+    assert done.returncode == siconos.ABSENT, done.stderr
 
 
 def scene(name, **values):

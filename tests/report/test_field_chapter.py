@@ -7,7 +7,7 @@ from dataclasses import replace
 from validation.report.blocks import Table as Shown
 from validation.report.chapters.data import spoken_of
 from validation.report.chapters.field import absent, by_problem, counted, failures, programs
-from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProblemLine, ProgramLine
+from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS, Cell, ProblemLine, ProgramLine
 from validation.studies.field.table import Table as Field
 
 PROBLEMS = tuple(ProblemLine(name, f"field-{name}", name, f"What of {name}?") for name in ("locked", "rocking"))
@@ -122,3 +122,21 @@ def test_a_program_that_gave_no_answer_is_installed_all_the_same() -> None:
         k: c if k[1] != "one" else Cell(*k, NOT_RUN, NOT_RUN, reason="it is not installed") for k, c in raised.items()
     }
     assert by_problem(Field(PROBLEMS, PROGRAMS, away)).notes[-1] == "Not installed: One, Two."
+
+
+def test_a_program_whose_adapter_refuses_a_problem_before_it_looks_for_it_is_missing_all_the_same() -> None:
+    """As Siconos as it comes: two problems are not applicable, of the rest it says that it is not installed."""
+    missing = Cell("locked", "one", NOT_RUN, NOT_RUN, reason="Siconos is not installed: apt-get")
+    refused = Cell("rocking", "one", NOT_APPLICABLE, NOT_APPLICABLE, reason="no stiffness")
+    away = cells() | {("locked", "one"): missing, ("rocking", "one"): refused}
+    assert by_problem(Field(PROBLEMS, PROGRAMS, away)).notes[-1] == "Not installed: One, Two."
+    for other in (replace(missing, reason="raised"), replace(missing, verdict=PASS, reason="")):
+        found = Field(PROBLEMS, PROGRAMS, away | {("locked", "one"): other})
+        assert by_problem(found).notes[-1] == "Not installed: Two."
+
+
+def test_an_answer_that_withholds_a_column_passes_in_part() -> None:
+    partial = Cell("locked", "one", PARTIAL, "PARTIAL: ...", "", "displacement", 0.00123, 0.0574, 0.1, 1.5)
+    found = Field(PROBLEMS, PROGRAMS, cells() | {("locked", "one"): partial})
+    assert by_problem(found).rows[2] == ("One", "PARTIAL 0.12", "n. a.", "1.5")
+    assert "Of these 0 pass and 1 in part (a column is withheld) and 2 fail" in counted(found)

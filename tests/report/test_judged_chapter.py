@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,14 @@ def test_each_column_has_its_error_and_what_is_allowed_in_per_cent(drawn: dict[s
     assert columns.notes[-1] == "rotation_rad: it is zero throughout."
     assert [column.title for column in beside.columns] == ["Number", "Answer", "Exact", "Unit"]
     assert beside.rows == (("first peak", "2.000", "3.000", "mm"),) and about.rows == (("program", "mine"),)
+
+
+def test_the_caption_tells_of_a_difference_where_one_is_drawn(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    apart = chapter.figures(judged(), tmp_path)
+    same = chapter.figures(replace(judged(), history=EXACT), tmp_path / "same")
+    for blocks, words in ((apart, "and their difference over its largest value"), (same, "lies on the exact motion")):
+        assert all(words in block.caption for block in blocks)
+    assert len(drawn["judged-displacement.svg"].axes) == 2
 
 
 def test_the_curves_are_those_of_the_answer_beside_the_exact_ones(drawn: dict[str, Figure], tmp_path: Path) -> None:

@@ -8,19 +8,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import between, kept_study, made_case, made_group, made_history
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import between, kept_study, made_case, made_group, made_history, names_at
 
+from validation.problems.told import Told
 from validation.report.appendix import alarms as appendix_alarms
 from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Lines
+from validation.report.chapters import gates
+from validation.report.chapters import judged as judged_chapter
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
 from validation.report.chapters.scene import conclusion, gate_count, history_block
 from validation.report.figures import motion
-from validation.report.figures.curves import Panel
+from validation.report.figures.curves import Panel, style_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
@@ -125,16 +130,76 @@ def test_more_swings_than_can_be_drawn_are_a_band_with_their_start_below() -> No
     assert middles.size == motion.BINS and set(low) == {-1.0} and set(high) == {3.0}
 
 
-def test_a_figure_ends_when_all_lines_have_long_settled(tmp_path: Any) -> None:
+def test_a_figure_ends_when_all_lines_have_long_settled(drawn: dict[str, Figure], tmp_path: Any) -> None:
     history = made_history(0.002, np.linspace(-0.02, -0.01, 100))
     rows = {"dda": {"displacement.settling_step": 20.0}, "bar": {"displacement.settling_step": 10.0}}
     group = made_group(made_case(PAPER, rows, {"dda": history, "bar": history}))
-    assert "The first 0.060 s; all have settled then." in history_block(group, ["displacement"], tmp_path).caption
+    caption = history_block(group, ["displacement"], tmp_path).caption
+    assert "The first 0.060 s; all have settled to 1\u00a0% by then." in caption
+    assert drawn["scene-history.svg"].axes[0].get_xlim()[1] == pytest.approx(0.06)  # as the caption says
     rows["bar"] = {"displacement.settling_step": "undefined"}
     group = made_group(made_case(PAPER, rows, {"dda": history, "bar": history}))
     caption = history_block(group, ["displacement"], tmp_path).caption
     assert "settled" not in caption and "bar lies on dda (within <10⁻¹²)." in caption
     assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
+
+
+def exact_cases(*steps: float) -> list[Any]:
+    """Return cases of one exact vibration of 18 ms at several steps, beside a line that is stepped."""
+    cases = []
+    for step in steps:
+        time = step * np.arange(1, round(0.2 / step) + 1)
+        own = made_history(step, -0.01 * (1 - np.cos(345.0 * time)))
+        scene = PAPER.with_values({"time.step": step, "time.steps": len(time)}, label=True)
+        cases.append(made_case(scene, {}, {"dda": made_history(step, -0.02 * time), "continuum": own}))
+    return cases
+
+
+def exact_line(axes: Any) -> tuple[Any, str]:
+    color = to_hex(style_of("continuum").color)
+    (line,) = [line for line in axes.lines if to_hex(line.get_color()) == color and len(line.get_xdata()) > 2]
+    return np.asarray(line.get_xdata()), line.get_linestyle()
+
+
+def test_an_exact_solution_is_no_zigzag_where_few_instants_show_it(drawn: dict[str, Figure], tmp_path: Any) -> None:
+    """At 10 ms it is drawn from the case of 1 ms, which has the same motion; alone, as dots."""
+    caption = history_block(made_group(*exact_cases(1e-2, 1e-3)), ["displacement"], tmp_path).caption
+    for axes in drawn["scene-history.svg"].axes[:2]:
+        instants, style = exact_line(axes)
+        assert (instants.size, style) == (200, "-")
+    assert "Dots" not in caption
+    drawn.clear()
+    caption = history_block(made_group(*exact_cases(1e-2)), ["displacement"], tmp_path).caption
+    instants, style = exact_line(drawn["scene-history.svg"].axes[0])
+    assert (instants.size, style) == (20, "None")
+    assert "Dots: continuum at the steps, too few to be joined." in caption
+    drawn.clear()
+    other = exact_cases(1e-2)[0]
+    other = replace(other, scene=other.scene.with_values({"load.pressure": 1e6}), name="other")
+    history_block(made_group(other, *exact_cases(1e-3)), ["displacement"], tmp_path)
+    assert exact_line(drawn["scene-history.svg"].axes[0])[0].size == 20  # of another motion
+
+
+def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure], tmp_path: Any) -> None:
+    """The bar lies on fem and has no line of its own; what is apart from it is drawn all the same."""
+    bar = made_history(0.002, np.linspace(-0.02, -0.01, 100))
+    histories = {"dda": made_history(0.002, np.linspace(-0.025, -0.01, 100)), "fem": bar, "bar": bar}
+    group = made_group(made_case(PAPER, {}, histories))
+    caption = history_block(group, ["displacement"], tmp_path, apart=True).caption
+    top, below = drawn["scene-history.svg"].axes
+    assert "|Δ|: from bar" in caption and below.get_ylabel() == "|Δ| / largest"
+    assert set(names_at(below)) == {"dda"} and set(names_at(top)) == {"dda", "fem, bar"}
+
+
+def test_a_count_that_is_none_is_no_small_number() -> None:
+    scene = PAPER.name
+    count = verdict(scene, 0.0, (0.0, 0.0), metric="displacement.fine_settling_step")
+    error = verdict(scene, 0.0, (0.0, 1e-9), metric="displacement.l2")
+    assert [gates.value_cell(v["value"], v["metric"]) for v in (count, error)] == ["0", "<10⁻¹²"]
+    (told,) = judged_chapter._told((Told("openings", "1", 0.0, 5.0),)).rows
+    assert told == ("openings", "0", "5", "1")
+    (told,) = judged_chapter._told((Told("damping ratio", "1", 0.0, 0.1),)).rows
+    assert told[1] == "<10⁻¹²"
 
 
 # ---- chapters -----------------------------------------------------------------------------------------------------
@@ -170,7 +235,14 @@ def test_locking_is_told_by_the_share_that_linear_elements_keep() -> None:
     assert locking.locking_table(group).rows == (
         ("0.3", "−4.2000", "−4.2500", "98.8\u00a0%"), ("0.499", "−0.5000", "−4.0000", "12.5\u00a0%"),
     )  # fmt: skip
-    assert "at μ = 0.499 they keep 12.5\u00a0% of the displacement" in locking.locked_sentence(group)
+    said = locking.locked_sentence(group)
+    assert "at μ = 0.499 they keep 12.5\u00a0% of the displacement. Quadratic ones do not lock." in said
+    finer = cases[-1].scene.with_values({"fem.elements": 64}, label=True)
+    more = made_group(*cases, made_case(finer, {"fem": {"displacement.static": -5e-3}}))
+    assert locking.locking_table(more).rows == locking.locking_table(group).rows
+    per_side = cases[0].scene.fem.per_side
+    stiff = f"at μ = 0.499 {per_side} of them a side are still 20\u00a0% stiffer than 64 a side."
+    assert locking.locked_sentence(more).endswith(f"Quadratic ones do not lock, but {stiff}")
     long = PAPER.with_values({"time.steps": 1_000_000})
     drift = made_group(*(made_case(long, {"dda": {"energy.drift": value}}) for value in (3e-11, 1e-13)))
     assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 1\u00a0000\u00a0000 steps."
@@ -233,8 +305,18 @@ def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
     assert conclusion(group).startswith("Against bar-events, block-events differs by 2\u00a0% in displacement and 50")
 
 
+def test_cases_over_different_times_are_told_with_both_ends() -> None:
+    cases = [made_case(PAPER.with_values({"time.step": step}, label=True), {}) for step in (0.01, 0.001)]
+    pairs = [between(case.name, "dda", "bar", displacement_l2=0.02) | {"window": t} for case, t in
+             zip(cases, (2.0, 0.2), strict=True)]  # fmt: skip
+    said = conclusion(made_group(*cases, comparisons=tuple(pairs)))
+    assert said.startswith("Against bar, dda differs by 2\u00a0% in displacement (relative L2, 0.2 to 2\u00a0s);")
+
+
 def test_the_pair_of_a_users_own_solver_is_told() -> None:
     case = made_case(load_scene("figures-3-4").expand()[0], {})
     pair = between(case.name, "mine", "bar", **{"displacement.l2": 0.02})
     group = replace(made_group(case), comparisons=(pair,))
-    assert conclusion(group).startswith("Against bar, mine differs by 2\u00a0% in displacement (relative L2)")
+    assert conclusion(group).startswith(
+        "Against bar, mine differs by 2\u00a0% in displacement (relative L2 over 1\u00a0s)"
+    )

@@ -107,9 +107,10 @@ def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() ->
     said = chapters.conclusion(made_group(*cases, comparisons=tuple(pairs), verdicts=()))
     assert said == (
         "Against bar, dda differs by 0.81\u00a0% to 8.97\u00a0% in displacement and 0.67\u00a0% to 10.4\u00a0% in "
-        "contact pressure (relative L2); no gate judges this scene; the locked contact hides tension, down to "
-        "−0.0100 MPa in dda and −2.00 MPa in bar; the difference falls as the damping grows, from 8.97\u00a0% at "
-        "ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no sign of accuracy."
+        "contact pressure (relative L2 over 1\u00a0s); no gate judges this scene; the locked contact hides tension, "
+        "down to −0.0100 MPa in dda and −2.00 MPa in bar; the difference falls as the damping grows, from "
+        "8.97\u00a0% at ξ₁ = 8.00\u00a0% to 0.81\u00a0% at ξ₁ = 30.00\u00a0%: both are damped, which is no sign of "
+        "accuracy."
     )
 
 

@@ -92,6 +92,49 @@ def through_the_gates(solver: str, where: Path, *options: str) -> str:
     return done.stdout + done.stderr
 
 
+COPIES = """
+import numpy as np
+import plain_dda
+from validation import solve as suite
+
+def dda(scene):
+    return suite(scene, "dda").history
+
+def textbook(scene):
+    return suite(scene, "dda-textbook").history
+
+def noisy(scene):
+    return tuple(x * (1 + 0.02 * np.random.default_rng().standard_normal(x.shape)) for x in plain_dda.sound(scene))
+"""
+
+
+@pytest.mark.parametrize(
+    ("solver", "same_as", "line"),
+    [
+        ("copies:dda", {"dda"}, "\nidentical: bit for bit the histories of the suite's own dda in 1 of 1 scenes"),
+        ("copies:textbook", {"dda-textbook"}, "\nidentical: bit for bit the histories of the suite's own dda-textbook"),
+        ("copies:noisy", set(), "\nnot repeatable: two runs of figure-8[time.start=zero] differ by "),
+        ("plain_dda:sound", set(), ""),
+    ],
+)
+def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
+    solver: str, same_as: set[str], line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "copies.py").write_text(COPIES)
+    monkeypatch.syspath_prepend(str(ORACLES))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    answer_here(monkeypatch)
+    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=[]))
+    session = Session(solver, Results(tmp_path / "results"))
+    names = [name for name, (_, gate) in gates.applying().items() if gate.scene == "figure-8[time.start=zero]"]
+    told = [session.judge(name)[1] for name in names]
+    assert {name for t in told for name in t.same_as.split()} == same_as
+    assert all(t.repeated for t in told)
+    assert {0.01 < t.apart < 0.1 for t in told} == {solver == "copies:noisy"}
+    warnings = [text for text in block(told) if text.startswith(("\nidentical", "\nnot repeatable"))]
+    assert [text[: len(line)] for text in warnings] == ([line] if line else [])
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("slip", [slip for slip in SLIPS if slip != "double_density"])  # which the page shows
 def test_the_block_names_the_group_and_what_is_right(slip: str) -> None:

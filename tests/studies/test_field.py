@@ -5,10 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from oracles.made_cases import made_row
 
 from validation.engine import run_study
+from validation.engine.finished import Finished, NothingToDerive
 from validation.gates.gate import Status
+from validation.problems.problem import PREFIX
 from validation.results import Results
+from validation.runs.run import Outcome
 from validation.solvers import registry
 from validation.studies.field import programs, scenes
 from validation.studies.field import study as module
@@ -64,6 +68,27 @@ def test_the_table_of_one_problem(brought, tmp_path, monkeypatch) -> None:
     assert about["mine"]["settings"] == "central differences, a thousandth of the block's wave time"
     assert {column.name for column in cell["mine"].columns} == {"displacement", "contact_pressure"}
     assert cell["mine"].numbers[0].exact == pytest.approx(54.84, rel=1e-3)
+
+
+def answered(*runs: tuple[Outcome, str]):
+    """Return the row on how many problems were answered, of runs that ended so."""
+    rows = {}
+    for problem, (outcome, note) in zip(module.predictions.PROBLEMS, runs, strict=False):
+        name = f"{PREFIX}{problem}"
+        rows[name, "siconos-default"] = made_row("siconos-default", {}, name, outcome=outcome, notes=(note,))
+    compute = module.predictions._answered("siconos-default", "apt-get install python3-siconos")
+    return compute(Finished(rows, None))
+
+
+def test_a_program_that_is_missing_behind_an_adapter_that_refuses_problems_is_not_run() -> None:
+    """Its gate asks for an answer at least; a machine without the program has none to judge."""
+    refused = (Outcome.NOT_APPLICABLE, "no stiffness in its contact")
+    missing = (Outcome.NOT_APPLICABLE, "Siconos is not installed: apt-get install python3-siconos")
+    for runs in ((refused, missing, refused), (missing, missing)):
+        with pytest.raises(NothingToDerive, match="not installed"):
+            answered(*runs)
+    assert answered(refused, (Outcome.RAISED, "it ended")) == {"problems answered": 0.0}
+    assert answered((Outcome.COMPLETED, ""), missing) == {"problems answered": 1.0}
 
 
 @pytest.mark.long

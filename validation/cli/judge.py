@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,6 +11,8 @@ import typer
 
 from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, SetOption, _progress, app, one_case
 from validation.cli.damping import JsonOption
+
+REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
 if TYPE_CHECKING:
     from validation.problems.bands import Standard
@@ -46,8 +49,9 @@ def judge(
     """Judge an answer to a problem against its exact motion, and write page and badge.
 
     The problems and a submission to fill in come with dda-validate export-pack. A column passes where its error is
-    below what one per cent of the problem's data changes. Exit status: 0 it passes, 1 it does not, 2 bad input, 3 the
-    solver ended in a named failure.
+    below what one per cent of the problem's data changes. PARTIAL: the columns that it reports pass, others that the
+    problem asks for are withheld. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver
+    ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
@@ -60,7 +64,7 @@ def judge(
         typer.echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
     else:
         _print(judged, program, written)
-    if judged.judgement.word != "PASS":
+    if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
         raise typer.Exit(GATE_FAILED)
 
 
@@ -92,15 +96,35 @@ def _of_solver(target: str, solver: str, assignments: list[str] | None, progress
     from validation.engine.measure import completed
     from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
     from validation.solvers.registry import get_solver
-    from validation.solvers.user import UserSolver
+    from validation.solvers.user import SAME_AS, UserSolver
 
     case = one_case(PREFIX + target if target in PROBLEMS else target, assignments)
     asked: Problem = problem(target) if target in PROBLEMS and not assignments else problem_of(case)
     chosen = get_solver(solver)
     progress(0, 3, f"{case.name} {solver}")
-    history = _history(completed(chosen, case), case.name, solver)
-    said = chosen.about() if isinstance(chosen, UserSolver) else {}
-    return _with_cause(asked, history, (("solver", solver), *said.items()), progress), solver
+    run = completed(chosen, case)
+    history = _history(run, case.name, solver)
+    if not isinstance(chosen, UserSolver):
+        return _with_cause(asked, history, (("solver", solver),), progress), solver
+    warnings = [f"It is {note}: the suite's own solver was judged." for note in run.notes if note.startswith(SAME_AS)]
+    if sum(run.seconds.values()) < REPEATED_WITHIN:
+        warnings += _not_repeatable(history, completed(chosen, case).history)
+    about = (("solver", solver), *chosen.about().items())
+    return _with_cause(asked, history, about, progress, warnings), solver
+
+
+def _not_repeatable(history: History, again: History | None) -> list[str]:
+    """Return in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
+    from validation.metrics.sameness import largest_difference
+    from validation.report.chapters.judged import per_cent
+
+    if again is None:
+        return ["Not repeatable: a second run gave no history; the verdict is one of several."]
+    column, difference = largest_difference(history, again)
+    if not column:
+        return []
+    size = "in length or columns" if difference == float("inf") else f"by {per_cent(difference)} in {column}"
+    return [f"Not repeatable: a second run differs {size} (relative L2); the verdict may change from run to run."]
 
 
 def _history(run: Run, case: str, solver: str) -> History:
@@ -119,7 +143,14 @@ def _history(run: Run, case: str, solver: str) -> History:
     return run.history
 
 
-def _with_cause(problem: Problem, history: History, about: tuple[tuple[str, str], ...], progress: Any) -> Judged:
+def _with_cause(
+    problem: Problem,
+    history: History,
+    about: tuple[tuple[str, str], ...],
+    progress: Any,
+    warnings: Sequence[str] = (),
+) -> Judged:
+    from validation.metrics.sameness import is_identical
     from validation.problems.bands import standard
     from validation.problems.judge import Word
     from validation.problems.judge import judge as judgement_of
@@ -134,7 +165,12 @@ def _with_cause(problem: Problem, history: History, about: tuple[tuple[str, str]
 
         progress(2, 3, "the cause")
         why = cause(problem, history, held)
-    return Judged(problem, history, held, found, why, about)
+    if is_identical(history, held.exact):
+        warnings = [
+            *warnings,
+            "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back.",
+        ]
+    return Judged(problem, history, held, found, why, about, tuple(warnings))
 
 
 def _written(judged: Judged, program: str, place: Path, progress: Any) -> list[Path]:
@@ -171,8 +207,10 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
         "problem": judged.problem.name,
         "program": program,
         "verdict": str(judged.judgement.word),
+        "not_reported": [united(name) for name in judged.judgement.withheld],
         "cause": None if why is None else _cause_data(why),
         "columns": columns,
+        "warnings": list(judged.warnings),
         "about": dict(judged.about),
     }
 
@@ -185,9 +223,17 @@ def _cause_data(why: Cause) -> dict[str, Any]:
 def _print(judged: Judged, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
     from validation.problems.data import united
+    from validation.problems.judge import Word
     from validation.report.chapters.judged import datum, headline, per_cent, reached
 
     typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
+    if judged.judgement.word is Word.PARTIAL:
+        missing = ", ".join(map(united, judged.judgement.withheld))
+        typer.echo(
+            f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged"
+        )
+    for sentence in judged.warnings:
+        typer.echo(f"warning: {sentence}")
     if judged.cause is not None:
         typer.echo(f"cause: {judged.cause.sentence}")
         typer.echo(reached(judged))

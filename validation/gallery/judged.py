@@ -17,7 +17,7 @@ from validation.report.chapters.judged import Judged, page, per_cent
 from validation.runs.files import atomic_path
 
 PAGE, BADGE = "judged.html", "badge.svg"
-COLORS = {Word.PASS: "#1c6b2f", Word.FAIL: "#a80f0f", Word.NOT_JUDGED: "#5a5a5a"}
+COLORS = {Word.PASS: "#1c6b2f", Word.PARTIAL: "#8a5a00", Word.FAIL: "#a80f0f", Word.NOT_JUDGED: "#5a5a5a"}
 LETTER, MARGIN = 7, 12  # px of a badge's letter, amply, and beside a text
 
 
@@ -58,10 +58,12 @@ def html(judged: Judged, program: str) -> str:
 
 
 def badge(judged: Judged) -> str:
-    """Return the badge: the problem, the verdict, and the error that decides."""
+    """Return the badge: the problem, the verdict, the error that decides, and the columns that are withheld."""
     found, label = judged.judgement, f"DDA field: {judged.problem.name}"
     decides = found.deciding
     said = f"{found.word} {per_cent(decides.error)}" if decides else str(found.word)
+    if found.withheld:
+        said += f"; {', '.join(found.withheld)} not reported"
     left, right = (LETTER * len(text) + MARGIN for text in (label, said))
     template = environment().get_template("badge.svg.j2")
     return template.render(label=label, said=said, left=left, right=right, color=COLORS[found.word])

@@ -10,9 +10,9 @@ import numpy as np
 
 from validation.gallery.cases import GalleryCase, GalleryScene, readable
 from validation.gallery.histories import lines_of
-from validation.metrics.catalogue import CATALOGUE
+from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.text import bounded, cell
-from validation.report.figures.curves import COLUMNS, style_of
+from validation.report.figures.curves import COLUMNS, is_sparse, style_of
 from validation.runs.history import History
 from validation.runs.results import KEPT, Results
 from validation.runs.row import Value
@@ -104,7 +104,12 @@ def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
         if row.outcome is not Outcome.COMPLETED
     ]
     limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
-    return {"label": readable(case.label), "limit": limit, "told": told} | lines_of(found, samples)
+    dots: dict[str, list[str]] = {}
+    for name, history in found.items():
+        for column, values in history.columns.items():
+            if is_sparse(name, history.time, values):
+                dots.setdefault(column, []).append(name)
+    return {"label": readable(case.label), "limit": limit, "told": told, "dots": dots} | lines_of(found, samples)
 
 
 def _histories(results: Results, case: GalleryCase) -> Iterator[tuple[str, History]]:
@@ -139,6 +144,7 @@ def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
 
 def _told(metric: str, value: Value) -> str:
     """Return a value as a page writes it: counts whole, a ratio at the level of rounding told to be below."""
-    counted = CATALOGUE[metric].unit == "step" or metric.endswith(".count")
-    text = str(int(value)) if counted and isinstance(value, float) and value.is_integer() else cell(value)
+    if is_count(metric) and isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    text = cell(value)
     return bounded(value, text) if isinstance(value, float) and value and CATALOGUE[metric].unit == "1" else text

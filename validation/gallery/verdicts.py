@@ -25,7 +25,7 @@ def table(verdicts: Sequence[VerdictRecord]) -> dict[str, Any]:
             verdict["scene"],
             " – ".join(verdict["pair"]),
             verdict["metric"] + window,
-            value_cell(verdict["value"]),
+            value_cell(verdict["value"], verdict["metric"]),
             band(verdict),
         )
         numbers = [words.setdefault(readable(text), len(words)) for text in texts]

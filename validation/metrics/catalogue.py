@@ -141,9 +141,16 @@ def _of_pairs() -> Iterator[Metric]:
     yield Metric("worst.max", "1", "the larger of displacement.max and pressure.max", both, pairs.worst)
 
 
+COUNTS = frozenset({"switches.count", "contact.state_changes"})  # beside all that are measured in steps
 SOLO = {metric.id: metric for metric in (*_of_columns(), *_of_modes(), *_of_stability(), *_of_switches())}
 PAIRS = {metric.id: metric for metric in _of_pairs()}
 CATALOGUE = SOLO | PAIRS
+
+
+def is_count(metric: str) -> bool:
+    """Whether a metric counts something: its zero is none, and not a small number."""
+    known = CATALOGUE.get(metric)
+    return metric in COUNTS or (known is not None and known.unit == "step")
 
 
 def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:

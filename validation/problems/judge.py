@@ -23,6 +23,7 @@ class Word(enum.StrEnum):
     """What is said of an answer or of one of its columns."""
 
     PASS = "PASS"
+    PARTIAL = "PARTIAL"  # of an answer: what it reports passes, but it withholds a column that the problem asks for
     FAIL = "FAIL"
     NOT_REPORTED = "not reported"
     NOT_JUDGED = "not judged"
@@ -69,9 +70,16 @@ class Judgement:
 
     @property
     def word(self) -> Word:
-        """PASS or FAIL; `NOT_JUDGED` where it reports no column that is judged."""
+        """PASS, PARTIAL or FAIL; `NOT_JUDGED` where it reports no column that is judged."""
         words = [column.word for column in self.columns]
+        if Word.PASS in words and Word.FAIL not in words and self.withheld:
+            return Word.PARTIAL
         return next((word for word in (Word.FAIL, Word.PASS) if word in words), Word.NOT_JUDGED)
+
+    @property
+    def withheld(self) -> tuple[str, ...]:
+        """Columns that the problem asks for and judges, and the answer does not report."""
+        return tuple(column.name for column in self.columns if column.word is Word.NOT_REPORTED)
 
     @property
     def verdict(self) -> str:
@@ -80,8 +88,8 @@ class Judgement:
         silent = [f"{column.name} {column.word}" for column in self.columns if column.band is None or _absent(column)]
         if not silent:
             return str(self.word)
-        spoken = f"{self.word} on {', '.join(passed)}" if self.word is Word.PASS else str(self.word)
-        return "; ".join([spoken, *silent])
+        verdicts = {Word.PASS: f"PASS on {', '.join(passed)}", Word.PARTIAL: f"PARTIAL: PASS on {', '.join(passed)}"}
+        return "; ".join([verdicts.get(self.word, str(self.word)), *silent])
 
     @property
     def within(self) -> float:

@@ -18,6 +18,7 @@ from validation.scenes.scene import Scene
 MOST = 3  # numbers that are told of a problem
 TRACE = 1e-3  # of the largest pressure: what is less is an open contact
 ARRIVAL = 0.1  # of the largest displacement: what is more has arrived
+COUNTED = frozenset({"openings"})  # of the numbers: how often something happens
 ROTATION, SIDEWAYS = "rotation", "horizontal_displacement"
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
+from validation.metrics.sameness import is_identical
 from validation.metrics.values import norm
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.modes import Mode
@@ -43,6 +44,7 @@ UNITS = {  # what a value in another unit is, over the value in SI
     PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
 }
 NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
+SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
 MOST_WORDS = 400  # characters of what a user's solver says
 ALIKE = 0.8  # correlation from which two histories are one but for their unit
 
@@ -165,20 +167,23 @@ def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
         if values.shape != (steps,):
             zero = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){zero}",))
+    same: tuple[str, ...] = ()
     if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
-        if wrong := _wrong_units(scene, history, expected):
+        reference = _reference(scene)
+        if wrong := _wrong_units(scene, history, expected, reference):
             return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
+        if reference is not None and is_identical(history, reference):
+            same = (f"{SAME_AS}{DDA.name}",)
         if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
     work = {"steps": steps}
-    return Run(Outcome.COMPLETED, history, work, notes=pulls(history))
+    return Run(Outcome.COMPLETED, history, work, notes=(*same, *pulls(history)))
 
 
-def _wrong_units(scene: Scene, history: History, expected: Array) -> str | None:
+def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
     if (told := factor("time", history.time, expected, scene)) is not None:
         return told
-    reference = _reference(scene)
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
             sound = reference.columns[name]

@@ -40,6 +40,8 @@ MODEL_FORM = {  # dt -> relative L2 of DDA against the bar over 0.2 s, displacem
     "0.001": (8.97, 10.4),
     "0.0001": (63.6, 73.9),
 }
+WINDOWS = {0.02: 20.9, 0.1: 54.7}  # s -> relative L2 of the pressure at the shortest step, in percent
+PEAKS = {"0.01": 0.90, "0.002": 2.62, "0.001": 4.73, "0.0001": 10.42}  # dt -> first peak of the pressure, in percent
 FE_STATICS = {"1e+09": -9.871e-3, "1e+10": -5.306e-3, "1e+11": -4.840e-3}  # m, mu = 0.3, distributed foundation
 CORNER_DRIFT = {4: -0.0212, 8: -0.0263, 16: -0.0310, 32: -0.0356, 64: -0.0402}  # m, linear elements, p = 1E
 TENSION = (
@@ -169,6 +171,18 @@ def model_form() -> Iterator[Gate]:
             half = decimals(percent)
             edges = (percent - half) / 100, (percent + half) / 100
             yield Gate(scene.name, ("dda", "bar"), f"{quantity}.l2", *edges, why, OTHER, half / 100, until=0.2)
+    why = "first peak of the pressure, which no window changes: independent program, half a unit of its last digit"
+    for scene in cases("model-form"):
+        excess = PEAKS[f"{scene.time.step:g}"]
+        yield printed(scene.name, ("dda", "bar"), "pressure.peak", excess / 100, 5e-5, why)
+    why = (
+        "a relative L2 difference is mostly one of phase where little is damped and grows with its window: independent "
+        "program, half a unit of its last digit"
+    )
+    shortest = min(cases("model-form"), key=lambda scene: scene.time.step)
+    for until, percent in WINDOWS.items():
+        half = decimals(percent) / 100
+        yield printed(shortest.name, ("dda", "bar"), "pressure.l2", percent / 100, half, why, until=until)
     why = "the locked contact carries tension: independent program, half a unit of its last digit"
     for name, solver, value, half in TENSION:
         yield printed(name, (solver,), "pressure.minimum", value, half, why)

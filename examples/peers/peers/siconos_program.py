@@ -10,9 +10,13 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numpy as np
-
 ABSENT = 3  # exit status where there is no Siconos
+
+try:
+    import numpy as np
+except ImportError:  # Debian's package of Siconos brings it
+    sys.exit(ABSENT)
+
 Request = dict[str, Any]
 
 

@@ -32,11 +32,11 @@ def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
     yield ""
     yield from (column(every[0]) if scene.column is not None else block(every[0], width))
     yield ""
-    yield in_columns(list(_facts(scene, len(every))), width)
+    yield in_columns(list(_facts(every[0], scene, len(every))), width)
     yield ""
     if len(every) > 1:
         of_all = f"{len(looked)} of {len(every)}" if len(looked) < len(every) else f"all {len(every)}"
-        yield f"over {of_all} cases of the sweep (drawn is the first):"
+        yield f"over {of_all} cases of the sweep (the first one is above):"
     yield in_columns(_table(numbers.ranges(found)), width)
     for text, count in _remarks(looked, found).items():
         told = f"{text} (in {count} of {len(looked)} cases)" if len(looked) > 1 else text
@@ -62,16 +62,17 @@ def _remarks(looked: Sequence[Scene], found: Sequence[Sequence[numbers.Number]])
     return Counter(text for case, own in zip(looked, found, strict=True) for text in numbers.remarks(case, own))
 
 
-def _facts(scene: Scene, count: int) -> Iterator[Line]:
-    t = scene.time
+def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
+    """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
+    t = first.time
     scheme = SCHEMES.get((t.alpha, t.delta), "Newmark")
     start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
     yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
     discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
     yield "scheme", f"{scheme}, alpha = {t.alpha:.4g}, delta = {t.delta:g}, {discount}"
-    if scene.damping.present:
-        yield "damping", f"C = a0 M + a1 K, a0 = {scene.damping.mass:g} 1/s, a1 = {scene.damping.stiffness:g} s"
-    if asked := features.of(scene):
+    if first.damping.present:
+        yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
+    if asked := features.of(first):
         yield "features", ", ".join(asked)
     for field, values in scene.sweep.items():
         if field != "mode":

@@ -43,7 +43,8 @@
       legend: { live: true }, cursor: { drag: { x: true, y: false }, points: { size: 6 } },
       series: [{ label: spec.xlabel, value: (u, v) => written(v) }, ...spec.lines.map((line) => ({
         label: line.label, stroke: seen(line.color), dash: line.dash, width: (line.width || 1) * 1.5, pxAlign: 0,
-        spanGaps: Boolean(line.points), points: { show: Boolean(line.points), size: 7 },
+        spanGaps: Boolean(line.points), points: { show: Boolean(line.points || line.dots), size: line.dots ? 4 : 7 },
+        ...(line.dots ? { paths: () => null } : {}),  // an exact solution at few instants: joined it would be a zigzag
         value: (u, v) => written(v) }))],
       hooks: { draw: [(u) => mark(u, spec.at)], setCursor: [(u) => spec.cursor && spec.cursor(u.cursor.idx)] },
     };
@@ -174,13 +175,16 @@
       return chart(place, {
         x: instants(one, curves[0][1].length), xlabel: "time [s]", ylabel: `${title}${shown ? ` [${shown}]` : ""}`,
         range: [factor * (low - pad), factor * (high + pad)],
-        lines: curves.map(([solver, y]) => ({ label: solver, ...data.solvers[solver],
+        lines: curves.map(([solver, y]) => ({ label: solver, ...data.solvers[solver], dots: (one.dots[column] || []).includes(solver),
           y: y.map((v) => v === null ? null : factor * v) })) });
     });
     const tell = () => {
       const index = form.case.value, one = data.cases[index];
       section.querySelector(".drawn").textContent = one.whole ? `All ${one.steps} steps are drawn.` :
         `Of ${one.steps} steps the least and the greatest value of each of equal parts are drawn.`;
+      const dots = [...new Set(Object.values(one.dots).flat())];
+      if (dots.length) section.querySelector(".drawn").textContent +=
+        ` Dots: ${dots.join(" and ")} at the steps, too few to be joined.`;
       section.querySelector(".told").replaceChildren(...one.told.map((text) => element("li", { textContent: text })));
       numbers(section.querySelector(".numbers"), data, index);
       for (const option of form.column.options) option.disabled = !(names[option.index] in one.columns);

@@ -57,7 +57,7 @@ def _measured(v: VerdictRecord) -> str:
 
 def _line(v: VerdictRecord, labels: Mapping[str, str]) -> Line:
     scene, label = scene_of(v["scene"]), labels.get(v["scene"], "").replace(" = ", "=")
-    return (f"{scene} {label}".strip(), _measured(v), value_cell(v["value"]), band(v))
+    return (f"{scene} {label}".strip(), _measured(v), value_cell(v["value"], v["metric"]), band(v))
 
 
 def _range_line(verdicts: Verdicts) -> Line:
@@ -67,12 +67,12 @@ def _range_line(verdicts: Verdicts) -> Line:
     return (
         f"{scene_of(first['scene'])}, {len(verdicts)} cases",
         _measured(first),
-        _ends(values),
+        _ends(values, first["metric"]),
         band(first) if same else "each with its own band",
     )
 
 
-def _ends(values: Sequence[float]) -> str:
+def _ends(values: Sequence[float], metric: str) -> str:
     """Return the least and the greatest value, or the one that both read as."""
-    low, high = (value_cell(value) for value in (values[0], values[-1]))
+    low, high = (value_cell(value, metric) for value in (values[0], values[-1]))
     return low if low == high else f"{low} … {high}"

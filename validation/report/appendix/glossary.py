@@ -10,8 +10,9 @@ WORDS = (
     ("locked, unilateral", "A locked contact also pulls; a unilateral one opens instead of pulling."),
     ("open-close iteration", "The search, within one step, for which springs act: solve, look at the gaps, repeat."),
     ("α, δ", "Weights of the new acceleration in the displacement and in the velocity of a step (Newmark's β and γ): "
-     "(1/2, 1) is constant, (1/4, 1/2) average acceleration."),
-    ("discount gg", "The factor on the velocity at the start of each step: 1 changes nothing, 0 removes all motion."),
+     "(1/2, 1) is constant acceleration in DDA's usage; (1/4, 1/2) is average acceleration, which texts on finite "
+     "elements call constant."),
+    ("discount gg", "The factor on the velocity before each step: 1 changes nothing, 0 starts every step from rest."),
     ("damping ratio ξ", "Damping over critical damping: at 5 % a cycle keeps 73 % of its amplitude, at 100 % none."),
     ("|λ|, spectral radius", "What a mode keeps of its amplitude in a step; at 1 it is not damped, above 1 it grows."),
     ("bar, continuum", "The same block, exact in space at the same steps; the continuum is exact in time as well."),

@@ -49,7 +49,7 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
     floors = sorted({budget["floor"] for budget in budgets if budget["floor"]})
     if floors:
         span = f"{floors[0]:.3f}" + (f" to {floors[-1]:.3f}" if floors[-1] != floors[0] else "")
-        said.append(f"DDA's first frequency is {span} times the bar's at any dt.")
+        said.append(f"DDA's first natural frequency is {span} times the bar's; a long step lowers both.")
     if any(budget["gg_rate"] for budget in budgets):
         said.append("The discount is held as a rate.")
     elif any(budget["gg"] < 1 for budget in budgets):

@@ -12,7 +12,19 @@ from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.studies.field.table import FAIL, MISSING, NOT_APPLICABLE, NOT_RUN, PASS, Cell, ProgramLine, read
+from validation.studies.field.table import (
+    FAIL,
+    JUDGED,
+    MISSING,
+    NOT_APPLICABLE,
+    NOT_RUN,
+    PARTIAL,
+    PASS,
+    Cell,
+    ProgramLine,
+    is_absent,
+    read,
+)
 from validation.studies.field.table import Table as Field
 
 NONE = "n. a."
@@ -23,7 +35,8 @@ SAID = (
     "accuracy and, below, with its defaults. What it cannot express is not applicable, and is not forced to fit."
 )
 NOTE = (
-    "Relative L2 error in per cent of the column that is worst relative to its band; n. a.: not applicable; a dash: no "
+    "Relative L2 error in per cent of the column that is worst relative to its band; PARTIAL: the columns that are "
+    "reported pass, others that the problem asks for are withheld; n. a.: not applicable; a dash: no "
     "answer; the reasons are given below. Time: of all answers together, with the start of the program, on this "
     "machine."
 )
@@ -55,13 +68,16 @@ def counted(found: Field) -> str:
     words = [cell.verdict for cell in others]
     failed = [cell for cell in others if cell.verdict == FAIL]
     named = sum(not cell.cause.startswith(NOT_EXPLAINED) for cell in failed)
-    there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in (PASS, FAIL)}
+    there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in JUDGED}
     if not there:
         return "No other program is installed here: README of examples/peers has a recipe for each."
-    passed, failing = words.count(PASS), words.count(FAIL)
+    passed = words.count(PASS)
+    partial = words.count(PARTIAL)
+    failing = words.count(FAIL)
+    in_part = f" and {partial} in part (a column is withheld)" if partial else ""
     return (
-        f"Other programs: {len(there)}, with {passed + failing} answers to {len(found.problems)} problems. "
-        f"Of these {passed} pass and {failing} fail, {named} of them with a cause that is certain."
+        f"Other programs: {len(there)}, with {passed + partial + failing} answers to {len(found.problems)} problems. "
+        f"Of these {passed} pass{in_part} and {failing} fail, {named} of them with a cause that is certain."
     )
 
 
@@ -89,7 +105,13 @@ def by_problem(found: Field) -> Table:
 
 def shown(found: Field) -> list[ProgramLine]:
     """Return the programs that are installed; one that gave no answer at all is among them."""
-    return [p for p in found.programs if p.installed and any(MISSING not in cell.reason for cell in _cells(found, p))]
+    return [program for program in found.programs if program.installed and not _is_away(found, program)]
+
+
+def _is_away(found: Field, program: ProgramLine) -> bool:
+    """Whether the adapter of a program is there and the program is not."""
+    cells = _cells(found, program)
+    return is_absent([(cell.verdict == NOT_APPLICABLE or MISSING in cell.reason, cell.reason) for cell in cells])
 
 
 def _cells(found: Field, program: ProgramLine) -> list[Cell]:
@@ -100,7 +122,7 @@ def _outcomes(found: Field, program: ProgramLine) -> Iterator[str]:
     for cell in _cells(found, program):
         if cell.verdict == NOT_RUN:
             yield DASH
-        elif cell.verdict in (PASS, FAIL):
+        elif cell.verdict in JUDGED:
             yield f"{cell.verdict} {error(cell)}".rstrip()
         else:
             yield NONE if cell.verdict == NOT_APPLICABLE else cell.verdict

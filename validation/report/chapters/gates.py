@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from validation.metrics.catalogue import is_count
 from validation.report.blocks import Block, Callout, Column, Heading, Table
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
@@ -13,8 +14,10 @@ ORDER = {"FAIL": 0, "NOT RUN": 1, "PASS": 2}
 NARROW = 7  # digits; a narrower band is written as middle and half width
 
 
-def value_cell(value: Value) -> str:
-    """Return the value of a verdict without needless zeros."""
+def value_cell(value: Value, metric: str = "") -> str:
+    """Return the value of a verdict on a metric without needless zeros; a count that is none is 0."""
+    if value == 0 and is_count(metric):
+        return "0"
     return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
 
 
@@ -46,7 +49,7 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
     rows: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
-        line = (v["verdict"], v["id"], value_cell(v["value"]), band(v))
+        line = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
         rows.setdefault(reason(v), []).append(line)
     lines: list[tuple[str, ...]] = []
     for why, own in rows.items():

@@ -11,7 +11,7 @@ from validation.problems.bands import Standard
 from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
-from validation.problems.told import Told
+from validation.problems.told import COUNTED, Told
 from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
 from validation.report.blocks import Column as TableColumn
 from validation.report.chapters.text import DASH, bounded, plain, short
@@ -38,6 +38,7 @@ class Judged:
     judgement: Judgement
     cause: Cause | None  # of a failure
     about: tuple[tuple[str, str], ...]  # what the answer says of itself: field and text
+    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
 def headline(judged: Judged) -> str:
@@ -47,7 +48,8 @@ def headline(judged: Judged) -> str:
     if decides is None or decides.band is None:
         return f"{found.verdict}: no column of it is judged."
     off = f"{per_cent(decides.error)} off in {united(decides.name)}, where {per_cent(decides.band)} is allowed"
-    return f"{found.verdict}: it is at most {off}." if found.word is Word.PASS else f"{found.verdict}: it is {off}."
+    within = found.word in (Word.PASS, Word.PARTIAL)
+    return f"{found.verdict}: it is at most {off}." if within else f"{found.verdict}: it is {off}."
 
 
 def reached(judged: Judged) -> str:
@@ -70,6 +72,7 @@ def page(judged: Judged, directory: Path) -> list[Block]:
     found = judged.judgement
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(found.word, "warn")
     blocks: list[Block] = [Callout(headline(judged), tone)]  # type: ignore[arg-type]
+    blocks += [Callout(sentence, "warn") for sentence in judged.warnings]
     if judged.cause is not None:
         blocks.append(Paragraph(f"Cause: {judged.cause.sentence}. {reached(judged)}"))
         if judged.cause.would_tell:
@@ -96,7 +99,12 @@ def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
             ANSWER: History(judged.history.time[:rows], {name: judged.history.columns[name][:rows]}),
         }
         panel = Panel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
-        caption = f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
+        if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
+            caption = f"The answer lies on the exact motion: {united(name)}."
+        else:
+            caption = (
+                f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
+            )
         figure = motion.history_figure([panel], name, apart=True)
         drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", caption))
     return drawn
@@ -126,12 +134,14 @@ def datum(column: Column, held: Standard) -> str:
 
 def _told(found: Sequence[Told]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
-    rows = [(one.name, _value(one.value), _value(one.exact), one.unit) for one in found]
+    rows = [(one.name, _value(one, one.value), _value(one, one.exact), one.unit) for one in found]
     return Table(titles, tuple(rows), "Further numbers, which are not judged.")
 
 
-def _value(value: float | None) -> str:
-    return DASH if value is None else bounded(value, plain(value))
+def _value(told: Told, value: float | None) -> str:
+    if value is None:
+        return DASH
+    return f"{value:.0f}" if told.name in COUNTED else bounded(value, plain(value))
 
 
 def _about(said: Sequence[tuple[str, str]]) -> Table:

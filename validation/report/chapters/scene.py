@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,11 +22,12 @@ from validation.report.chapters.text import (
     percent,
     plain,
     power,
+    short,
     span,
 )
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import COLUMNS, Panel, differences
-from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -104,8 +106,20 @@ def _agreement(group: Group) -> str:
             if values := _pair_values(group, solver, reference, metric):
                 said.append(f"{span(values)} in {name}")
         if said:
-            return f"against {reference}, {solver} differs by {' and '.join(said)} (relative L2)"
+            over = _windows(group, solver, reference)
+            return f"against {reference}, {solver} differs by {' and '.join(said)} (relative L2{over})"
     return "no pair of solvers was compared"
+
+
+def _windows(group: Group, solver: str, reference: str) -> str:
+    """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
+    own = [pair for pair in group.comparisons if {pair["solver"], pair["reference"]} == {solver, reference}]
+    longest = [max(float(pair.get("window") or 0.0) for pair in own if pair["scene"] == c.name) for c in group.cases
+               if any(pair["scene"] == c.name for pair in own)]  # fmt: skip
+    if not longest or min(longest) <= 0:
+        return ""
+    low, high = min(longest), max(longest)
+    return f" over {short(low)}\u00a0s" if high <= low * 1.001 else f", {short(low)} to {short(high)}\u00a0s"
 
 
 def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list[float]:
@@ -193,15 +207,15 @@ def history_block(
     shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
     window = min(_ends(shown), default=0.0)  # cases of one figure are compared over the same time
     calm = _calm(shown, columns, without)
-    panels = [_panel(case, columns, window, without) for case in shown]
     said = []
     if len(shown) < len(group.cases):
         said.append(f"{len(shown)} of {len(group.cases)} cases.")
     if calm < window:
         window = calm
-        said.append(f"The first {plain(window, 2)} s; all have settled then.")
+        said.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(_ends(shown), default=0.0) > window * 1.001:
         said.append(f"The first {plain(window, 3)} s, the time that all cases run.")
+    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in shown]
     said += [sentence for sentence in (_on_one(panels, columns), *_reading(panels, columns, apart)) if sentence]
     file = f"{group.slug}-history.svg"
     return histories.saved(motion.history_figure(panels, *columns, apart=apart), directory, file, " ".join(said))
@@ -241,13 +255,41 @@ def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> li
         said.append(f"Oscillations too dense to draw are the band that they fill; below, the first {plain(span, 2)} s.")
     if any(panel.static for panel in panels):
         said.append("Hairline: static value.")
+    sparse = {name for panel in panels for name in panel.sparse(columns)}
+    if sparse:
+        said.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
     if references and apart:
         said.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")
     return said
 
 
-def _panel(case: Case, columns: Sequence[str], window: float, without: Sequence[str]) -> Panel:
+def _finer(case: Case, cases: Sequence[Case]) -> dict[str, History]:
+    """Return the exact solutions of a case at the most instants that a case of the same motion has.
+
+    They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
+    zigzag.
+    """
+    finer: dict[str, History] = {}
+    for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
+        own = case.histories.get(solver)
+        same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
+        finest = min(same, key=lambda other: other.scene.time.step, default=case)
+        if own is not None and finest.scene.time.step < case.scene.time.step:
+            finer[solver] = finest.histories[solver]
+    return finer
+
+
+def _motion_of(case: Case) -> dict[str, Any]:
+    """Return the definition of a case without its steps."""
+    definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
+    time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
+    return definition | {"time": time}
+
+
+def _panel(
+    case: Case, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
+) -> Panel:
     some = {s: h for s, h in case.histories.items() if s not in without and set(columns) & set(h.columns)}
     shown = {s: h.until(window) for s, h in some.items()}
     reference = case.reference if case.reference in shown else None
@@ -257,7 +299,8 @@ def _panel(case: Case, columns: Sequence[str], window: float, without: Sequence[
         known = [case.number(solver, metric) for solver in (reference or "", "dda", *shown)]
         if (value := next((v for v in known if v is not None), None)) is not None:
             static[column] = value
-    return Panel("" if case.label == AS_STATED else case.label, shown, static, reference)
+    more = {solver: history.until(window) for solver, history in finer.items() if solver in shown}
+    return Panel("" if case.label == AS_STATED else case.label, shown, static, reference, finer=more)
 
 
 def drift_values(group: Group) -> list[tuple[int, float]]:

@@ -26,9 +26,9 @@ LOCKED = (
     "whole row and column. Their error in the rocking motion falls to a limit, not to zero; triangles converge."
 )
 GLUED = (
-    "Glue is a spring in series: the n − 1 joints of a column add (n − 1) / (2 glue_ratio) of its compliance, a floor "
-    "that more sub-blocks raise. Squares of soft glue give way in rows and squares of stiff glue lock, so that some "
-    "glue shares the error between both motions, and none removes it."
+    "Glue is a spring in series: the n − 1 joints of a column add (n − 1) w / (2 glue_ratio h) of its compliance, a "
+    "floor that more sub-blocks raise. Squares of soft glue give way in rows and squares of stiff glue lock, so that "
+    "some glue shares the error between both motions, and none removes it."
 )
 TURNING = (
     "Two corner springs resist rocking with p a² / 2, a foundation over the whole base with p a² / 6. No width of the "

@@ -67,6 +67,11 @@ def _name(point: Point | None) -> str:
     return f"{point.method} with dt = {step} ms{mesh} (in {spent} ms)"
 
 
+def _window(found: Sequence[Point]) -> str:
+    """Return the time that the runs take [s], over which their errors are measured."""
+    return " to ".join(sorted({short(point.scene.time.step * point.scene.time.steps, 3) for point in found}))
+
+
 def floor_sentence(found: Sequence[Point]) -> str:
     """Say where DDA's model form stops it."""
     levels = [floor(found, name, "continuum") for name in ("displacement", "contact pressure")]
@@ -74,8 +79,8 @@ def floor_sentence(found: Sequence[Point]) -> str:
         return "DDA was not run."
     v, p = (percent(float(level)) for level in levels if level is not None)
     return (
-        f"At the finest step DDA is {v} from the continuum in displacement and {p} in contact pressure: its model "
-        "form, which no finer step removes."
+        f"At the finest step DDA is {v} from the continuum in displacement and {p} in contact pressure (relative L2 "
+        f"over {_window(found)}\u00a0s): its model form, which no finer step removes."
     )
 
 

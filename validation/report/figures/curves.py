@@ -9,16 +9,19 @@ import itertools
 import math
 import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
 from validation.solvers.columns.names import AT_HEIGHTS
-from validation.solvers.contract import LineStyle
-from validation.solvers.registry import get_solver, is_solver
+from validation.solvers.contract import LineStyle, Role
+from validation.solvers.registry import by_role, get_solver, is_solver
 
+TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
+RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
+MOST_DOTS = 400  # samples; more dots cannot be told apart
 SMALL, HAIR = 7.0, 0.4  # pt
 GREY = "#6b6b6b"
 HOUSE_STYLE = {
@@ -132,13 +135,28 @@ class Panel:
     histories: Mapping[str, History]
     static: Mapping[str, float]  # static values by column, in its unit
     reference: str | None  # the solver that differences are taken from
+    base: History | None = None  # of the reference, where its own line is not drawn
+    like_base: str | None = None  # the drawn line that the reference lies on
+    finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
+
+    def sparse(self, columns: Sequence[str]) -> list[str]:
+        """Return the solvers that are drawn as dots in one of some columns."""
+        found = []
+        for column in columns:
+            found += [s for s, h in self.drawn(column).items() if is_sparse(s, h.time, h.columns[column])]
+        return found
+
+    def drawn(self, column: str) -> dict[str, History]:
+        """Return the histories that a column is drawn from, by solver."""
+        own = {name: self.finer.get(name, history) for name, history in self.histories.items()}
+        return {name: history for name, history in own.items() if column in history.columns}
 
 
 def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     found = [np.zeros(1)]
     for panel in panels:
-        found += [history.columns[column] for history in panel.histories.values() if column in history.columns]
+        found += [history.columns[column] for history in panel.drawn(column).values()]
     values = np.concatenate(found if len(found) > 1 else [np.zeros(1), np.ones(1)])
     values = values[np.isfinite(values)]
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
@@ -147,14 +165,32 @@ def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
 
 def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
     """Return the envelope of each solver's scaled difference from the reference."""
-    base = panel.histories.get(panel.reference or "")
+    base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:
         return {}
     scale = abs(panel.static.get(column, 0.0)) or float(np.abs(base.columns[column]).max()) or 1.0
     found = {}
     for solver, history in panel.histories.items():
-        if solver != panel.reference and history.time.size == base.time.size and column in history.columns:
+        if (
+            solver not in (panel.reference, panel.like_base)
+            and history.time.size == base.time.size
+            and column in history.columns
+        ):
             with np.errstate(all="ignore"):  # a run that blew up differs by infinity
                 scaled = (history.columns[column] - base.columns[column]) / scale
             found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
     return found
+
+
+def is_sparse(solver: str, x: Array, y: Array) -> bool:
+    """Whether an exact solution has too few instants to be joined: its lines would be a zigzag that is no motion.
+
+    A history that is stepped is what its steps are, and is joined.
+    """
+    exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
+    if not exact or x.size < 3 or x.size > MOST_DOTS:
+        return False
+    changes = np.diff(y)
+    large = np.abs(changes) > RIPPLE * np.ptp(y)
+    turning = (changes[1:] * changes[:-1] < 0) & large[1:] & large[:-1]
+    return bool(np.mean(turning) > TURNING)

@@ -22,6 +22,7 @@ from validation.report.figures.curves import (
     common_range,
     differences,
     engineering,
+    is_sparse,
     style_of,
     thin,
 )
@@ -55,7 +56,7 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
     are left out.
     """
     on_one = twins(panels, columns)
-    drawn = [replace(panel, histories=_kept(panel, on_one)) for panel in panels]
+    drawn = [_with_lines(panel, on_one) for panel in panels]
     span = start_of(drawn, columns[0])
     apart = apart and any(differences(panel, columns[0]) for panel in drawn)
     names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
@@ -121,8 +122,11 @@ def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str
     return worst
 
 
-def _kept(panel: Panel, on_one: Twins) -> dict[str, History]:
-    return {name: history for name, history in panel.histories.items() if name in on_one}
+def _with_lines(panel: Panel, on_one: Twins) -> Panel:
+    """Return a panel with the histories that are drawn; of the reference, which may lie on another, the base."""
+    own = {name: history for name, history in panel.histories.items() if name in on_one}
+    alike = next((name for name, others in on_one.items() if panel.reference in others), None)
+    return replace(panel, histories=own, base=panel.histories.get(panel.reference or ""), like_base=alike)
 
 
 # ---- long histories -----------------------------------------------------------------------------------------------
@@ -146,7 +150,8 @@ def start_of(panels: Sequence[Panel], column: str) -> float | None:
 
 
 def _until(panel: Panel, span: float) -> Panel:
-    return replace(panel, histories={name: history.until(span) for name, history in panel.histories.items()})
+    cut = {name: history.until(span) for name, history in panel.histories.items()}
+    return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
 
 def band(x: Array, y: Array) -> tuple[Array, Array, Array]:
@@ -180,13 +185,9 @@ def _ends(some: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[s
     """Return where each line ends, in the last panel that has it."""
     factor, ends = _scale(panels, column)[0], {}
     for panel in some:
-        for solver, history in _with(panel, column).items():
+        for solver, history in panel.drawn(column).items():
             ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
     return ends
-
-
-def _with(panel: Panel, column: str) -> dict[str, History]:
-    return {name: history for name, history in panel.histories.items() if column in history.columns}
 
 
 def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: tuple[float, float]) -> None:
@@ -195,7 +196,7 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: 
     pad = 0.05 * (high - low) or 1.0
     for axes, panel in zip(row, panels, strict=False):
         axes.set_ylim(factor * (low - pad), factor * (high + pad))
-        for solver, history in _with(panel, column).items():
+        for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
             _draw(axes, solver, history.time, values, swings(history, column) > SWINGS)
         _time_axis(axes, panel)
@@ -205,6 +206,9 @@ def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: 
 
 
 def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
+    if is_sparse(solver, x, y):
+        axes.plot(x, y, "o", ms=2.0, color=style_of(solver).color, zorder=2 + style_of(solver).layer)
+        return
     if not dense:
         draw_line(axes, solver, *thin(x, y))
         return

@@ -69,6 +69,13 @@ def step_for(scene: Scene, ratio: float) -> float | None:
     return float(brentq(lambda step: over_steps(scene, np.array([step]))[0] - ratio, steps[i], steps[i + 1]))
 
 
+def most_damped(scene: Scene) -> float:
+    """Return w dt at which a step of (1/2, 1) damps the first axial mode most, by its ratio."""
+    frequency = closed_forms.dda_frequency(scene)
+    turns = np.linspace(LOWEST, 4.0, 4 * POINTS)
+    return float(turns[np.nanargmax(over_steps(scene, turns / frequency))])
+
+
 def rate_for(scene: Scene, ratio: float) -> float:
     """Return the rate c [1/s] of gg = exp(-c dt) that damps the first axial mode by a ratio as dt tends to 0."""
     return 2 * closed_forms.dda_frequency(scene) * ratio
@@ -99,6 +106,21 @@ def transit(scene: Scene) -> float:
 def contact_radius(scene: Scene) -> float:
     """Return |lambda| of the contact mode over one step."""
     return closed_forms.spectral_radius(scene, closed_forms.contact_frequency(scene))
+
+
+def given_way(scene: Scene) -> float:
+    """Return how far the springs give way at rest over what the block itself shortens by to its centroid [1].
+
+    (a q / 2p) / (h q / 2E') = (w / h) E' / p: a rule on p alone holds for one slenderness.
+    """
+    E, _ = closed_forms.moduli(scene)
+    width, height = closed_forms.size(scene)
+    return width / height * E / scene.contact.stiffness
+
+
+def flips_beyond(scene: Scene) -> float:
+    """Return the step [s] beyond which (1/2, 1) has two negative roots for the contact mode: 4 / w."""
+    return 4 / closed_forms.contact_frequency(scene)
 
 
 def penetration(scene: Scene) -> float:

@@ -21,7 +21,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.field.programs import HABIT, known
 from validation.studies.field.scenes import scene_of
-from validation.studies.field.table import MISSING, STUDY
+from validation.studies.field.table import STUDY, is_absent
 
 APART = "difference from its integrator"
 ANSWERED = "problems answered"
@@ -100,7 +100,8 @@ def _answered(program: str, recipe: str) -> Callable[[Finished], Mapping[str, Va
     def compute(finished: Finished) -> Mapping[str, Value]:
         rows = [finished.rows.get((PREFIX + name, program)) for name in PROBLEMS]
         there = [row for row in rows if row is not None]
-        if not there or all(any(MISSING in note for note in row.notes) for row in there):
+        endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in there]
+        if not there or is_absent(endings):
             raise NothingToDerive(f"not installed: {recipe}")
         return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in there))}
 

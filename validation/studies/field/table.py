@@ -6,7 +6,7 @@ programs and the problems. `read` puts them together.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,10 +15,25 @@ from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 
 STUDY = "field"
-PASS, FAIL, NOT_RUN, NOT_APPLICABLE = "PASS", "FAIL", "NOT RUN", "not applicable"
+PASS, PARTIAL, FAIL, NOT_RUN, NOT_APPLICABLE = "PASS", "PARTIAL", "FAIL", "NOT RUN", "not applicable"
+JUDGED = (PASS, PARTIAL, FAIL)
 # A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
 WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
 MISSING = "is not installed"  # what an adapter says where its program is absent
+
+
+def is_absent(endings: Collection[tuple[bool, str]]) -> bool:
+    """Whether the runs of a program say that it is not there.
+
+    An adapter may refuse a problem before it looks for its program: what it refuses so says nothing about that.
+
+    Parameters
+    ----------
+    endings
+        Of each problem, whether the run ended without an answer that the program itself gave (not applicable, or the
+        program missing), and what it said.
+    """
+    return any(MISSING in reason for _, reason in endings) and all(refused for refused, _ in endings)
 
 
 @dataclass(frozen=True)
@@ -52,7 +67,7 @@ class Cell:
     problem, program
         Row and column of the table.
     verdict
-        PASS, FAIL, NOT RUN, not applicable or not judged.
+        PASS, PARTIAL (a column that the problem asks for is withheld), FAIL, NOT RUN, not applicable or not judged.
     says
         The verdict in full: what it does not speak of is named.
     cause

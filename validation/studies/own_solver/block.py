@@ -9,7 +9,7 @@ from validation.gates.gate import Status
 from validation.runs.run import Outcome
 from validation.studies.own_solver.evidence import diagnosis
 from validation.studies.own_solver.gates import GROUPS
-from validation.studies.own_solver.session import Told
+from validation.studies.own_solver.session import LARGEST, Told
 
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
 FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
@@ -28,7 +28,14 @@ def block(told: Sequence[Told], every: bool = False) -> list[str]:
     """
     judged = [t for t in told if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
     failed = [t for t in judged if t.status == Status.FAIL]
-    lines = [*_table(told), *_headline(judged, failed), *_failures(failed, every), *_endings(told), *_not_run(told)]
+    lines = [
+        *_table(told),
+        *_warnings(told),
+        *_headline(judged, failed),
+        *_failures(failed, every),
+        *_endings(told),
+        *_not_run(told),
+    ]
     return [*lines, *diagnosis(failed, first(judged, failed))]
 
 
@@ -43,6 +50,28 @@ def _table(told: Sequence[Told]) -> Iterator[str]:
         if own:
             counts = f"{passed:>8}{failed:>8}{len(own) - passed - failed - absent:>11}{absent:>9}"
             yield f"{group:<{WIDTH}}{counts}   {says}"
+
+
+def _warnings(told: Sequence[Told]) -> Iterator[str]:
+    """Yield what makes the verdicts worth less: a solver of the suite answered, or two runs differ."""
+    scenes = {t.scene for t in told if t.outcome == Outcome.COMPLETED}
+    for solver in dict.fromkeys(name for t in told for name in t.same_as.split()):
+        same = {t.scene for t in told if solver in t.same_as.split()}
+        yield (
+            f"\nidentical: bit for bit the histories of the suite's own {solver} in {len(same)} of {len(scenes)} "
+            "scenes; another program differs in its last digits: these gates judged the suite's solver"
+        )
+    apart = {t.scene: t for t in told if t.apart_in}
+    for t in apart.values():
+        yield (
+            f"\nnot repeatable: two runs of {t.scene} differ by {difference(t.apart)} in {t.apart_in} (relative L2); "
+            "verdicts may change from run to run, fix the seed or the race first"
+        )
+
+
+def difference(share: float) -> str:
+    """Return a relative difference in per cent, in words where it has no number."""
+    return f"{100 * share:.2g} %" if share < LARGEST else "more than can be told"
 
 
 # ---- what it tells --------------------------------------------------------------------------------------------------

@@ -8,17 +8,21 @@ from functools import cached_property
 from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
+from validation.engine.measure import completed
 from validation.engine.run import finish
 from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.metrics.sameness import is_identical, largest_difference
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver
-from validation.solvers.user import PARTS, UserSolver
+from validation.solvers.user import PARTS, SAME_AS, UserSolver
 from validation.studies.own_solver import gates, history
 
+REPEATED, SHORT = 2, 1000  # scenes that are run twice, and the most steps of one
 PATIENCE = 2  # scenes in which a solver may reach its time limit before the rest are not tried
+LARGEST = 1e300  # of a difference: JSON has no infinity
 ASKED_FOR = {"modes": "modes(scene)", "static": "static(scene)"}
 
 
@@ -40,6 +44,10 @@ class Told:
     outcome: str  # how the solver's run ended; empty where it was not asked
     key: str  # of its history in `results`
     results: str  # directory
+    same_as: str = ""  # solvers of the suite, separated by blanks, whose history of this scene is this one bit for bit
+    repeated: bool = False  # whether the scene was run twice
+    apart_in: str = ""  # the column in which the two runs differ most, by more than rounding
+    apart: float = 0.0  # by how much: relative L2 [1]
 
 
 class Session:
@@ -47,6 +55,8 @@ class Session:
 
     def __init__(self, user: str, results: Results) -> None:
         self.user, self.finished = user, Finished({}, results)
+        self._differences: dict[str, tuple[str, float]] = {}  # of the scenes that were run twice
+        self._same: dict[tuple[str, str], bool] = {}  # by scene and solver of the suite
 
     @cached_property
     def parts(self) -> frozenset[str]:
@@ -60,6 +70,7 @@ class Session:
         case = gates.cases(study)[gate.cases[0]]
         verdict = self._verdict(study, gate, case)
         row = self.finished.rows.get((case.scene.name, self.user))
+        apart_in, apart = self._differences.get(case.scene.name, ("", 0.0))
         return verdict, Told(
             gate.id,
             study,
@@ -75,6 +86,10 @@ class Session:
             "" if row is None else str(row.outcome),
             "" if row is None else row.key,
             str(self.finished.results.directory),
+            self._same_as(case.scene.name),
+            case.scene.name in self._differences,
+            apart_in,
+            min(apart, LARGEST),
         )
 
     def _verdict(self, study: str, gate: Gate, case: Case) -> Verdict:
@@ -98,7 +113,37 @@ class Session:
             if sum(row.outcome is Outcome.TIMEOUT for row in rows.values()) >= PATIENCE:
                 return None
             self._finish(study, [replace(case, solver=self.user)])
+            self._repeat(case)
         return rows[name]
+
+    def _repeat(self, case: Case) -> None:
+        """Run the first short scenes again and keep how far the two runs are apart."""
+        history = self.finished.history(case.scene.name, self.user)
+        if history is None or case.scene.time.steps > SHORT or len(self._differences) >= REPEATED:
+            return
+        again = completed(get_solver(self.user), case.scene)
+        if again.history is not None:
+            self._differences[case.scene.name] = largest_difference(history, again.history)
+
+    def _same_as(self, scene: str) -> str:
+        """Return the solvers of the suite whose history of a scene is the user's bit for bit.
+
+        `dda` is compared where the run is checked; of the others those that gates have needed.
+        """
+        row = self.finished.rows.get((scene, self.user))
+        if row is None:
+            return ""
+        same = [note.removeprefix(SAME_AS) for note in row.notes if note.startswith(SAME_AS)]
+        for name, solver in self.finished.rows:
+            if name != scene or solver == self.user:
+                continue
+            if (name, solver) not in self._same:
+                history = self.finished.history(name, self.user)
+                other = self.finished.history(name, solver)
+                self._same[name, solver] = history is not None and other is not None and is_identical(history, other)
+            if self._same[name, solver]:
+                same.append(solver)
+        return " ".join(same)
 
     def _finish(self, study: str, missing: list[Case]) -> None:
         found = finish(missing, gates.study_of(study), self.finished.results)

@@ -37,11 +37,28 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
 
 
 def by_poisson(group: Group) -> Mapping[float, dict[int, Case]]:
-    """Return the cases by Poisson ratio and degree."""
+    """Return the cases of the coarsest mesh by Poisson ratio and degree."""
     found: dict[float, dict[int, Case]] = {}
-    for case in group.cases:
+    for case in (case for case in group.cases if case.scene.fem.per_side == _coarsest(group)):
         found.setdefault(case.scene.block.poisson, {})[case.scene.fem.degree] = case
     return found
+
+
+def _coarsest(group: Group) -> int:
+    return min(case.scene.fem.per_side for case in group.cases)
+
+
+def coarse_error(group: Group) -> tuple[float, int, float] | None:
+    """Return the largest Poisson ratio that ran on a finer mesh, its elements a side, and how stiff the coarse one is.
+
+    The last is the share by which quadratic elements of the coarsest mesh displace less than those of the finer one.
+    """
+    finer = [case for case in group.cases if case.scene.fem.per_side > _coarsest(group)]
+    case = max(finer, key=lambda case: (case.scene.block.poisson, case.scene.fem.per_side), default=None)
+    if case is None:
+        return None
+    fine, coarse = case.number("fem", "displacement.static"), _moved(by_poisson(group)[case.scene.block.poisson])[1]
+    return (case.scene.block.poisson, case.scene.fem.per_side, 1 - coarse / fine) if fine and coarse else None
 
 
 def _moved(cases: Mapping[int, Case]) -> list[float | None]:
@@ -57,7 +74,7 @@ def locking_table(group: Group) -> Table:
         share = DASH if not linear or not quadratic else percent(linear / quadratic)
         rows.append((f"{poisson:g}", *shown, share))
     titles = (*columns("decimal", "μ", "linear", "quadratic"), *columns("text", "linear over quadratic"))
-    return Table(titles, tuple(rows), "v at rest [mm], plane strain, eight elements a side.")
+    return Table(titles, tuple(rows), f"v at rest [mm], plane strain, {_coarsest(group)} elements a side.")
 
 
 def locked_sentence(group: Group) -> str:
@@ -66,9 +83,17 @@ def locked_sentence(group: Group) -> str:
     linear, quadratic = _moved(cases)
     if not linear or not quadratic:
         return "Both degrees are needed to see locking."
+    error = coarse_error(group)
+    rest = ""
+    if error is not None:
+        ratio, elements, stiff = error
+        rest = (
+            f", but at μ = {ratio:g} {_coarsest(group)} of them a side are still {percent(stiff)} stiffer than "
+            f"{elements} a side"
+        )
     return (
-        f"Linear elements lock: at μ = {poisson:g} they keep {percent(linear / quadratic)} of the displacement, and "
-        "quadratic ones are the cure."
+        f"Linear elements lock: at μ = {poisson:g} they keep {percent(linear / quadratic)} of the displacement. "
+        f"Quadratic ones do not lock{rest}."
     )
 
 
