@@ -20,6 +20,7 @@ from validation.runs.results import KEPT
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
+from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
@@ -37,7 +38,8 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     The row with the metrics of the run itself, and the history where there is one.
     """
     try:
-        return _executed(case, key, study)
+        with one_thread():
+            return _executed(case, key, study)
     except Exception as error:  # of one case, which must not end the others
         return failed_row(case, key, study, error_text(error)), None
 
@@ -124,7 +126,8 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
     """Return the checked run of a scene, whatever its outcome."""
-    return checked(attempt(solver, scene, full, fields)[1], scene)
+    with one_thread():
+        return checked(attempt(solver, scene, full, fields)[1], scene)
 
 
 def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.run import Run
+from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
@@ -138,5 +139,5 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
     memory.check(scene, chosen)
-    with np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
+    with one_thread(), np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
         return checked(chosen.solve(scene, full=full), scene)
