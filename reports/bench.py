@@ -284,7 +284,7 @@ def two_workers(count: int = 16, n: int = 48) -> str:
 
 
 def typed_seconds(variables: dict[str, str]) -> float:
-    """Return the seconds of a study as the command line runs it, with the threads of BLAS that the environment names."""
+    """Return the seconds of a study as the command line runs it in an environment with these variables of BLAS."""
     plain = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     with tempfile.TemporaryDirectory() as directory:
         command = [sys.executable, "-m", "validation", "run", TYPED, "--quiet", "--results", directory]

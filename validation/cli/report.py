@@ -19,9 +19,12 @@ def report(
 
     Example: [bold]dda-validate report --out report.pdf[/bold]
     """
+    from validation.errors import InputError
     from validation.report.book import build
     from validation.runs.results import Results
 
+    if out.suffix.lower() != ".pdf":
+        raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
     typer.echo(f"wrote {build(Results(results), out)}")
 
 

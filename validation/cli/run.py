@@ -43,6 +43,7 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
+from validation.cli.signals import promise_rows
 
 FEW = 12  # gates of a scene that are shown one by one unasked
 
@@ -111,6 +112,7 @@ def run(
     from validation.studies.catalogue import resolve
 
     _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
+    promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
     before = _checked_baseline(kept, required, summary, baseline)

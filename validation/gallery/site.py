@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
@@ -16,6 +12,7 @@ from validation.gallery.cases import studies_and_scenes
 from validation.gallery.chapters import chapter_for
 from validation.gallery.pages import Pages
 from validation.report.book import ordered_studies
+from validation.runs.files import atomic_directory
 from validation.runs.results import Results
 
 STATIC = (
@@ -54,7 +51,7 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
     _check(out)
     studies, scenes = studies_and_scenes(results, ordered_studies(results))
     steps = iter(range(len(studies) + len(scenes)))
-    with _whole(out) as place:
+    with atomic_directory(out) as place:
         pages, chapters = Pages(results, studies, scenes), {}
         for study in studies:
             progress(next(steps), len(studies) + len(scenes), study.name)
@@ -89,35 +86,3 @@ def _check(out: Path) -> None:
         raise InputError(f"--out: must be a directory, got the file {out}")
     if out.is_dir() and any(out.iterdir()) and not (out / NOTICE).is_file():
         raise InputError(f"--out: must be a new or empty directory or an earlier gallery, got {out} with other files")
-
-
-@contextmanager
-def _whole(out: Path) -> Iterator[Path]:
-    """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
-
-    Raises
-    ------
-    InputError
-        The directory cannot be made or replaced.
-    """
-    place = out.absolute()
-    beside: Path | None = None
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}."))
-        new, old = beside / "new", beside / "old"
-        new.mkdir()
-        yield new
-        if place.exists():
-            os.replace(place, old)
-        try:
-            os.replace(new, place)
-        except OSError:
-            if old.exists():
-                os.replace(old, place)
-            raise
-    except OSError as error:
-        raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
-    finally:
-        if beside is not None:
-            shutil.rmtree(beside, ignore_errors=True)

@@ -81,6 +81,14 @@ class UserSolver(Solver):
             return PARTS
         return frozenset(answer.get("parts", PARTS))
 
+    def load_error(self) -> str | None:
+        """Return None, or why the solver cannot be loaded."""
+        try:
+            answer = ask(self.command(), environment(), {"parts": []}, base_limit())
+        except (WorkerHangs, WorkerDied) as error:
+            return words(str(error))
+        return words(str(answer["raised"])) if "raised" in answer else None
+
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
         try:
