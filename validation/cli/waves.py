@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -58,8 +59,6 @@ EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a col
 
 def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
     """Return the frequencies of a sweep [Hz], or refuse its ends."""
-    import math
-
     import numpy as np
 
     from validation.errors import InputError
@@ -121,18 +120,24 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     load = "per metre of base motion" if found.base else "under the scene's loads"
     typer.echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
     unit = "/m" if found.base else ""
+    limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
     rows: list[tuple[str, ...]] = [heads]
     for name, answer in answers.items():
         label = name if name == EXACT else "as stepped"
-        columns = [answer.peaks(column)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
+        sampled = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
+        columns = [_peaks_below(answer, column, sampled)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
         for i in range(max(map(len, columns), default=0)):
             cells = [(f"{p[i][0]:.6g}", f"{p[i][1]:.6g}") if i < len(p) else ("", "") for p in columns]
             rows.append((label, *cells[0], *cells[1]))
     print_table(rows if len(rows) > 1 else [("no peak in this range",)])
-    limit = 0.5 / case.time.step
-    if found.frequency[-1] > limit * (1 + 1e-12):
+    if found.frequency[-1] > limit:
         typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+def _peaks_below(answer: Response, column: str, limit: float) -> list[tuple[float, float]]:
+    """Return the peaks of a column up to a frequency [Hz]."""
+    return [peak for peak in answer.peaks(column) if peak[0] <= limit]
 
 
 @app.command()
@@ -182,7 +187,7 @@ def rayleigh(
     if tables is not None and tables.kinetic == "adaptive":
         typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
-    advice.check_band(*band)
+    advice.check_band(*band, scheme.step)
     _print_scheme(scheme, band)
     if figure is not None:
         _draw_ratios(scheme, band, figure)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from validation.gates.changes import Change
 
 DIFFERENCES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")  # shown where nothing is judged
+UNLIKE = 0.5  # relative difference (L2) from which two histories share less than half of the motion
 MOST = 20  # pairs that are shown
 
 
@@ -139,7 +140,13 @@ def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
 
 def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
     """Yield the lines of a gate for a scene that nothing has judged."""
-    first, metric = compared[0], DIFFERENCES[0]
+    metric = DIFFERENCES[0]
+    agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
+    if not agreeing:
+        yield f"next: no pair agrees within {100 * UNLIKE:g} % ({metric}), which is a finding and no tolerance:"
+        yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
+        return
+    first = agreeing[0]
     value = first["metrics"].get(metric)
     place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
     yield f"next: write {place} what you tolerate, with your reason, and run it again:"
@@ -153,6 +160,11 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
         yield "  band = [0.0, 0.1]"
     yield '  reason = "..."'
     yield "dda-validate list metrics names what can be bounded, dda-validate report draws the histories"
+
+
+def _agrees(value: object) -> bool:
+    """Whether a difference may be what a user tolerates; one that is not measured says nothing against it."""
+    return not isinstance(value, float | int) or value < UNLIKE
 
 
 def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
