@@ -12,7 +12,7 @@ import typer
 
 from validation.cli import compare, contact, damping, gallery, judge, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
-from validation.cli.printing.output import prepare, silence
+from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import caught, end
 from validation.errors import InputError
 from validation.runs.text import printable
@@ -89,7 +89,7 @@ def _guarded(act: Callable[[], object]) -> int:
         return _said(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
         if not error.format_message():  # no command: typer has printed none of its help
-            typer.echo(_help())
+            echo(_help())
             return BAD_INPUT
         return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
     except (KeyboardInterrupt, typer.Abort) as stop:
@@ -133,5 +133,5 @@ def _last(error: BaseException) -> str:
 
 
 def _said(line: str) -> int:
-    typer.echo(line, err=True)
+    echo(line, err=True)
     return BAD_INPUT

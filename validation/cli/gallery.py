@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import RESULTS, ResultsOption, _progress, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -28,4 +29,4 @@ def gallery(
 
     with _progress("gallery") as progress:
         page = build(Results(results), out, progress)
-    typer.echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")
+    echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

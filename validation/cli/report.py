@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import RESULTS, ResultsOption, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -25,7 +26,7 @@ def report(
 
     if out.suffix.lower() != ".pdf":
         raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
-    typer.echo(f"wrote {build(Results(results), out)}")
+    echo(f"wrote {build(Results(results), out)}")
 
 
 @app.command()
@@ -42,4 +43,4 @@ def figures(
     from validation.runs.results import Results
 
     for path in write_figures(study, Results(results), out):
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

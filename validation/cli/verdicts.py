@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import GATE_FAILED, PASSED, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -56,4 +57,4 @@ def export_pack(
         problems = write_problems(place, progress)
     counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
     exact = f"of contact that opens {numbers} exact numbers, of contact that slips {slipping}, of waves {waves}"
-    typer.echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")
+    echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.cli.app import SceneArgument, SetOption, app, one_case
+from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
@@ -86,7 +87,7 @@ def _write(found: Response, path: Path) -> None:
 
     lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in found.table().tolist())]
     write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
-    typer.echo(f"wrote {path}: {len(lines) - 1} frequencies")
+    echo(f"wrote {path}: {len(lines) - 1} frequencies")
 
 
 def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Path) -> None:
@@ -108,7 +109,7 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
         columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
         label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
         curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
-    typer.echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
+    echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
 
 
 def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
@@ -118,7 +119,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
 
     found = answers[EXACT]
     load = "per metre of base motion" if found.base else "under the scene's loads"
-    typer.echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
+    echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
     unit = "/m" if found.base else ""
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
@@ -132,7 +133,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
             rows.append((label, *cells[0], *cells[1]))
     print_table(rows if len(rows) > 1 else [("no peak in this range",)])
     if found.frequency[-1] > limit:
-        typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+        echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
 
 
 def _peaks_below(answer: Response, column: str, limit: float) -> list[tuple[float, float]]:
@@ -183,9 +184,9 @@ def rayleigh(
     tables = None if scene is None else one_case(scene, assignments).damping
     if tables is not None and tables.present:
         own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
-        typer.echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
+        echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
     if tables is not None and tables.kinetic == "adaptive":
-        typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
+        echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
     advice.check_band(*band, scheme.step)
     _print_scheme(scheme, band)
@@ -210,15 +211,15 @@ def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping,
     from validation.errors import InputError
 
     found = settings(wanted, scheme, keep_step)
-    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s\nto leading order: {found.words}")
+    echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s\nto leading order: {found.words}")
     if not points:
         return found
     try:
         found = exact_settings(points[0], points[1], scheme, keep_step)
     except InputError as error:
-        typer.echo(f"exactly: {error}")
+        echo(f"exactly: {error}")
     else:
-        typer.echo(f"exactly at both frequencies: {found.words}")
+        echo(f"exactly at both frequencies: {found.words}")
     return found
 
 
@@ -230,7 +231,7 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     from validation.cli.damping import print_table
 
     leading, fitted = hidden(scheme), matched(scheme, *band)
-    typer.echo(f"\n{scheme.words} hides the Rayleigh damping")
+    echo(f"\n{scheme.words} hides the Rayleigh damping")
     rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
     for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
         least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
@@ -238,7 +239,7 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     print_table(rows)
     frequency = np.geomspace(*band, 8)
     columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
-    typer.echo("")
+    echo("")
     heads = ("frequency [Hz]", "xi [%]", "leading order")
     print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
 
@@ -256,4 +257,4 @@ def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> Non
         "Rayleigh, leading order": hidden(scheme).ratio(f),
         "Rayleigh, exact at both ends": matched(scheme, *band).ratio(f),
     }
-    typer.echo(f"wrote {save_as(ratio_figure(f, lines), path)}")
+    echo(f"wrote {save_as(ratio_figure(f, lines), path)}")

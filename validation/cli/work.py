@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
+from validation.cli.printing.output import echo
 from validation.cli.signals import promise_rows
 
 StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
@@ -45,7 +46,7 @@ def rows(
     writer.writeheader()
     writer.writerows(lines)
     write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
-    typer.echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
+    echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
 
 
 @app.command()
@@ -76,7 +77,7 @@ def plot(
     if not series:
         _refuse_unknown({"--x": x, "--y": y}, list(dict.fromkeys(name for line in lines for name in line)), study)
         raise InputError(f"--x, --y: must be columns with positive numbers in common rows, got {x} and {y}")
-    typer.echo(f"wrote {save(columns_figure((x, y), series), out)}")
+    echo(f"wrote {save(columns_figure((x, y), series), out)}")
 
 
 def _refuse_unknown(axes: dict[str, str], known: list[str], study: str) -> None:
@@ -120,13 +121,13 @@ def record(
     finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
     if update:
         work_record.update(finished, study_cases(), reason)
-        typer.echo(f"wrote {work_record.PATH}")
+        echo(f"wrote {work_record.PATH}")
         return
     try:
         found = work_record.compare(finished, study_cases(), then)
     except ValueError as error:
         raise InputError(f"{work_record.PATH}: {error}") from None
     said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
-    typer.echo(f"worst ratio to the record: {said}")
+    echo(f"worst ratio to the record: {said}")
     if not all(value <= 1 + work_record.SLACK[part] for part, value in found.items()):
         raise typer.Exit(GATE_FAILED)

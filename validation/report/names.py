@@ -7,7 +7,7 @@ from typing import Any
 
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.runs.text import shown
+from validation.runs.text import shown, visible
 
 DOLLAR, ESCAPED = "$", r"\$"  # between two bare ones a figure sets mathematics
 NOT_SHOWN = ("definition", "key", "data")  # parts of a manifest that are read, not shown
@@ -20,7 +20,7 @@ def escaped(text: str) -> str:
 
 def unescaped(text: str) -> str:
     """Return a text for pages, which know no escaped dollar."""
-    return "".join(c if c in "\n\t" else shown(c) for c in text).replace(ESCAPED, DOLLAR)
+    return visible(text).replace(ESCAPED, DOLLAR)
 
 
 class Readable(Results):

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
 from rich import box
 from rich.markup import escape
 from rich.table import Table
@@ -15,7 +14,7 @@ from rich.text import Text
 
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
 from validation.cli.printing.listing import in_columns
-from validation.cli.printing.output import console
+from validation.cli.printing.output import console, echo
 from validation.gates.gate import Verdict, value_text
 from validation.runs.case_name import CaseName
 from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
@@ -124,7 +123,7 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
     if len(compared) > MOST:
         printer.print(f"and {len(compared) - MOST} more pairs; dda-validate report shows all", markup=False)
     for line in _next(compared, writable) if compared else [_alone(outcomes(results, study))]:
-        typer.echo(line)
+        echo(line)
 
 
 def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
@@ -179,7 +178,7 @@ def print_ends(results: Results, studies: list[str]) -> None:
     for study in studies:
         for case in results.manifest(study)["cases"]:
             if rows[case["key"]].outcome is not Outcome.COMPLETED:
-                typer.echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
+                echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
 
 
 def after_run(
