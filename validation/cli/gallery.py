@@ -24,9 +24,12 @@ def gallery(
 
     It works from its files, without a network; open index.html. Nothing is computed.
     """
+    from validation.cli.report import print_unread
     from validation.gallery.site import build, size
     from validation.runs.results import Results
 
+    kept = Results(results)
     with _progress("gallery") as progress:
-        page = build(Results(results), out, progress)
+        page = build(kept, out, progress)
+    print_unread(kept)
     echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

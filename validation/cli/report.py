@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from validation.runs.results import Results
 
 from validation.cli.app import RESULTS, ResultsOption, app
 from validation.cli.printing.output import echo
@@ -26,7 +29,18 @@ def report(
 
     if out.suffix.lower() != ".pdf":
         raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
-    echo(f"wrote {build(Results(results), out)}")
+    kept = Results(results)
+    page = build(kept, out)
+    print_unread(kept)
+    echo(f"wrote {page}")
+
+
+def print_unread(kept: Results) -> None:
+    """Say which studies this version cannot read, and why."""
+    from validation.report.book import ordered_studies, unread_studies
+
+    for study, reason in unread_studies(kept, ordered_studies(kept)).items():
+        echo(f"note: {study} is left out: {reason}", err=True)
 
 
 @app.command()

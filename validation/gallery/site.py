@@ -11,7 +11,7 @@ from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import studies_and_scenes
 from validation.gallery.chapters import chapter_for
 from validation.gallery.pages import Pages
-from validation.report.book import ordered_studies
+from validation.report.book import ordered_studies, unread_studies
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
 
@@ -37,7 +37,7 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
     Parameters
     ----------
     results
-        The results directory; no solver is called.
+        The results directory; no solver is called, and studies that this version cannot read are left out.
     out
         Directory to write: a new or empty one, or an earlier gallery, which is replaced as a whole.
     progress
@@ -49,7 +49,9 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
         There are no results, or they are damaged, or the directory is not one to write to.
     """
     _check(out)
-    studies, scenes = studies_and_scenes(results, ordered_studies(results))
+    names = ordered_studies(results)
+    unread = unread_studies(results, names)
+    studies, scenes = studies_and_scenes(results, [name for name in names if name not in unread])
     steps = iter(range(len(studies) + len(scenes)))
     with atomic_directory(out) as place:
         pages, chapters = Pages(results, studies, scenes), {}

@@ -41,7 +41,7 @@ class Readable(Results):
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: list[VerdictRecord] = _mapped(super().verdicts())
+        kept: list[VerdictRecord] = _mapped(super().readable_verdicts())
         return [v for v in kept if study is None or v["study"] == study]
 
 
