@@ -41,6 +41,10 @@ def pytest_configure(config: pytest.Config) -> None:
     # pytest-xdist registers it as well; without xdist the gates still carry it.
     config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
     if user := config.getoption("--dda-solver", None):
+        from validation.siblings import shadowed
+
+        if sentence := shadowed():
+            pytest.exit(sentence, returncode=2)
         from validation.solvers.registry import is_solver
 
         if not is_solver(user):

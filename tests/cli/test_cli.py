@@ -175,12 +175,12 @@ def interrupted(code: str) -> tuple[int, str, str]:
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_is_one_line() -> None:
-    assert interrupted("entry._commands = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
+    assert interrupted("entry.command_line = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
 
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_promises_rows_where_the_command_keeps_them() -> None:
-    code = "def slow(**options):\n    signals.promise_rows()\n    time.sleep(50)\nentry._commands = lambda: slow"
+    code = "def slow(**options):\n    signals.promise_rows()\n    time.sleep(50)\nentry.command_line = lambda: slow"
     assert interrupted(code) == KEPT
 
 

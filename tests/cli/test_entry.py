@@ -50,7 +50,7 @@ def test_errors_of_numbers_are_bad_input(error: Exception, monkeypatch: pytest.M
     def fail(**options: object) -> None:
         raise error
 
-    monkeypatch.setattr(entry, "_commands", lambda: fail)
+    monkeypatch.setattr(entry, "command_line", lambda: fail)
     assert refused("list").startswith("error: ")
 
 
@@ -58,7 +58,7 @@ def test_an_error_of_the_program_stays_one(monkeypatch: pytest.MonkeyPatch) -> N
     def fail(**options: object) -> None:
         raise ValueError("a fault of ours")
 
-    monkeypatch.setattr(entry, "_commands", lambda: fail)
+    monkeypatch.setattr(entry, "command_line", lambda: fail)
     with pytest.raises(ValueError, match="a fault of ours"):
         typed("list")
 
@@ -67,7 +67,7 @@ def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch: pytest.Monkey
     def warn(**options: object) -> None:
         warnings.warn_explicit("overflow", RuntimeWarning, "scipy/linalg.py", 1, module="scipy.linalg")
 
-    monkeypatch.setattr(entry, "_commands", lambda: warn)
+    monkeypatch.setattr(entry, "command_line", lambda: warn)
     done = typed("list")
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -77,7 +77,7 @@ def test_the_version_is_that_of_the_distribution() -> None:
     assert (done.returncode, done.stdout) == (0, f"dda-validate {importlib.metadata.version('dda-validation')}\n")
 
 
-def test_no_command_shows_the_commands() -> None:
+def test_no_command_shows_thecommand_line() -> None:
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert "export-pack" in done.stdout

@@ -67,7 +67,7 @@ def main() -> None:
         # Where numbers leave the range a library's warning is no text for a terminal, and our own ends the command.
         warnings.filterwarnings("ignore", category=RuntimeWarning)
         warnings.filterwarnings("error", category=RuntimeWarning, module=r"(dda|fem_reference|validation)(\.|$)")
-        status = _guarded(lambda: _commands()(standalone_mode=False))
+        status = _guarded(lambda: command_line()(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
         _guarded(sys.stdout.flush)
         end()
@@ -75,7 +75,7 @@ def main() -> None:
 
 
 @cache
-def _commands() -> Callable[..., object]:
+def command_line() -> Callable[..., object]:
     """Return the commands, which typer reads from the signatures of their functions, once in a process."""
     return typer.main.get_command(app)
 
