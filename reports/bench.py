@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import subprocess
 import sys
 import tempfile
 import time
@@ -37,8 +38,11 @@ from validation.engine.run import run_study  # noqa: E402
 from validation.engine.study import Study  # noqa: E402
 from validation.runs.results import Results  # noqa: E402
 from validation.runs.run import Outcome  # noqa: E402
+from validation.runs.threads import VARIABLES  # noqa: E402
 from validation.solvers.registry import get_solver  # noqa: E402
 
+TYPED = "stiff-contact"  # the study that is run as typed
+AS_TYPED = 1.5  # largest ratio of its seconds over those on one BLAS thread
 TABLE = HERE.parent / "docs" / "speed.md"
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 PAPER = (0.5, 1.0, 1.0, 1e-3)  # alpha, delta, gg, dt [s]
@@ -279,6 +283,28 @@ def two_workers(count: int = 16, n: int = 48) -> str:
     return f"A sweep of {count} scenes by `fem` takes {one:.2g} s on one worker and {two:.2g} s on two."
 
 
+def typed_seconds(variables: dict[str, str]) -> float:
+    """Return the seconds of a study as the command line runs it in an environment with these variables of BLAS."""
+    plain = {name: value for name, value in os.environ.items() if name not in VARIABLES}
+    with tempfile.TemporaryDirectory() as directory:
+        command = [sys.executable, "-m", "validation", "run", TYPED, "--quiet", "--results", directory]
+        began = time.perf_counter()
+        subprocess.run(command, env=plain | variables, cwd=HERE.parent, check=True)
+        return time.perf_counter() - began
+
+
+def threads_line(repeats: int = 2) -> str:
+    """Return the line of a study as typed over the same on one BLAS thread, by turns, the least seconds of each."""
+    typed, single = [], []
+    for _ in range(repeats):
+        typed.append(typed_seconds({}))
+        single.append(typed_seconds({"OMP_NUM_THREADS": "1"}))
+    ratio = min(typed) / min(single)
+    if ratio > AS_TYPED:
+        raise SystemExit(f"run {TYPED}: as typed {ratio:.2f} times as long as on one BLAS thread, above {AS_TYPED}")
+    return f"| run {TYPED} | {min(typed):.2g} | {min(single):.2g} | **{ratio:.2f}** | {AS_TYPED} |"
+
+
 PAGE = """# Speed
 
 Written by `make bench` ({machine}, Python {python}, numpy {numpy}); one BLAS thread on both sides, run by turns,
@@ -317,6 +343,15 @@ no state of any step is kept. The elements keep the vectors of the small space, 
 vectors (at most 400), beside the factor of one sparse matrix; the results directory 8 (1 + columns) n bytes a case.
 
 {sweep}
+
+## Threads
+
+A command as typed, without any variable set, over the same command with OMP_NUM_THREADS=1: every process of the suite
+takes one BLAS thread, unless the environment says otherwise.
+
+| what | as typed [s] | one thread [s] | ratio | at most |
+|---|---|---|---|---|
+{threads}
 """
 
 
@@ -334,6 +369,7 @@ def main() -> None:
         elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),
+        threads=threads_line(1 if quick else 2),
     )
     if quick:
         print(page)

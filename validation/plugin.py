@@ -41,12 +41,28 @@ def pytest_configure(config: pytest.Config) -> None:
     # pytest-xdist registers it as well; without xdist the gates still carry it.
     config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
     if user := config.getoption("--dda-solver", None):
+        from validation.siblings import shadowed
+
+        if sentence := shadowed():
+            pytest.exit(sentence, returncode=2)
         from validation.solvers.registry import is_solver
 
         if not is_solver(user):
             known = "module:attribute, or a name that `dda-validate list` shows"
             raise pytest.UsageError(f"--dda-solver: must be {known}, got {user!r}")
         os.environ["DDA_VALIDATE_TIMEOUT"] = str(config.getoption("--dda-timeout"))
+        if not hasattr(config, "workerinput"):  # the workers of pytest-xdist need not try it again
+            _check_loads(user)
+
+
+def _check_loads(user: str) -> None:
+    """Refuse a solver that cannot be loaded, once and in one line, before any gate is run."""
+    from validation.solvers.registry import get_solver
+    from validation.solvers.user import UserSolver
+
+    solver = get_solver(user)
+    if isinstance(solver, UserSolver) and (reason := solver.load_error()):
+        raise pytest.UsageError(f"--dda-solver: {user} cannot be loaded: {reason}")
 
 
 @pytest.fixture(scope="session")
@@ -57,9 +73,13 @@ def finished_cases(request: pytest.FixtureRequest, tmp_path_factory: pytest.Temp
 
 
 @pytest.fixture
-def tell(record_property: Callable[[str, object], None]) -> Callable[[Mapping[str, object]], None]:
-    """Return a function that hands what a gate said of a user's solver to the block at the end."""
-    return lambda said: record_property(TOLD, json.dumps(said))
+def tell(request: pytest.FixtureRequest) -> Callable[[Mapping[str, object]], None]:
+    """Return a function that hands what a gate said of a user's solver to the block at the end.
+
+    The fixture `record_property` of pytest does the same, with a warning for each gate under --junitxml.
+    """
+    properties = request.node.user_properties
+    return lambda said: properties.append((TOLD, json.dumps(said)))
 
 
 @pytest.hookimpl(tryfirst=True)

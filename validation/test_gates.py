@@ -11,6 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from validation.siblings import shadowed
+
+if sentence := shadowed():  # before the imports that would fail on it
+    pytest.exit(sentence, returncode=2)
+
 from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate

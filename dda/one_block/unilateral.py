@@ -169,11 +169,14 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
         )
     law = model.contact
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
-        raise ValueError(f"rule: {CONSERVING} contact needs a finite stiffness and no band, got {law}")
+        raise ValueError(
+            f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
+            f"got stiffness = {law.stiffness:g} and band = {law.band}"
+        )
     if options.rule == CONSERVING and model.motion is not None:
         raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
     if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
-        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law}")
+        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law.shear:g}")
     check_scheme(law, scheme)
 
 

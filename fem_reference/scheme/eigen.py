@@ -97,10 +97,13 @@ def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
 def highest_frequency(problem: Problem, full: bool = False, model: Model | None = None) -> float:
     """Largest natural frequency of the mesh [rad/s], which limits a conditionally stable scheme."""
     model = build(problem, full) if model is None else model
-    size = len(model.F)
+    return largest_frequency(model.K, model.M)
+
+
+def largest_frequency(K: csr_array, M: csr_array) -> float:
+    """Largest natural frequency of M D'' + K D = 0 [rad/s]."""
+    size = K.shape[0]
     if size <= DENSE:
-        return float(np.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1]))
-    largest = eigsh(
-        csc_array(model.K), 1, csc_array(model.M), which="LA", v0=_start_vector(size), return_eigenvectors=False
-    )
+        return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
+    largest = eigsh(csc_array(K), 1, csc_array(M), which="LA", v0=_start_vector(size), return_eigenvectors=False)
     return float(np.sqrt(largest[0]))

@@ -139,4 +139,4 @@ def test_ratios_out_of_reach_and_out_of_range_are_refused() -> None:
         with pytest.raises(InputError, match=rule):
             rayleigh.scheme_of(values)
     with pytest.raises(InputError, match="--from, --to"):
-        rayleigh.check_band(3.0, 2.0)
+        rayleigh.check_band(3.0, 2.0, 0.01)

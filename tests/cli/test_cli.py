@@ -158,7 +158,8 @@ def test_an_interruption_says_that_finished_rows_are_kept(scene_file: Path, tmp_
     assert said.strip() == "interrupted: finished rows are kept; run the same command again to continue"
 
 
-INTERRUPTED = (130, "", "interrupted: finished rows are kept; run the same command again to continue\n")
+INTERRUPTED = (130, "", "interrupted\n")
+KEPT = (130, "", "interrupted: finished rows are kept; run the same command again to continue\n")
 
 
 def interrupted(code: str) -> tuple[int, str, str]:
@@ -174,7 +175,13 @@ def interrupted(code: str) -> tuple[int, str, str]:
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_is_one_line() -> None:
-    assert interrupted("entry._commands = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
+    assert interrupted("entry.command_line = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interruption_promises_rows_where_the_command_keeps_them() -> None:
+    code = "def slow(**options):\n    signals.promise_rows()\n    time.sleep(50)\nentry.command_line = lambda: slow"
+    assert interrupted(code) == KEPT
 
 
 @pytest.mark.usefixtures("interruptible")

@@ -13,7 +13,7 @@ import pytest
 from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.errors import InputError
-from validation.gallery import chapters, judged, pages, scene_data, site, verdicts, work
+from validation.gallery import chapters, judged, pages, scene_data, verdicts, work
 from validation.gallery.calculators import BLOCK, CALCULATORS, Control
 from validation.gallery.cases import GalleryCase, GalleryScene, GalleryStudy, studies_and_scenes
 from validation.gallery.histories import Sampling
@@ -21,6 +21,7 @@ from validation.gallery.pages import Pages, environment
 from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
 from validation.report.blocks import Column, Table
+from validation.runs import files
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -201,8 +202,8 @@ def test_the_earlier_gallery_returns_where_the_new_one_cannot_take_its_place(
             raise OSError(28, "No space left on device")
         move(source, target)
 
-    monkeypatch.setattr(site.os, "replace", stubborn)
-    with pytest.raises(InputError, match="cannot be written: No space left"), site._whole(out) as place:
+    monkeypatch.setattr(files.os, "replace", stubborn)
+    with pytest.raises(InputError, match="cannot be written: No space left"), files.atomic_directory(out) as place:
         (place / "page").write_text("new")
     assert (out / "page").read_text() == "earlier" and [path.name for path in tmp_path.iterdir()] == ["out"]
 

@@ -125,6 +125,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
+        "solvers/blocks/closed.py",
         "solvers/blocks/opening.py",
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",

@@ -7,13 +7,15 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import typed
+from conftest import refused, typed
 
+from validation.errors import InputError
 from validation.problems import pack
 from validation.problems.data import PACK, ProblemData, SubmissionData, united
 from validation.problems.judge import judge
 from validation.problems.problem import PROBLEMS
 from validation.problems.submission import read_submission
+from validation.studies import pack as studies_pack
 
 QUICK = ("locked", "rocking", "column")
 FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody"}
@@ -66,6 +68,57 @@ def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
     assert [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4][
         -len(QUICK) :
     ] == list(QUICK)
+
+
+@pytest.fixture
+def short_pack(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let export-pack write its first page only."""
+    monkeypatch.setattr(studies_pack, "write_pack", lambda place: write_readme(place))
+    for name in (
+        "contact.pack.write_contact_pack",
+        "contact.slipping_pack.write_slipping_pack",
+        "waves.pack.write_waves_pack",
+    ):
+        monkeypatch.setattr(f"validation.studies.{name}", lambda place: 0)
+    monkeypatch.setattr("validation.problems.pack.write_problems", lambda place, progress: 0)
+
+
+def write_readme(place: Path) -> studies_pack.Written:
+    (place / "README.md").write_text(studies_pack.README)
+    return studies_pack.Written(1, 1, 1)
+
+
+@pytest.mark.usefixtures("short_pack")
+def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path: Path) -> None:
+    place = tmp_path / "pack"
+    assert typed("export-pack", place).returncode == 0
+    (place / "old.csv").write_text("1")
+    assert typed("export-pack", place).returncode == 0
+    assert [path.name for path in place.iterdir()] == ["README.md"]
+    assert [path.name for path in tmp_path.iterdir()] == ["pack"]
+
+
+@pytest.mark.usefixtures("short_pack")
+def test_a_users_directory_is_not_written_to(tmp_path: Path) -> None:
+    (tmp_path / "README.md").write_text("# Mine\n")
+    assert "must be a new or empty directory or an earlier pack" in refused("export-pack", tmp_path)
+    assert "must be a directory, got a file" in refused("export-pack", tmp_path / "README.md")
+    assert (tmp_path / "README.md").read_text() == "# Mine\n"
+
+
+@pytest.mark.usefixtures("short_pack")
+def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(place: Path, progress: object) -> int:
+        raise InputError("interrupted")
+
+    place = tmp_path / "pack"
+    typed("export-pack", place)
+    monkeypatch.setattr("validation.problems.pack.write_problems", interrupt)
+    (place / "mark").touch()
+    refused("export-pack", place)
+    refused("export-pack", tmp_path / "new")
+    assert (place / "mark").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["pack"]
 
 
 @pytest.mark.long

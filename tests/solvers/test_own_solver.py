@@ -209,6 +209,19 @@ def test_a_word_that_names_no_solver_is_refused() -> None:
 
 
 @pytest.mark.long
+def test_a_solver_that_cannot_be_loaded_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    shown = through_the_gates("nope:solve", tmp_path)
+    assert "ERROR: --dda-solver: nope:solve cannot be loaded: ModuleNotFoundError: No module named 'nope'" in shown
+    assert "failed" not in shown
+
+
+def test_a_report_of_junit_brings_no_warnings(tmp_path: Path) -> None:
+    (tmp_path / "short.py").write_text("def solve(scene):\n    return [0.0], [0.0]\n")
+    shown = through_the_gates("short:solve", tmp_path, "--junitxml=j.xml", "-k", "figures-3-4 and settling", "-n0")
+    assert "warning" not in shown
+    assert "dda-validation" in (tmp_path / "j.xml").read_text()
+
+
 def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: Path) -> None:
     shown = through_the_gates("my_solver.py", tmp_path)
     assert "ERROR: --dda-solver: must be module:attribute, or a name that `dda-validate list` shows" in shown

@@ -37,6 +37,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
+LARGEST_RATIO = 2.0  # of critical damping; what is asked beyond was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
@@ -158,7 +159,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     Raises
     ------
     InputError
-        The scene has a sweep, the target is not a number of at least 0, or `solve_for` is unknown.
+        The scene has a sweep, the target is not a number from 0 to `LARGEST_RATIO`, or `solve_for` is unknown.
 
     Examples
     --------
@@ -169,6 +170,11 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     """
     if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
         raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
+    if damping > LARGEST_RATIO:
+        raise InputError(
+            f"damping: must be a damping ratio from 0 to {LARGEST_RATIO:g}, where 1 is critical, got {damping:g}; "
+            f"{damping:g} % is {damping / 100:g}"
+        )
     if solve_for not in KINDS:
         raise InputError(f"solve_for: must be one of {', '.join(KINDS)}, got {solve_for!r}")
     features.refuse_damping(scene, "advise")

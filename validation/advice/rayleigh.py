@@ -127,10 +127,27 @@ def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayle
     return found
 
 
-def check_band(low: float, high: float) -> None:
-    """Refuse the ends of a range of frequencies that is none."""
+def check_band(low: float, high: float, step: float) -> None:
+    """Refuse the ends of a range of frequencies that is none, or that a step does not sample."""
     if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
         raise InputError(f"--from, --to: must be positive and in this order, got {low:g} and {high:g}")
+    check_sampled(high, step, "--to")
+
+
+def check_sampled(frequency: float, step: float, field: str) -> None:
+    """Refuse a frequency that a time step samples less than twice a period: the steps see its alias, a lower one.
+
+    Raises
+    ------
+    InputError
+        The frequency is above 1 / (2 dt).
+    """
+    limit = 0.5 / step
+    if frequency > limit * (1 + 1e-12):
+        raise InputError(
+            f"{field}: must be at most {limit:.6g} Hz, 1 / (2 dt) of the time step {step:g} s, beyond which the steps "
+            f"see an alias, got {frequency:g}; take a lower frequency or a smaller step"
+        )
 
 
 def hidden(stepping: Stepping) -> Rayleigh:

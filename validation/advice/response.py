@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from validation.advice.spectra import checked
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Solver
@@ -67,6 +68,7 @@ def polar(amplitude: Complex) -> tuple[Array, Array]:
     return size, np.arctan2(across, amplitude.real)
 
 
+@one_thread()
 def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: bool = False) -> Response:
     """Return the frequency response of a linear scene.
 

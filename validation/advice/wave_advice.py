@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from dda.scheme.spectral import critical_omega
-from validation.advice.rayleigh import hidden, ratio
+from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency, percent
 from validation.errors import InputError
@@ -159,10 +159,12 @@ def advise_wave(
     Raises
     ------
     InputError
-        A number is out of range, or the scene is not linear or no such column.
+        A number is out of range, or the scene is not linear or no such column, or its step samples the wave less than
+        twice a period.
     """
     _check(frequency, loss, wavelengths, phase_error)
     check_scene(scene)
+    check_sampled(frequency, scene.time.step, "--fmax")
     features.refuse_damping(scene, "advise")
     layers = layers_of(scene)
     way = _Way(layers, frequency, 1.0)

@@ -24,6 +24,25 @@ app: typer.Typer = typer.Typer(
     help="Cross-validation of Discontinuous Deformation Analysis (DDA) against finite elements and exact solutions "
     "on the two-block model.\n\nExample: [bold]dda-validate run core && dda-validate report[/bold]",
 )
+
+
+def _print_version(requested: bool) -> None:
+    if requested:
+        from importlib.metadata import version
+
+        typer.echo(f"dda-validate {version('dda-validation')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and exit.", callback=_print_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Take the options that stand before a command."""
+
+
 ResultsOption = Annotated[Path, typer.Option("--results", help="Results directory.", metavar="DIR")]
 SetOption = Annotated[
     list[str] | None,

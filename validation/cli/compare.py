@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from validation.cli.app import SetOption, app, one_case
+from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
     from validation.compare.diagnosis import Answer
@@ -59,7 +60,7 @@ def compare(
 
         write_page(case, history.name, answer, report)
     if as_json:
-        typer.echo(json.dumps(answer.as_dict(), indent=1, allow_nan=False))
+        echo(json.dumps(answer.as_dict(), indent=1, allow_nan=False))
     else:
         _print(answer)
     if answer.departs:
@@ -77,25 +78,25 @@ def _print(answer: Answer) -> None:
     from validation.compare.causes import CAUSES
     from validation.compare.sentences import cleaned, per_cent, told_lines
 
-    typer.echo(answer.sentence)
+    echo(answer.sentence)
     if answer.causes:
-        typer.echo("\ncauses")
+        echo("\ncauses")
         for name in answer.causes:
             number = f"{answer.values[name]:.5g}" if name in answer.values else ""
-            typer.echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
+            echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
     for one in answer.alike:
-        typer.echo(f"\n{_listed(one)} would give the same history here; to tell them apart, try {one['further_scene']}")
+        echo(f"\n{_listed(one)} would give the same history here; to tell them apart, try {one['further_scene']}")
     if answer.evidence:
-        typer.echo("\nevidence")
+        echo("\nevidence")
         for stage in answer.evidence:
             mark = {True: "right", False: "wrong", None: "-"}[stage.agrees]
-            typer.echo(f"  {stage.name:<18} {mark:<6} {stage.words}")
+            echo(f"  {stage.name:<18} {mark:<6} {stage.words}")
     if answer.opened:
-        typer.echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
-    typer.echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
+        echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
+    echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
     for row in answer.ranking[:SHOWN]:
         soft = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
         name = row["name"] or ("exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}")
-        typer.echo(f"  {row['model']:<10} {name:<24} {per_cent(row['misfit']):>10} {soft:>14}")
+        echo(f"  {row['model']:<10} {name:<24} {per_cent(row['misfit']):>10} {soft:>14}")
     for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
-        typer.echo(line)
+        echo(line)

@@ -10,6 +10,7 @@ import typer
 
 from validation.cli.app import NUMERICAL_FAILURE, PASSED, SceneArgument, SetOption, app, one_case, refuse_bad_input
 from validation.cli.damping import JsonOption
+from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
@@ -41,9 +42,9 @@ def contact(
     rows, absent = _rows(scenes)
     found = contact_page.answer(case, rows, error, penetration, _probe(scenes[contact_page.exact()]))
     if as_json:
-        typer.echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
+        echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
     else:
-        typer.echo("\n".join(contact_page.page(case, found, absent)))
+        echo("\n".join(contact_page.page(case, found, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

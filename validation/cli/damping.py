@@ -11,7 +11,7 @@ import typer
 
 from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, app, one_case
 from validation.cli.printing.listing import in_columns
-from validation.cli.printing.output import broken, terminal_width
+from validation.cli.printing.output import broken, echo, terminal_width
 
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
@@ -31,7 +31,7 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
 
     found = analyse(one_case(scene, assignments), references=True)
     if as_json:
-        typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+        echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
     else:
         _print_damping(found)
 
@@ -92,9 +92,9 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
 
     found = advise_wave(case, fmax, *limits)
     if as_json:
-        typer.echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+        echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
         return
-    typer.echo(f"{broken(found.sentence)}\n{broken(found.advice)}\n")
+    echo(f"{broken(found.sentence)}\n{broken(found.advice)}\n")
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", found.present), ("advised", found.advised)):
         if passage is not None:
@@ -114,7 +114,7 @@ def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) 
         data = found.as_dict()
         for solution, error in zip(data["solutions"], errors, strict=True):
             solution["errors"] = error
-        typer.echo(json.dumps(data, indent=1, allow_nan=False))
+        echo(json.dumps(data, indent=1, allow_nan=False))
     else:
         _print_advice(found, errors)
 
@@ -141,7 +141,7 @@ def claims(
     for claim in CLAIMS:
         verdict = measured.get(claim.id)
         words = "not run" if verdict is None else Finding(int(verdict)).words
-        typer.echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
+        echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
     if out is not None:
         text = page(CLAIMS, rows)
         write_atomically(out, lambda stream: stream.write(text.encode()))
@@ -149,7 +149,7 @@ def claims(
 
 def _print_damping(found: Damping) -> None:
     rate = "" if found.gg_rate is None else f", c = {found.gg_rate:.4g} 1/s"
-    typer.echo(f"{broken(found.sentence)}\n\ngg = {found.gg:.6g} per step{rate}")
+    echo(f"{broken(found.sentence)}\n\ngg = {found.gg:.6g} per step{rate}")
     tables = any(mode.viscous for mode in found.modes)
     parts = ("algorithmic", "kinetic", "viscous") if tables else ("algorithmic", "kinetic")
     heads = ("mode", "w [rad/s]", "w dt", "xi [%]", *parts, "|lambda|", "w/w' - 1")
@@ -175,14 +175,14 @@ def _print_damping(found: Damping) -> None:
             f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
             f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
         )
-        typer.echo(f"\n{broken(said)}")
+        echo(f"\n{broken(said)}")
 
 
 def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
-    typer.echo(broken(found.sentence))
+    echo(broken(found.sentence))
     for solution, error in zip(found.solutions, errors, strict=True):
-        typer.echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
-        typer.echo(in_columns(_facts(solution, error), terminal_width()))
+        echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
+        echo(in_columns(_facts(solution, error), terminal_width()))
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -214,4 +214,4 @@ def print_table(rows: list[tuple[str, ...]]) -> None:
     """Print rows in aligned columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
-        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+        echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

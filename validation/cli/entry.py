@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
+import warnings
 from collections.abc import Callable
 from functools import cache
 
@@ -10,7 +12,7 @@ import typer
 
 from validation.cli import compare, contact, damping, gallery, judge, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
-from validation.cli.printing.output import prepare, silence
+from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import caught, end
 from validation.errors import InputError
 from validation.runs.text import printable
@@ -41,6 +43,9 @@ FIRST = (
     "damping",
     "advise",
 )  # of the help
+OUT_OF_RANGE = (
+    "the numbers leave the range of double precision; a value of the scene or an option is far too large or too small"
+)
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
@@ -48,6 +53,9 @@ def _place(name: str | None) -> int:
     return FIRST.index(name) if name in FIRST else len(FIRST)
 
 
+for command in app.registered_commands:  # typer keeps the line breaks of a docstring, which are not those of a terminal
+    paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
+    command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
 app.registered_commands.sort(key=lambda command: _place(command.name or getattr(command.callback, "__name__", None)))
 
 
@@ -55,7 +63,11 @@ app.registered_commands.sort(key=lambda command: _place(command.name or getattr(
 def main() -> None:
     """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
     prepare()
-    status = _guarded(lambda: _commands()(standalone_mode=False))
+    with warnings.catch_warnings():
+        # Where numbers leave the range a library's warning is no text for a terminal, and our own ends the command.
+        warnings.filterwarnings("ignore", category=RuntimeWarning)
+        warnings.filterwarnings("error", category=RuntimeWarning, module=r"(dda|fem_reference|validation)(\.|$)")
+        status = _guarded(lambda: command_line()(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
         _guarded(sys.stdout.flush)
         end()
@@ -63,7 +75,7 @@ def main() -> None:
 
 
 @cache
-def _commands() -> Callable[..., object]:
+def command_line() -> Callable[..., object]:
     """Return the commands, which typer reads from the signatures of their functions, once in a process."""
     return typer.main.get_command(app)
 
@@ -76,11 +88,24 @@ def _guarded(act: Callable[[], object]) -> int:
     except InputError as error:
         return _said(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
+        if not error.format_message():  # no command: typer has printed none of its help
+            echo(_help())
+            return BAD_INPUT
         return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
     except (KeyboardInterrupt, typer.Abort) as stop:
         if isinstance(stop.__cause__, EOFError):  # typer takes it for the end of an answer; nothing is asked here
             raise stop.__cause__ from None
         return INTERRUPTED
+    except MemoryError:
+        return _said(
+            "error: there is not enough memory; take fewer steps, points, elements or worker processes (--jobs)"
+        )
+    except (ArithmeticError, RuntimeWarning) as error:
+        return _said(f"error: {OUT_OF_RANGE} ({_last(error)})")
+    except (RuntimeError, ValueError) as error:
+        if not _is_numerical(error):
+            raise
+        return _said(f"error: {OUT_OF_RANGE} ({_last(error)})")
     except BrokenPipeError:  # what decides a status has been said before
         silence()
         return PASSED
@@ -89,6 +114,24 @@ def _guarded(act: Callable[[], object]) -> int:
         return _said(f"error: {error.filename or 'standard output'}: {error.strerror or error}")
 
 
+def _help() -> str:
+    """Return the help page of all commands."""
+    group = typer.main.get_command(app)
+    return group.get_help(group.make_context("dda-validate", ["--help"], resilient_parsing=True))
+
+
+def _is_numerical(error: Exception) -> bool:
+    """Whether a library's linear algebra has met infinities, or a matrix that rounding has made singular."""
+    return type(error).__name__ in ("LinAlgError", "ArpackError", "ArpackNoConvergence") or any(
+        words in str(error) for words in ("exactly singular", "must not contain infs or NaNs")
+    )
+
+
+def _last(error: BaseException) -> str:
+    """Return what an error says in the end: errors of the system come with their number."""
+    return printable(str(error.args[-1] if error.args else type(error).__name__))
+
+
 def _said(line: str) -> int:
-    typer.echo(line, err=True)
+    echo(line, err=True)
     return BAD_INPUT

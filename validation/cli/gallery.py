@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import RESULTS, ResultsOption, _progress, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -23,9 +24,12 @@ def gallery(
 
     It works from its files, without a network; open index.html. Nothing is computed.
     """
+    from validation.cli.report import print_unread
     from validation.gallery.site import build, size
     from validation.runs.results import Results
 
+    kept = Results(results)
     with _progress("gallery") as progress:
-        page = build(Results(results), out, progress)
-    typer.echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")
+        page = build(kept, out, progress)
+    print_unread(kept)
+    echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

@@ -11,6 +11,7 @@ import typer
 
 from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, SetOption, _progress, app, one_case
 from validation.cli.damping import JsonOption
+from validation.cli.printing.output import echo
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
@@ -61,7 +62,7 @@ def judge(
         place = out or (Path(target) if solver is None else None)
         written = [] if place is None else _written(judged, program, place, progress)
     if as_json:
-        typer.echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
+        echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
     else:
         _print(judged, program, written)
     if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
@@ -138,7 +139,7 @@ def _history(run: Run, case: str, solver: str) -> History:
     if run.outcome is Outcome.NOT_RUN:
         raise InputError(f"NOT RUN: {why}")
     if run.outcome is not Outcome.COMPLETED or run.history is None:
-        typer.echo(f"{case} {solver}: {run.outcome}: {run.outcome.sentence} {why}".rstrip())
+        echo(f"{case} {solver}: {run.outcome}: {run.outcome.sentence} {why}".rstrip())
         raise typer.Exit(NUMERICAL_FAILURE)
     return run.history
 
@@ -226,22 +227,20 @@ def _print(judged: Judged, program: str, written: list[Path]) -> None:
     from validation.problems.judge import Word
     from validation.report.chapters.judged import datum, headline, per_cent, reached
 
-    typer.echo(f"{program} on {judged.problem.name}: {headline(judged)}")
+    echo(f"{program} on {judged.problem.name}: {headline(judged)}")
     if judged.judgement.word is Word.PARTIAL:
         missing = ", ".join(map(united, judged.judgement.withheld))
-        typer.echo(
-            f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged"
-        )
+        echo(f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged")
     for sentence in judged.warnings:
-        typer.echo(f"warning: {sentence}")
+        echo(f"warning: {sentence}")
     if judged.cause is not None:
-        typer.echo(f"cause: {judged.cause.sentence}")
-        typer.echo(reached(judged))
+        echo(f"cause: {judged.cause.sentence}")
+        echo(reached(judged))
         if judged.cause.would_tell:
-            typer.echo(f"what would tell: {judged.cause.would_tell}")
-    typer.echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
+            echo(f"what would tell: {judged.cause.would_tell}")
+    echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for one in judged.judgement.columns:
         why = datum(one, judged.held) or one.reason
-        typer.echo(f"  {united(one.name):<25} {one.word:<12} {per_cent(one.error):>11} {per_cent(one.band):>8}  {why}")
+        echo(f"  {united(one.name):<25} {one.word:<12} {per_cent(one.error):>11} {per_cent(one.band):>8}  {why}")
     for path in written:
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

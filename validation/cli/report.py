@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+if TYPE_CHECKING:
+    from validation.runs.results import Results
+
 from validation.cli.app import RESULTS, ResultsOption, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -19,10 +23,24 @@ def report(
 
     Example: [bold]dda-validate report --out report.pdf[/bold]
     """
+    from validation.errors import InputError
     from validation.report.book import build
     from validation.runs.results import Results
 
-    typer.echo(f"wrote {build(Results(results), out)}")
+    if out.suffix.lower() != ".pdf":
+        raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
+    kept = Results(results)
+    page = build(kept, out)
+    print_unread(kept)
+    echo(f"wrote {page}")
+
+
+def print_unread(kept: Results) -> None:
+    """Say which studies this version cannot read, and why."""
+    from validation.report.book import ordered_studies, unread_studies
+
+    for study, reason in unread_studies(kept, ordered_studies(kept)).items():
+        echo(f"note: {study} is left out: {reason}", err=True)
 
 
 @app.command()
@@ -39,4 +57,4 @@ def figures(
     from validation.runs.results import Results
 
     for path in write_figures(study, Results(results), out):
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

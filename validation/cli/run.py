@@ -43,6 +43,8 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
+from validation.cli.printing.output import echo
+from validation.cli.signals import promise_rows
 
 FEW = 12  # gates of a scene that are shown one by one unasked
 
@@ -64,11 +66,11 @@ def list_command(
     if what is not None and what not in LISTS:
         raise InputError(f"list: must be one of {', '.join(sorted(LISTS))}, got {what!r}")
     if what is not None:
-        typer.echo(in_columns(LISTS[what](), terminal_width()))
+        echo(in_columns(LISTS[what](), terminal_width()))
         return
     for title, lines in short().items():
-        typer.echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
-    typer.echo("dda-validate list NAME shows one of the four in full,\ndda-validate show SCENE a scene and its numbers")
+        echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
+    echo("dda-validate list NAME shows one of the four in full,\ndda-validate show SCENE a scene and its numbers")
 
 
 @app.command()
@@ -111,6 +113,7 @@ def run(
     from validation.studies.catalogue import resolve
 
     _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
+    promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     kept, required = Results(results), require or []
     before = _checked_baseline(kept, required, summary, baseline)
@@ -195,7 +198,7 @@ def _answered(
 def _print_data(ran: Ran) -> None:
     from validation.cli.printing.answer import as_data
 
-    typer.echo(json.dumps(as_data(ran), indent=1, allow_nan=False))
+    echo(json.dumps(as_data(ran), indent=1, allow_nan=False))
 
 
 def _print_answer(ran: Ran, verbose: bool) -> None:
@@ -274,9 +277,9 @@ def solve(
     if done.outcome is Outcome.NOT_RUN:
         raise InputError(f"NOT RUN: {'; '.join(done.notes)}")
     for note in done.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     if done.outcome is not Outcome.COMPLETED:
-        typer.echo(f"{case.name} {solver}: {done.outcome}: {done.outcome.sentence}")
+        echo(f"{case.name} {solver}: {done.outcome}: {done.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
     _print_run(case, solver, done)
 
@@ -307,7 +310,7 @@ def _print_run(case: Scene, solver: str, done: Run) -> None:
     work = ", ".join(f"{count} {name}" for name, count in done.work.items())
     last = {name: float(values[-1]) for name, values in done.history.columns.items()} if done.history else {}
     ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
-    typer.echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
+    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 def _status(

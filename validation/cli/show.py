@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 
-import typer
-
 from validation.cli.app import SceneArgument, SetOption, app
 from validation.cli.damping import JsonOption
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -27,6 +26,6 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
     stated = load_scene(scene).with_values(dict(map(parse_assignment, assignments or [])))
     check_words(stated, scene)
     if as_json:
-        typer.echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
+        echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
     else:
-        typer.echo("\n".join(scene_page.page(stated, scene, terminal_width())))
+        echo("\n".join(scene_page.page(stated, scene, terminal_width())))

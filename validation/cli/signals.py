@@ -15,7 +15,8 @@ from validation.cli.app import INTERRUPTED
 
 CAUGHT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PATIENCE = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
-LAST_WORDS = b"interrupted: finished rows are kept; run the same command again to continue\n"
+LAST_WORDS = b"interrupted\n"
+ROWS_KEPT = b"interrupted: finished rows are kept; run the same command again to continue\n"
 _received: list[int] = []
 _unsaid = [LAST_WORDS]
 _saying = threading.RLock()
@@ -32,6 +33,12 @@ def end() -> NoReturn:
         while _unsaid:
             os.write(2, _unsaid.pop())
     os._exit(128 + _received[0] if _received else INTERRUPTED)
+
+
+def promise_rows() -> None:
+    """Have an interruption say from now on that finished rows are kept: the command keeps each as soon as it ends."""
+    if _unsaid:
+        _unsaid[:] = [ROWS_KEPT]
 
 
 @contextmanager

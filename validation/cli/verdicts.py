@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import GATE_FAILED, PASSED, app
+from validation.cli.printing.output import echo
 
 
 @app.command()
@@ -31,7 +32,9 @@ def diff(
 
 @app.command("export-pack")
 def export_pack(
-    directory: Annotated[Path, typer.Argument(help="Directory to create.", metavar="DIR")],
+    directory: Annotated[
+        Path, typer.Argument(help="Directory to write, or an earlier pack to replace.", metavar="DIR")
+    ],
 ) -> None:
     """Write a reference pack for codes in any language: scenes, exact histories as CSV, bands, problems to answer.
 
@@ -39,15 +42,19 @@ def export_pack(
     """
     from validation.cli.app import _progress
     from validation.problems.pack import write_problems
+    from validation.runs.files import atomic_directory
     from validation.studies.contact.pack import write_contact_pack
     from validation.studies.contact.slipping_pack import write_slipping_pack
-    from validation.studies.pack import write_pack
+    from validation.studies.pack import check_place, write_pack
     from validation.studies.waves.pack import write_waves_pack
 
-    written, numbers, waves = write_pack(directory), write_contact_pack(directory), write_waves_pack(directory)
-    slipping = write_slipping_pack(directory)
+    check_place(directory)
+    with atomic_directory(directory) as place, _progress("export-pack") as progress:
+        written = write_pack(place)
+        numbers = write_contact_pack(place)
+        waves = write_waves_pack(place)
+        slipping = write_slipping_pack(place)
+        problems = write_problems(place, progress)
     counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
     exact = f"of contact that opens {numbers} exact numbers, of contact that slips {slipping}, of waves {waves}"
-    with _progress("export-pack") as progress:
-        problems = write_problems(directory, progress)
-    typer.echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")
+    echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")

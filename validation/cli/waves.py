@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.cli.app import SceneArgument, SetOption, app, one_case
+from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
@@ -58,8 +60,6 @@ EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a col
 
 def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
     """Return the frequencies of a sweep [Hz], or refuse its ends."""
-    import math
-
     import numpy as np
 
     from validation.errors import InputError
@@ -87,7 +87,7 @@ def _write(found: Response, path: Path) -> None:
 
     lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in found.table().tolist())]
     write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
-    typer.echo(f"wrote {path}: {len(lines) - 1} frequencies")
+    echo(f"wrote {path}: {len(lines) - 1} frequencies")
 
 
 def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Path) -> None:
@@ -109,7 +109,7 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
         columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
         label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
         curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
-    typer.echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
+    echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
 
 
 def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
@@ -119,20 +119,26 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
 
     found = answers[EXACT]
     load = "per metre of base motion" if found.base else "under the scene's loads"
-    typer.echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
+    echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
     unit = "/m" if found.base else ""
+    limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
     rows: list[tuple[str, ...]] = [heads]
     for name, answer in answers.items():
         label = name if name == EXACT else "as stepped"
-        columns = [answer.peaks(column)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
+        sampled = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
+        columns = [_peaks_below(answer, column, sampled)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
         for i in range(max(map(len, columns), default=0)):
             cells = [(f"{p[i][0]:.6g}", f"{p[i][1]:.6g}") if i < len(p) else ("", "") for p in columns]
             rows.append((label, *cells[0], *cells[1]))
     print_table(rows if len(rows) > 1 else [("no peak in this range",)])
-    limit = 0.5 / case.time.step
-    if found.frequency[-1] > limit * (1 + 1e-12):
-        typer.echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+    if found.frequency[-1] > limit:
+        echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+def _peaks_below(answer: Response, column: str, limit: float) -> list[tuple[float, float]]:
+    """Return the peaks of a column up to a frequency [Hz]."""
+    return [peak for peak in answer.peaks(column) if peak[0] <= limit]
 
 
 @app.command()
@@ -178,11 +184,11 @@ def rayleigh(
     tables = None if scene is None else one_case(scene, assignments).damping
     if tables is not None and tables.present:
         own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
-        typer.echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
+        echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
     if tables is not None and tables.kinetic == "adaptive":
-        typer.echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
+        echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
-    advice.check_band(*band)
+    advice.check_band(*band, scheme.step)
     _print_scheme(scheme, band)
     if figure is not None:
         _draw_ratios(scheme, band, figure)
@@ -213,14 +219,14 @@ def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping,
     from validation.errors import InputError
 
     leading = None
-    typer.echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s")
+    echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s")
     try:
         leading = settings(wanted, scheme, keep_step)
-        typer.echo(f"to leading order: {leading.words}")
+        echo(f"to leading order: {leading.words}")
     except InputError as error:
         if not points:
             raise
-        typer.echo(f"to leading order: none ({error})")
+        echo(f"to leading order: none ({error})")
     if not points:
         return leading or scheme
     try:
@@ -228,11 +234,11 @@ def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping,
     except InputError as error:
         if leading is None:
             raise
-        typer.echo(f"exactly: {error}")
+        echo(f"exactly: {error}")
         return leading
     missed = misfit(exact, *points)
     how = "exactly" if missed <= ROUNDING else f"within {100 * missed:.2g} %"
-    typer.echo(f"{how} at both frequencies: {exact.words}")
+    echo(f"{how} at both frequencies: {exact.words}")
     return exact
 
 
@@ -244,7 +250,7 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     from validation.cli.damping import print_table
 
     leading, fitted = hidden(scheme), matched(scheme, *band)
-    typer.echo(f"\n{scheme.words} hides the Rayleigh damping")
+    echo(f"\n{scheme.words} hides the Rayleigh damping")
     rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
     for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
         least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
@@ -252,7 +258,7 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     print_table(rows)
     frequency = np.geomspace(*band, 8)
     columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
-    typer.echo("")
+    echo("")
     heads = ("frequency [Hz]", "steady xi [%]", "leading order")
     print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
 
@@ -270,4 +276,4 @@ def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> Non
         "Rayleigh, leading order": hidden(scheme).ratio(f),
         "Rayleigh, exact at both ends": matched(scheme, *band).ratio(f),
     }
-    typer.echo(f"wrote {save_as(ratio_figure(f, lines), path)}")
+    echo(f"wrote {save_as(ratio_figure(f, lines), path)}")

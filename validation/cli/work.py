@@ -10,6 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
+from validation.cli.printing.output import echo
+from validation.cli.signals import promise_rows
 
 StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
 
@@ -44,7 +46,7 @@ def rows(
     writer.writeheader()
     writer.writerows(lines)
     write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
-    typer.echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
+    echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
 
 
 @app.command()
@@ -63,6 +65,8 @@ def plot(
     from validation.report.figures.cost import columns_figure
     from validation.report.figures.histories import save
 
+    if out.suffix.lower() != ".svg":
+        raise InputError(f"--out: must end in .svg, got {str(out)!r}")
     lines = _table(study, results)
     series: dict[str, list[tuple[float, float]]] = {}
     for line in lines:
@@ -71,9 +75,24 @@ def plot(
             name = f"{line['scene'].partition('[')[0]} {line['solver']}"
             series.setdefault(name, []).append((float(pair[0]), float(pair[1])))  # type: ignore[arg-type]
     if not series:
-        known = ", ".join(dict.fromkeys(name for line in lines for name in line))
-        raise InputError(f"--x, --y: must be columns with positive numbers in common rows, among {known}; got {x}, {y}")
-    typer.echo(f"wrote {save(columns_figure((x, y), series), out)}")
+        _refuse_unknown({"--x": x, "--y": y}, list(dict.fromkeys(name for line in lines for name in line)), study)
+        raise InputError(f"--x, --y: must be columns with positive numbers in common rows, got {x} and {y}")
+    echo(f"wrote {save(columns_figure((x, y), series), out)}")
+
+
+def _refuse_unknown(axes: dict[str, str], known: list[str], study: str) -> None:
+    """Refuse a column that the table does not have; the few that are most like it are named, not all hundred."""
+    import difflib
+
+    from validation.errors import InputError
+
+    for option, name in axes.items():
+        if name not in known:
+            alike = difflib.get_close_matches(name, known, n=3, cutoff=0.4) or known[:3]
+            every = f"dda-validate rows {study} --csv rows.csv writes all {len(known)}"
+            raise InputError(
+                f"{option}: must be a column of the table, such as {', '.join(alike)}, got {name!r}; {every}"
+            )
 
 
 @app.command()
@@ -98,16 +117,17 @@ def record(
     if update and not reason.strip():
         raise InputError('--reason: must say why the record changes, got nothing; add --reason "..."')
     then = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
+    promise_rows()
     finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
     if update:
         work_record.update(finished, study_cases(), reason)
-        typer.echo(f"wrote {work_record.PATH}")
+        echo(f"wrote {work_record.PATH}")
         return
     try:
         found = work_record.compare(finished, study_cases(), then)
     except ValueError as error:
         raise InputError(f"{work_record.PATH}: {error}") from None
     said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
-    typer.echo(f"worst ratio to the record: {said}")
+    echo(f"worst ratio to the record: {said}")
     if not all(value <= 1 + work_record.SLACK[part] for part, value in found.items()):
         raise typer.Exit(GATE_FAILED)

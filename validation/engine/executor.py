@@ -16,6 +16,7 @@ from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
 from validation.runs.text import error_text
+from validation.runs.threads import limit_process
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 LOOK = 0.25  # s between two looks whether the parent lives
@@ -87,7 +88,8 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
 
 
 def _bound(parent: int) -> None:
-    """Bind a worker's life to its parent's, and leave Ctrl-C to the parent, which ends the workers."""
+    """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
+    limit_process()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)

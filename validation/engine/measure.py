@@ -20,10 +20,12 @@ from validation.runs.results import KEPT
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
+from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import EXACT_IN_TIME, NotReported, Prepared, Solver
+from validation.solvers.soundness import checked
 
 Part = TypeVar("Part")
 
@@ -36,7 +38,8 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     The row with the metrics of the run itself, and the history where there is one.
     """
     try:
-        return _executed(case, key, study)
+        with one_thread():
+            return _executed(case, key, study)
     except Exception as error:  # of one case, which must not end the others
         return failed_row(case, key, study, error_text(error)), None
 
@@ -50,7 +53,7 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver, scene = case.make_solver(), case.scene
     prepared, run = attempt(solver, scene, case.full)
-    run = _repeated(check(run, scene), solver, case)
+    run = _repeated(checked(run, scene), solver, case)
     failed: list[str] = []
     measured: dict[str, Value] = {}
     if prepared is not None:
@@ -107,7 +110,7 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         memory.check(scene, solver)
         asked, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
-        with np.errstate(all="ignore"):  # what overflows is named by `check`, not warned of
+        with np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
             prepared = solver.prepare(asked, full)
             run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
@@ -123,7 +126,8 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
     """Return the checked run of a scene, whatever its outcome."""
-    return check(attempt(solver, scene, full, fields)[1], scene)
+    with one_thread():
+        return checked(attempt(solver, scene, full, fields)[1], scene)
 
 
 def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
@@ -133,28 +137,6 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
     if not absent or len(absent) == len(scene.run.columns):
         return scene, []
     return scene.with_values({"run.columns": [name for name in scene.run.columns if name not in absent]}), absent
-
-
-def check(run: Run, scene: Scene) -> Run:
-    """Check a run's history against its scene; a defect replaces the outcome."""
-    if run.history is None or run.outcome is not Outcome.COMPLETED:
-        return run
-    steps = scene.time.steps
-    for name in ("time", *scene.run.columns):
-        values = run.history.time if name == "time" else run.history.columns.get(name)
-        if values is None:
-            continue
-        if np.shape(values) != (steps,):
-            return _failed(run, Outcome.WRONG_SHAPE, f"{name} has shape {np.shape(values)}, not ({steps},)")
-        if np.isnan(values).any():
-            return _failed(run, Outcome.NOT_A_NUMBER, f"{name} at step {int(np.argmax(np.isnan(values))) + 1}")
-        if np.isinf(values).any():
-            return _failed(run, Outcome.OVERFLOW, f"{name} at step {int(np.argmax(np.isinf(values))) + 1}")
-    return run
-
-
-def _failed(run: Run, outcome: Outcome, note: str) -> Run:
-    return Run(outcome, run.history, run.work, run.seconds, (*run.notes, note), run.estimate)
 
 
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:

@@ -28,7 +28,7 @@ def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
 
 def named(run: Run, prepared: Prepared, scene: Scene) -> Run:
     """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted."""
-    if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW) or run.history is None:
+    if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW, Outcome.UNBOUNDED) or run.history is None:
         return run
     radius = _diagnostics(prepared).get("predicted_radius", 0.0)
     if not radius > 1 + ROUNDING:

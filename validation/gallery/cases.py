@@ -87,7 +87,7 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
             scene.title = scene.title or record.get("title") or ""
             scene.studies[study] = None
             scene.records.setdefault(record["scene"], {})[record["solver"]] = record
-    page, rows, verdicts = _pages(), results.rows(), results.verdicts()
+    page, rows, verdicts = _pages(), results.rows(), results.readable_verdicts()
     scenes = {name: _scene(name, scene, page("scene", name), rows, verdicts) for name, scene in found.items()}
     studies = [
         GalleryStudy(

@@ -20,6 +20,7 @@ from validation.gallery.work import work_plots
 from validation.report.chapters.text import parameters
 from validation.runs.case_name import CaseName
 from validation.runs.results import Results
+from validation.runs.text import visible
 
 MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULATORS))
 SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
@@ -30,6 +31,7 @@ def environment() -> jinja2.Environment:
     found = jinja2.Environment(
         loader=jinja2.PackageLoader("validation.gallery", "templates"),
         autoescape=True,
+        finalize=_finalized,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
@@ -39,9 +41,25 @@ def environment() -> jinja2.Environment:
     return found
 
 
+def _visible(value: Any) -> Any:
+    """Return data whose texts are visible; a list of numbers is one already."""
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, dict):
+        return {_visible(key): _visible(item) for key, item in value.items()}
+    if isinstance(value, list | tuple) and not (value and isinstance(value[0], float)):
+        return [_visible(item) for item in value]
+    return value
+
+
+def _finalized(value: Any) -> Any:
+    """Return a value as a page writes it: texts are visible, what is markup already is left."""
+    return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+
 def _data(value: object) -> Markup:
     """Return data for a script element, in which nothing can end the element."""
-    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    text = json.dumps(_visible(value), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     for sign in "<>&":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
     return Markup(text)

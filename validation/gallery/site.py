@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
@@ -15,7 +11,8 @@ from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import studies_and_scenes
 from validation.gallery.chapters import chapter_for
 from validation.gallery.pages import Pages
-from validation.report.book import ordered_studies
+from validation.report.book import ordered_studies, unread_studies
+from validation.runs.files import atomic_directory
 from validation.runs.results import Results
 
 STATIC = (
@@ -40,7 +37,7 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
     Parameters
     ----------
     results
-        The results directory; no solver is called.
+        The results directory; no solver is called, and studies that this version cannot read are left out.
     out
         Directory to write: a new or empty one, or an earlier gallery, which is replaced as a whole.
     progress
@@ -52,9 +49,11 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
         There are no results, or they are damaged, or the directory is not one to write to.
     """
     _check(out)
-    studies, scenes = studies_and_scenes(results, ordered_studies(results))
+    names = ordered_studies(results)
+    unread = unread_studies(results, names)
+    studies, scenes = studies_and_scenes(results, [name for name in names if name not in unread])
     steps = iter(range(len(studies) + len(scenes)))
-    with _whole(out) as place:
+    with atomic_directory(out) as place:
         pages, chapters = Pages(results, studies, scenes), {}
         for study in studies:
             progress(next(steps), len(studies) + len(scenes), study.name)
@@ -89,35 +88,3 @@ def _check(out: Path) -> None:
         raise InputError(f"--out: must be a directory, got the file {out}")
     if out.is_dir() and any(out.iterdir()) and not (out / NOTICE).is_file():
         raise InputError(f"--out: must be a new or empty directory or an earlier gallery, got {out} with other files")
-
-
-@contextmanager
-def _whole(out: Path) -> Iterator[Path]:
-    """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
-
-    Raises
-    ------
-    InputError
-        The directory cannot be made or replaced.
-    """
-    place = out.absolute()
-    beside: Path | None = None
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}."))
-        new, old = beside / "new", beside / "old"
-        new.mkdir()
-        yield new
-        if place.exists():
-            os.replace(place, old)
-        try:
-            os.replace(new, place)
-        except OSError:
-            if old.exists():
-                os.replace(old, place)
-            raise
-    except OSError as error:
-        raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
-    finally:
-        if beside is not None:
-            shutil.rmtree(beside, ignore_errors=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from validation.errors import InputError
 from validation.gates.gate import value_text
 from validation.runs import strict
 from validation.runs.records import Baseline, Judged, VerdictRecord
+from validation.runs.text import printable
 
 Record = Judged
 Edges = tuple[float, float]
@@ -156,7 +158,7 @@ def markdown(records: Sequence[VerdictRecord], since: Sequence[Change] | None = 
 def _rows_of_studies(records: Sequence[VerdictRecord]) -> list[list[str]]:
     studies = dict.fromkeys(v["study"] for v in records)
     words = {study: [v["verdict"] for v in records if v["study"] == study] for study in studies}
-    return [[study, *(str(words[study].count(word)) for word in WORDS)] for study in studies]
+    return [[_cell(study), *(str(words[study].count(word)) for word in WORDS)] for study in studies]
 
 
 def _row(v: VerdictRecord) -> list[str]:
@@ -181,11 +183,15 @@ def _step(before: object, after: object) -> str:
 
 
 def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", r"\|")
+    return html.escape(_line(text), quote=False)
 
 
 def _code(text: str) -> str:
-    return f"`{_cell(text)}`"
+    return f"`{_line(text).replace('`', chr(39))}`"  # in which nothing is markup but its own end
+
+
+def _line(text: str) -> str:
+    return printable(text).replace("|", r"\|")
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

@@ -16,7 +16,7 @@ WINDOW = 4000  # steps at either end of a run in which the amplitudes of its mod
 ROUNDING = 1e-9  # |radius - 1| within which a mode neither grows nor decays: a double root doubles the lost digits
 DEVELOPED = 1e8  # growth over the first steps beyond which the other modes no longer disturb the measured rate
 AGREED = 1e-2  # relative difference between growth seen and predicted: several modes may grow nearly alike
-GROWN = (Outcome.UNSTABLE, Outcome.OVERFLOW, Outcome.MISPREDICTED)
+GROWN = (Outcome.UNSTABLE, Outcome.OVERFLOW, Outcome.MISPREDICTED, Outcome.UNBOUNDED)
 
 
 class Stability(Told):

@@ -13,6 +13,7 @@ from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
 from validation.runs.text import error_text
+from validation.scenes.scene import parse_scene
 
 
 def ordered_studies(results: Results) -> list[str]:
@@ -28,6 +29,33 @@ def ordered_studies(results: Results) -> list[str]:
     if not studies:
         raise InputError(f"{results.directory}: no study's results here; run a study first")
     return studies
+
+
+def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
+    """Return the studies whose results this version cannot read, and why.
+
+    Raises
+    ------
+    InputError
+        None of them can be read.
+    """
+    reasons: dict[str, str] = {}
+    verdicts = results.unread_verdicts()
+    for study in studies:
+        try:
+            manifest = results.whole(study, histories=True)
+            for case in manifest.get("cases", []):
+                parse_scene(case["definition"], case["scene"])
+        except InputError as error:
+            reasons[study] = str(error)
+        else:
+            if unescaped(study) in verdicts:
+                reasons[study] = (
+                    f"{results.directory / 'verdicts.json'}: {verdicts[unescaped(study)]}; run {study} again"
+                )
+    if len(reasons) == len(studies):
+        raise InputError(next(iter(reasons.values())))
+    return reasons
 
 
 def build(results: Results, out: Path) -> Path:
@@ -48,13 +76,18 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
     from validation.report.front.found import found_scenes
     from validation.report.front.pages import front_pages
 
+    unread = unread_studies(results, studies)
     chapters: list[Part] = [PageBreak()]
     for study in studies:
-        chapters += _chapter_or_why(results, study, figures)
+        if study in unread:
+            chapters += [Heading(study), Callout(f"{unread[study]}.", "fail")]
+        else:
+            chapters += _chapter_or_why(results, study, figures)
+    readable = [study for study in studies if study not in unread]
     with _naming_what_fails(results, "the first and the last pages"):
-        found, verdicts = found_scenes(results, studies), results.verdicts()
-        front = front_pages(found, verdicts, studies, figures)
-        return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, studies)]
+        found, verdicts = found_scenes(results, readable), results.verdicts()
+        front = front_pages(found, verdicts, readable, figures)
+        return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, readable)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.runs.text import shown
+from validation.runs.text import shown, visible
 
 DOLLAR, ESCAPED = "$", r"\$"  # between two bare ones a figure sets mathematics
 NOT_SHOWN = ("definition", "key", "data")  # parts of a manifest that are read, not shown
@@ -20,7 +20,7 @@ def escaped(text: str) -> str:
 
 def unescaped(text: str) -> str:
     """Return a text for pages, which know no escaped dollar."""
-    return "".join(c if c in "\n\t" else shown(c) for c in text).replace(ESCAPED, DOLLAR)
+    return visible(text).replace(ESCAPED, DOLLAR)
 
 
 class Readable(Results):
@@ -41,7 +41,7 @@ class Readable(Results):
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: list[VerdictRecord] = _mapped(super().verdicts())
+        kept: list[VerdictRecord] = _mapped(super().readable_verdicts())
         return [v for v in kept if study is None or v["study"] == study]
 
 

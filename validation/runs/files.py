@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -40,6 +41,38 @@ def atomic_path(path: Path) -> Iterator[Path]:
         if isinstance(error, OSError):
             raise InputError(f"{path}: cannot be written: {error.strerror}; choose another place") from None
         raise
+
+
+@contextmanager
+def atomic_directory(out: Path) -> Iterator[Path]:
+    """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
+
+    Raises
+    ------
+    InputError
+        The directory cannot be made or replaced.
+    """
+    place = out.absolute()
+    beside: Path | None = None
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}."))
+        new, old = beside / "new", beside / "old"
+        new.mkdir()
+        yield new
+        if place.exists():
+            os.replace(place, old)
+        try:
+            os.replace(new, place)
+        except OSError:
+            if old.exists():
+                os.replace(old, place)
+            raise
+    except OSError as error:
+        raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
+    finally:
+        if beside is not None:
+            shutil.rmtree(beside, ignore_errors=True)
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:

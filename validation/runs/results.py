@@ -200,6 +200,24 @@ class Results:
         kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
         return [v for v in kept if study is None or v["study"] == study]
 
+    def unread_verdicts(self) -> dict[str, str]:
+        """Return the studies with verdicts that are not as this version writes them, and what is wrong with the first.
+
+        Raises
+        ------
+        InputError
+            The file holds no list of records that name their study.
+        """
+        kept: Iterable[Named] = self.read_json("verdicts.json", [], list[Named])
+        defects = {v["study"]: strict.defect_of(v, VerdictRecord) for v in reversed([*kept])}
+        return {study: defect for study, defect in defects.items() if defect}
+
+    def readable_verdicts(self) -> list[VerdictRecord]:
+        """Return the verdicts of the studies that `unread_verdicts` does not name."""
+        unread = self.unread_verdicts()
+        kept: list[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+        return [v for v in kept if v["study"] not in unread]
+
     def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
         with self._alone():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from validation.runs.run import Outcome
@@ -45,9 +45,13 @@ class Row:
             data = json.loads(line)
             if data.pop("digest") != _digest(data):
                 return None
-            return cls(**data | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
+            own = {name: value for name, value in data.items() if name in FIELDS}  # another version may say more
+            return cls(**own | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return None
+
+
+FIELDS = frozenset(one.name for one in fields(Row))
 
 
 def _digest(data: Mapping[str, Any]) -> str:

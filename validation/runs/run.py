@@ -36,6 +36,11 @@ class Outcome(Told):
         "unstable, not as predicted",
         "The step exceeds the stability limit of the scheme and the numbers grew at another rate.",
     )
+    UNBOUNDED = (
+        "unbounded growth",
+        "The motion is a thousand times beyond what the load and the energy at the start can drive; use a smaller step "
+        "or another scheme.",
+    )
     NOT_A_NUMBER = "not a number", "The history holds values that are not numbers."
     WRONG_SHAPE = "wrong shape", "The history does not hold one value for each step of the scene."
     WRONG_UNITS = "wrong units", "The history has wrong units or a wrong sign."

@@ -41,7 +41,7 @@ class Scene(SceneTables):
             if not (isinstance(values, list) and values):
                 raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
             if field not in _sweepable():
-                raise ValueError(f'sweep: unknown key, must be one of a table as in "time.step", got {field!r}')
+                raise ValueError(f'sweep: must name a key of a table, such as "time.step", got {field!r}')
         mode, lists = self.sweep.get("mode", "product"), self._swept()
         if mode not in ("product", "zip"):
             raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")

@@ -43,7 +43,7 @@ class NewmarkBar(Prepared):
         self.scene, self.name = scene, name
         self.bar, self.scheme = bar_of(scene), scheme_of(scene)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         no_fields(self.name, self.scene, fields)
         check_columns(self.scene, BAR_COLUMNS)
@@ -84,7 +84,7 @@ class OpeningBar(Prepared):
         with naming(scene):
             self.bar = Exact.of(problem_of(scene), scene.contact.gap, scene.block.velocity)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         no_fields(self.name, self.scene, fields)
         check_columns(self.scene, OPENING_COLUMNS)

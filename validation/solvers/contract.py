@@ -11,9 +11,10 @@ from validation.errors import InputError
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array, Complex
 from validation.runs.modes import Mode, Switch
-from validation.runs.run import Run
+from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
+from validation.solvers.limits import StepLimit, check_step
 
 
 class NotReported(LookupError):
@@ -48,13 +49,36 @@ class LineStyle:
 class Prepared:
     """A scene that a solver has built once; everything is asked of it.
 
-    `run` is required. The others raise `NotReported` where the solver does not offer them, and are asked of linear
-    scenes only: what opens or slips has no modes, no spectrum, no response to one frequency and no single static
-    solution.
+    What steps by the scene's scheme defines `history_run` and, where the scheme can be unstable, `step_limit`; what
+    steps by none may define `run` itself. The others raise `NotReported` where the solver does not offer them, and are
+    asked of linear scenes only: what opens or slips has no modes, no spectrum, no response to one frequency and no
+    single static solution.
     """
 
+    scene: Scene
+
     def run(self, fields: Path | None = None) -> Run:
-        """Run the scene; `fields` names a file for displacement and stress fields."""
+        """Run the scene; `fields` names a file for displacement and stress fields.
+
+        Raises
+        ------
+        InputError
+            The step exceeds the limit of a conditionally stable scheme and the scene does not allow it.
+        """
+        limit = self.step_limit()
+        if limit is not None:
+            check_step(self.scene, limit)
+        try:
+            return self.history_run(fields)
+        except OverflowError as error:  # of plain floats, where an array would have become infinite
+            return Run(Outcome.OVERFLOW, notes=(str(error),))
+
+    def step_limit(self) -> StepLimit | None:
+        """Return what limits the step of a conditionally stable scheme; None where nothing does or it is not known."""
+        return None
+
+    def history_run(self, fields: Path | None) -> Run:
+        """Make the steps of a scene whose step is within the limit, or is allowed to exceed it."""
         raise NotImplementedError
 
     def static(self) -> Mapping[str, float]:
@@ -68,10 +92,6 @@ class Prepared:
     def modes(self) -> tuple[Mode, ...]:
         """Return the modes, the one with the largest share of the static response first."""
         raise NotReported("no modes are reported")
-
-    def highest_frequency(self) -> float:
-        """Return the highest natural frequency [rad/s], which a conditionally stable scheme must resolve."""
-        raise NotReported("no highest frequency is reported")
 
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition number and residual of the step."""

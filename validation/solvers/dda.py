@@ -15,11 +15,12 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
+from validation.solvers.blocks.closed import dda_limit
 from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.limits import check_step
+from validation.solvers.limits import StepLimit, check_step
 from validation.solvers.translation import check_columns, naming, no_fields, to_run
 
 if TYPE_CHECKING:
@@ -65,13 +66,12 @@ class OneBlock(Prepared):
         with naming(scene):
             self.model, self.scheme = model_of(scene), scheme_of(scene)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene; DDA has no fields."""
         import dda
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, dda.COLUMNS)
-        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         with naming(self.scene):
             return to_run(self.scene, self.solved(self.scene.time.steps, self.scene.run.columns))
 
@@ -80,6 +80,10 @@ class OneBlock(Prepared):
         import dda
 
         return dda.solve(self.model, self.scheme, steps, columns, self.full)
+
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the highest frequency that the load reaches."""
+        return dda_limit(self.highest_frequency)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency of the modes that the load reaches [rad/s]."""
@@ -109,7 +113,7 @@ class OneBlock(Prepared):
         """Return the frequency response, mode by mode."""
         import dda
 
-        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
+        check_step(self.scene, self.step_limit())
         along = base_direction(self.scene)
         with naming(self.scene):
             return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
@@ -121,13 +125,16 @@ class AdaptiveBlock(Prepared):
     def __init__(self, scene: Scene, full: bool) -> None:
         self.scene, self.block = scene, OneBlock(scene, full)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the whole block."""
+        return self.block.step_limit()
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene; DDA has no fields."""
         import dda
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS))
-        check_step(self.scene, dda.spectral.critical_omega, self.block.highest_frequency)
         t, own = self.scene.time, self.block
         columns, floor = self.scene.run.columns, self.scene.damping.floor
         with naming(self.scene):
@@ -178,7 +185,7 @@ class SubBlocks(OneBlock):
         """Return the frequency response of the system."""
         import dda
 
-        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
+        check_step(self.scene, self.step_limit())
         along = base_direction(self.scene)
         with naming(self.scene):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)

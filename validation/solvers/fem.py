@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
-from validation.solvers.limits import check_step
+from validation.solvers.limits import StepLimit, check_step
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
 
 if TYPE_CHECKING:
@@ -78,12 +78,20 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
     return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
-def check_stable(scene: Scene, model: Model | None = None) -> None:
-    """Refuse a step beyond the stability limit at the mesh's highest frequency."""
+def mesh_limit(problem: fem_reference.Problem, model: Callable[[], Model | None]) -> StepLimit:
+    """Return the limit of the scheme at the largest frequency of a mesh on a locked base."""
     import fem_reference
     from fem_reference.scheme.limits import critical_omega
 
-    check_step(scene, critical_omega, lambda: fem_reference.highest_frequency(problem_of(scene), model=model))
+    return StepLimit(critical_omega, lambda: fem_reference.highest_frequency(problem, model=model()))
+
+
+def opening_limit(problem: fem_reference.Problem, full: bool) -> StepLimit:
+    """Return the limit of the scheme while every point of a base that may open is closed and sticks."""
+    from fem_reference.contact.frequency import highest_closed_frequency
+    from fem_reference.scheme.limits import critical_omega
+
+    return StepLimit(critical_omega, lambda: highest_closed_frequency(problem, full))
 
 
 def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
@@ -110,12 +118,15 @@ class Mesh(Prepared):
         self.building = time.perf_counter() - began
         return model
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the mesh's largest frequency."""
+        return mesh_limit(self.problem, lambda: self.model)
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         import fem_reference
 
         check_columns(self.scene, fem_reference.COLUMNS)
-        check_stable(self.scene, self.model)
         steps, columns = self.scene.time.steps, self.scene.run.columns
         with naming(self.scene):
             found = fem_reference.solve(
@@ -145,7 +156,7 @@ class Mesh(Prepared):
         """Return the frequency response of the mesh."""
         from fem_reference.history.response import response
 
-        check_stable(self.scene, self.model)
+        check_step(self.scene, self.step_limit())
         columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
         with naming(self.scene):
             return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
@@ -157,14 +168,17 @@ class AdaptiveMesh(Prepared):
     def __init__(self, scene: Scene, full: bool) -> None:
         self.scene, self.mesh = scene, Mesh(scene, full)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the mesh."""
+        return self.mesh.step_limit()
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         import fem_reference
 
         no_fields("fem with self-adaptive damping", self.scene, fields)
         check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
         own, t = self.mesh, self.scene.time
-        check_stable(self.scene, own.model)
         columns, floor = self.scene.run.columns, self.scene.damping.floor
         with naming(self.scene):
             found = fem_reference.solve_adaptive(own.problem, own.scheme, t.steps, columns, floor, model=own.model)
@@ -191,7 +205,11 @@ class OpeningMesh(Prepared):
             velocity = scene.block.velocity
             self.contact = Unilateral(c.gap, velocity, glue, c.solve_limit, c.cut, c.rule, friction=friction)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme while every point of the base is closed."""
+        return opening_limit(self.problem, self.full)
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
 

@@ -27,7 +27,8 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, check_stable
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, mesh_limit, opening_limit, problem_of
+from validation.solvers.limits import StepLimit
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, flips, no_fields, pulls
 
@@ -194,14 +195,19 @@ class RemoteMesh(Prepared):
     def __init__(self, solver: FEniCSx, scene: Scene) -> None:
         self.solver, self.scene = solver, scene
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the largest frequency of the same mesh, every point of its base closed."""
+        problem = problem_of(self.scene)
+        if features.UNILATERAL in features.of(self.scene):
+            return opening_limit(problem, full=True)
+        return mesh_limit(problem, lambda: None)
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         scene = self.scene
         no_fields(self.solver.name, scene, fields)
         opens = features.UNILATERAL in features.of(scene)
         check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
-        if not opens:
-            check_stable(scene)
         if missing := self.solver.missing():
             return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:

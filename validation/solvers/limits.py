@@ -4,22 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 
 
-def check_step(scene: Scene, critical: Callable[[float, float, float], float], fastest: Callable[[], float]) -> None:
+@dataclass(frozen=True)
+class StepLimit:
+    """What limits the step of a conditionally stable scheme."""
+
+    critical: Callable[[float, float, float], float]  # of (alpha, delta, gg): the largest stable w dt [-], or infinity
+    highest_frequency: Callable[[], float]  # [rad/s], contacts closed and sticking; infinite on a rigid stop
+
+
+def check_step(scene: Scene, limit: StepLimit) -> None:
     """Refuse a step beyond the limit of a conditionally stable scheme.
+
+    A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the
+    least of all.
 
     Parameters
     ----------
     scene
         The scene with its scheme.
-    critical
-        The solver package's own function of (alpha, delta, gg): the critical w dt, infinite where there is none.
-    fastest
-        Returns the largest natural frequency [rad/s]; called for conditionally stable schemes only.
+    limit
+        The solver package's own limit; its largest frequency is asked for by conditionally stable schemes only.
 
     Raises
     ------
@@ -27,14 +37,29 @@ def check_step(scene: Scene, critical: Callable[[float, float, float], float], f
         w dt exceeds the critical value of the scheme and the scene does not allow it.
     """
     t = scene.time
-    omega = critical(t.alpha, t.delta, t.discount)
-    if math.isinf(omega):
+    omega = min(limit.critical(t.alpha, t.delta, gg) for gg in discounts(scene))
+    if math.isinf(omega) or t.allow_unstable:
         return
-    frequency = fastest()
-    limit = omega / frequency
-    if t.step > limit * (1 + 1e-12) and not t.allow_unstable:
-        raise InputError(
-            f"{scene.name}: time.step: must not exceed {limit:.6g} s, the stability limit of "
-            f"alpha = {t.alpha:g}, delta = {t.delta:g} at the largest frequency {frequency:.6g} rad/s, "
-            f"got {t.step:g}; make it smaller, choose 2 alpha >= delta, or set allow_unstable = true"
-        )
+    frequency = limit.highest_frequency()
+    largest_step = omega / frequency
+    if t.step <= largest_step * (1 + 1e-12):
+        return
+    scheme = f"alpha = {t.alpha:g}, delta = {t.delta:g}"
+    advice = "choose 2 alpha >= delta >= 1/2, or set allow_unstable = true"
+    if largest_step == 0:
+        where = "on a rigid stop (stiffness = inf)" if math.isinf(frequency) else "without damping"
+        raise InputError(f"{scene.name}: time.step: no step of {scheme} is stable {where}, got {t.step:g}; {advice}")
+    raise InputError(
+        f"{scene.name}: time.step: must not exceed {largest_step:.6g} s, the stability limit of {scheme} "
+        f"at the largest frequency {frequency:.6g} rad/s, got {t.step:g}; make it smaller, {advice}"
+    )
+
+
+def discounts(scene: Scene) -> tuple[float, ...]:
+    """Return the kinetic discounts gg between which the critical w dt lies.
+
+    Its square is a ratio of two linear functions of gg, so that the ends of the range of an adaptive gg bound it.
+    """
+    if scene.damping.kinetic == "adaptive":
+        return scene.damping.floor, 1.0
+    return (scene.time.discount,)

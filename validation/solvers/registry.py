@@ -8,12 +8,16 @@ import importlib.metadata
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from validation.errors import InputError
 from validation.runs.run import Run
+from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import Role, Solver
+from validation.solvers.soundness import checked
 
 BUILT_IN = {
     "dda": "validation.solvers.dda:DDA",
@@ -135,4 +139,5 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
     memory.check(scene, chosen)
-    return chosen.solve(scene, full=full)
+    with one_thread(), np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
+        return checked(chosen.solve(scene, full=full), scene)

@@ -22,6 +22,7 @@ from validation.metrics.values import norm
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.modes import Mode
 from validation.runs.run import Outcome, Run
+from validation.runs.threads import environment
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
@@ -77,15 +78,23 @@ class UserSolver(Solver):
     def parts(self) -> frozenset[str]:
         """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""
         try:
-            answer = ask(self.command(), os.environ, {"parts": sorted(PARTS)}, base_limit())
+            answer = ask(self.command(), environment(), {"parts": sorted(PARTS)}, base_limit())
         except (WorkerHangs, WorkerDied):  # as its first run will do, and say
             return PARTS
         return frozenset(answer.get("parts", PARTS))
 
+    def load_error(self) -> str | None:
+        """Return None, or why the solver cannot be loaded."""
+        try:
+            answer = ask(self.command(), environment(), {"parts": []}, base_limit())
+        except (WorkerHangs, WorkerDied) as error:
+            return words(str(error))
+        return words(str(answer["raised"])) if "raised" in answer else None
+
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
         try:
-            answer = ask(self.command(), os.environ, {"about": list(ABOUT)}, base_limit())
+            answer = ask(self.command(), environment(), {"about": list(ABOUT)}, base_limit())
         except (WorkerHangs, WorkerDied):
             return {}
         return {name: words(str(text)) for name, text in dict(answer.get("about") or {}).items()}
@@ -104,7 +113,7 @@ class Asked(Prepared):
         began, limit = perf_counter(), base_limit() + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
-            self._answer = ask(self.solver.command(), os.environ, request, limit)
+            self._answer = ask(self.solver.command(), environment(), request, limit)
         except WorkerHangs:
             said = f"no history within {limit:g} s, the time limit for {self.scene.time.steps} steps"
             return Run(Outcome.TIMEOUT, notes=(said,))

@@ -83,6 +83,24 @@ class Written:
     bands: int
 
 
+def check_place(directory: Path) -> None:
+    """Refuse a place whose files are not those of a pack, which is replaced as a whole.
+
+    Raises
+    ------
+    InputError
+        It is a file, or a directory of other files.
+    """
+    if directory.exists() and not directory.is_dir():
+        raise InputError(f"{directory}: must be a directory, got a file")
+    readme = directory / "README.md"
+    if not directory.is_dir() or not any(directory.iterdir()):
+        return
+    title = README.splitlines()[0].encode()
+    if not readme.is_file() or not readme.read_bytes().startswith(title):
+        raise InputError(f"{directory}: must be a new or empty directory or an earlier pack, got one with other files")
+
+
 def write_pack(directory: Path) -> Written:
     """Write the pack into a directory, which is made.
 

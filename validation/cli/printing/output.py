@@ -8,7 +8,11 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from validation.runs.text import visible
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,6 +28,11 @@ def prepare() -> None:
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115 - as long as the process
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def echo(text: str = "", err: bool = False) -> None:
+    """Print lines of text; characters that would act on a terminal are written as escapes."""
+    typer.echo(visible(text), err=err)
 
 
 @contextmanager
@@ -45,8 +54,18 @@ def silence() -> None:
 def console() -> Console:
     """Return a console of the library rich that leaves a reader who has gone to `heard`."""
     from rich.console import Console
+    from rich.text import Text
 
     class Plain(Console):
+        def print(self, *objects: Any, **options: Any) -> None:  # as `echo`; the cells of tables are printable
+            super().print(*map(self._visible, objects), **options)
+
+        @staticmethod
+        def _visible(printed: Any) -> Any:
+            if isinstance(printed, Text) and visible(printed.plain) != printed.plain:
+                return Text(visible(printed.plain), style=printed.style)
+            return visible(printed) if isinstance(printed, str) else printed
+
         def on_broken_pipe(self) -> None:  # rich would end the process
             raise
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
 from rich import box
 from rich.markup import escape
 from rich.table import Table
@@ -15,7 +14,7 @@ from rich.text import Text
 
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
 from validation.cli.printing.listing import in_columns
-from validation.cli.printing.output import console
+from validation.cli.printing.output import console, echo
 from validation.gates.gate import Verdict, value_text
 from validation.runs.case_name import CaseName
 from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from validation.gates.changes import Change
 
 DIFFERENCES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")  # shown where nothing is judged
+UNLIKE = 0.5  # relative difference (L2) from which two histories share less than half of the motion
 MOST = 20  # pairs that are shown
 
 
@@ -123,7 +123,7 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
     if len(compared) > MOST:
         printer.print(f"and {len(compared) - MOST} more pairs; dda-validate report shows all", markup=False)
     for line in _next(compared, writable) if compared else [_alone(outcomes(results, study))]:
-        typer.echo(line)
+        echo(line)
 
 
 def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
@@ -139,7 +139,13 @@ def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
 
 def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
     """Yield the lines of a gate for a scene that nothing has judged."""
-    first, metric = compared[0], DIFFERENCES[0]
+    metric = DIFFERENCES[0]
+    agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
+    if not agreeing:
+        yield f"next: no pair agrees within {100 * UNLIKE:g} % ({metric}), which is a finding and no tolerance:"
+        yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
+        return
+    first = agreeing[0]
     value = first["metrics"].get(metric)
     place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
     yield f"next: write {place} what you tolerate, with your reason, and run it again:"
@@ -155,6 +161,11 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
     yield "dda-validate list metrics names what can be bounded, dda-validate report draws the histories"
 
 
+def _agrees(value: object) -> bool:
+    """Whether a difference may be what a user tolerates; one that is not measured says nothing against it."""
+    return not isinstance(value, float | int) or value < UNLIKE
+
+
 def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
     """Return how the cases of a study ended, by (scene, solver)."""
     rows = results.rows()
@@ -167,7 +178,7 @@ def print_ends(results: Results, studies: list[str]) -> None:
     for study in studies:
         for case in results.manifest(study)["cases"]:
             if rows[case["key"]].outcome is not Outcome.COMPLETED:
-                typer.echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
+                echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
 
 
 def after_run(

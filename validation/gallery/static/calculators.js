@@ -147,14 +147,16 @@ const calculators = (() => {
     const nyquist = 0.5 / s.step, x = f.geomspace(Math.min(s.frequency / 20, nyquist / 100), Math.min(s.frequency * 20, nyquist), 240);
     const all = x.map((frequency) => f.passage(column, s, frequency, distance));
     const late = cleaned(now.delay);
-    return { values: { ...now, wavelength: speed / s.frequency },
-      facts: [["Arrives of the amplitude", percent(1 - cleaned(now.loss))],
+    const passage = s.frequency > nyquist  // where the steps see an alias of lower frequency, which is no such wave
+      ? [["No answer", `F must be at most 1/(2 dt) = ${figure(nyquist)} Hz`]]
+      : [["Arrives of the amplitude", percent(1 - cleaned(now.loss))],
         [late < 0 ? "early by" : "late by", `${figure(Math.abs(late))} periods`],
         ["Steady ratio −Im W/|W| of the step at F", percent(cleaned(now.damping))],
-        ["Error of the phase speed", percent(cleaned(now.speed_error))],
+        ["Error of the phase speed", percent(cleaned(now.speed_error))]];
+    return { values: { ...now, wavelength: speed / s.frequency },
+      facts: [...passage,
         ["Blocks a wavelength", figure(speed / s.frequency / s.side)],
-        ["Steps a period", figure(1 / (s.frequency * s.step))], ["c dt / h", figure(speed * s.step / s.side)],
-        ...(s.frequency > nyquist ? [["Beware", "F lies above 1/(2 dt): the steps see an alias"]] : [])],
+        ["Steps a period", figure(1 / (s.frequency * s.step))], ["c dt / h", figure(speed * s.step / s.side)]],
       charts: {
         arrives: { x, log: true, xlabel: "frequency [Hz]", ylabel: "arrives [%]", at: s.frequency, lines: [
           { label: `over ${figure(distance)} m`, color: ORANGE, y: all.map((p) => 100 * (1 - p.loss)) }] },

@@ -15,7 +15,9 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.blocks.closed import dda_limit, opening_frequency, opening_system_frequency
 from validation.solvers.contract import NotReported, Prepared
+from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
 
 if TYPE_CHECKING:
@@ -51,7 +53,11 @@ class OpeningBlock(Prepared):
 
         return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, self.options)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme while the block stands on both corners."""
+        return dda_limit(lambda: opening_frequency(self.scene, self.scheme))
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         import dda
 
@@ -123,6 +129,10 @@ class OpeningSubBlocks(OpeningBlock):
         with naming(scene):
             columns, rows = b.subdivide or (1, 1)
             self.opening = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
+
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme while all points of the base are closed."""
+        return dda_limit(lambda: opening_system_frequency(self.scene))
 
     def solve(self, columns: Sequence[str]) -> dda.OpeningResult:
         """Make the steps."""

@@ -15,8 +15,10 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.blocks.closed import dda_limit, rolling_frequency
 from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, friction
 from validation.solvers.contract import NotReported, Prepared
+from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
 
 if TYPE_CHECKING:
@@ -55,7 +57,11 @@ class RollingBlock(Prepared):
             self.model = RollingModel(block, law, load, b.base, b.top, math.radians(b.tilt), (0.0, b.velocity))
             self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme while the block stands on any of its edges."""
+        return dda_limit(lambda: rolling_frequency(self.scene, self.scheme))
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         import dda
         from dda.rotation.solution import solve_rolling

@@ -16,9 +16,10 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
+from validation.solvers.blocks.closed import dda_limit
 from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
-from validation.solvers.limits import check_step
+from validation.solvers.limits import StepLimit, check_step
 from validation.solvers.translation import naming, no_fields, to_run
 
 
@@ -33,23 +34,22 @@ class BlockColumn(Prepared):
             springs = [Spring(joint.height, joint.stiffness) for joint in c.springs]
             self.column = Column(layers, c.motion, c.glue, springs, c.impedance)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the column's highest frequency: glue, joints and base springs included."""
+        return dda_limit(lambda: highest_frequency(self.column))
+
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         no_fields("dda with a column", self.scene, fields)
-        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = Drive(**vars(motion_at(self.scene, instants)))
         with naming(self.scene):
             found = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
         return to_run(self.scene, found)
 
-    def highest_frequency(self) -> float:
-        """Return the highest natural frequency [rad/s], glue, joints and springs of the base included."""
-        return highest_frequency(self.column)
-
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
-        check_step(self.scene, dda.spectral.critical_omega, self.highest_frequency)
+        check_step(self.scene, self.step_limit())
         at = self.scene.input.at
         with naming(self.scene):
             found = column_response(self.column, self.scheme, frequencies, at, (DISPLACEMENT, PRESSURE), exact)

@@ -15,7 +15,7 @@ from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import Prepared
-from validation.solvers.limits import check_step
+from validation.solvers.limits import StepLimit, check_step
 from validation.solvers.translation import naming, no_fields, to_run
 
 
@@ -42,15 +42,20 @@ class LineColumn(Prepared):
         self.elements = [layer.blocks * scene.fem.per_side for layer in c.layer]
         self.heights = c.heights
 
-    def run(self, fields: Path | None = None) -> Run:
-        """Run the scene."""
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the largest frequency of the elements."""
         from fem_reference.column.frequency import highest_frequency
-        from fem_reference.column.stepping import solve_line
         from fem_reference.scheme.limits import critical_omega
+
+        degree = self.scene.fem.degree
+        return StepLimit(critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
+
+    def history_run(self, fields: Path | None) -> Run:
+        """Run the scene."""
+        from fem_reference.column.stepping import solve_line
 
         no_fields("fem with a column", self.scene, fields)
         degree, columns = self.scene.fem.degree, self.scene.run.columns
-        check_step(self.scene, critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = excitation(self.scene, instants)
         with naming(self.scene):
@@ -59,12 +64,10 @@ class LineColumn(Prepared):
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
-        from fem_reference.column.frequency import highest_frequency
         from fem_reference.column.vibration import line_response
-        from fem_reference.scheme.limits import critical_omega
 
         ground, elements, degree = self.ground, self.elements, self.scene.fem.degree
-        check_step(self.scene, critical_omega, lambda: highest_frequency(ground, elements, degree))
+        check_step(self.scene, self.step_limit())
         asked = self.scene.input.at == "top", (DISPLACEMENT, PRESSURE), exact
         with naming(self.scene):
             found = line_response(ground, elements, degree, self.scheme, frequencies, *asked)

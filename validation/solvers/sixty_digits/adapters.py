@@ -56,7 +56,7 @@ class _StepsOnly(Prepared):
 class PreciseBlock(_StepsOnly, OneBlock):
     """A whole block in sixty-digit arithmetic; there is nothing to save."""
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         from validation.solvers.sixty_digits import block
 
@@ -84,7 +84,7 @@ class PreciseDDA(DDA):
 class PreciseNewmarkBar(_StepsOnly, NewmarkBar):
     """A bar under the Newmark scheme in sixty-digit arithmetic."""
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         from validation.solvers.sixty_digits import bar
 
@@ -108,7 +108,7 @@ class PreciseBar(ExactBar):
 class PreciseMesh(_StepsOnly, Mesh):
     """A mesh whose own matrices are stepped in sixty-digit arithmetic."""
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self, fields: Path | None) -> Run:
         """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
         from validation.solvers.sixty_digits import matrices
 

@@ -1,0 +1,95 @@
+"""The entry point: no traceback and no warning for numbers out of range, the version, and a command that is none."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused, typed
+
+from validation.cli import entry
+
+SET = "--set"
+STEP = (SET, "time.step=0.002")
+OUT_OF_RANGE = {
+    "points": ("response", "figures-3-4", *STEP, "--points", "100000000000000"),
+    "frequencies": ("response", "figures-3-4", *STEP, "--to", "1e300"),
+    "denormal step": ("response", "figures-3-4", SET, "time.step=1e-320"),
+    "huge wave": ("advise", "figures-3-4", *STEP, "--fmax", "1e200"),
+    "endless wave": ("advise", "figures-3-4", *STEP, "--fmax", "1e-200"),
+    "huge step": ("rayleigh", "--dt", "1e300"),
+    "tiny step": ("damping", "figures-3-4", SET, "time.step=1e-300"),
+    "huge springs": ("damping", "figures-3-4", *STEP, SET, "contact.stiffness=1e300"),
+    "huge velocity": ("contact", "unlocked-constant", SET, "block.velocity=1e200", *STEP, SET, "time.steps=20"),
+}
+
+
+@pytest.mark.parametrize("name", OUT_OF_RANGE)
+def test_numbers_out_of_range_are_one_line(name: str) -> None:
+    assert "Traceback" not in refused(*OUT_OF_RANGE[name])
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        MemoryError(),
+        OverflowError(34, "Numerical result out of range"),
+        ZeroDivisionError("division by zero"),
+        FloatingPointError("overflow"),
+        np.linalg.LinAlgError("Eigenvalues did not converge"),
+        RuntimeError("Factor is exactly singular"),
+        ValueError("array must not contain infs or NaNs"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_errors_of_numbers_are_bad_input(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(**options: object) -> None:
+        raise error
+
+    monkeypatch.setattr(entry, "command_line", lambda: fail)
+    assert refused("list").startswith("error: ")
+
+
+def test_an_error_of_the_program_stays_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(**options: object) -> None:
+        raise ValueError("a fault of ours")
+
+    monkeypatch.setattr(entry, "command_line", lambda: fail)
+    with pytest.raises(ValueError, match="a fault of ours"):
+        typed("list")
+
+
+def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def warn(**options: object) -> None:
+        warnings.warn_explicit("overflow", RuntimeWarning, "scipy/linalg.py", 1, module="scipy.linalg")
+
+    monkeypatch.setattr(entry, "command_line", lambda: warn)
+    done = typed("list")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_version_is_that_of_the_distribution() -> None:
+    done = typed("--version")
+    assert (done.returncode, done.stdout) == (0, f"dda-validate {importlib.metadata.version('dda-validation')}\n")
+
+
+def test_no_command_shows_thecommand_line() -> None:
+    done = typed()
+    assert done.returncode == 2 and not done.stderr.strip()
+    assert "export-pack" in done.stdout
+
+
+def test_paragraphs_of_a_help_page_are_broken_by_the_terminal_alone() -> None:
+    for command in entry.app.registered_commands:
+        assert not re.search(r"[^\n]\n[^\n]", command.help or "")
+
+
+def test_a_report_is_a_pdf_and_a_plot_an_svg(tmp_path: Path) -> None:
+    text = tmp_path / "x.txt"
+    assert "--out: must end in .pdf" in refused("report", "--out", text)
+    assert "--out: must end in .svg" in refused("plot", "core", "--out", text)
+    assert not text.exists()

@@ -1,0 +1,63 @@
+"""Text from outside acts on no terminal, no Markdown page and no HTML page."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from conftest import SCENE, typed
+
+from validation.gallery.pages import _data, environment
+from validation.runs.text import visible
+
+CLEAR, OVERRIDE, SCRIPT = "\x1b[2J", "\u202e", "<script>alert(1)</script>"
+EVIL = f"r {CLEAR} {SCRIPT} {OVERRIDE} a | `b`"
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Return all that is printed and written of a scene whose title and reason are hostile."""
+    place = tmp_path_factory.mktemp("evil")
+    judged = '[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [0.0, 1e-9]\n'
+    gate = judged + f"reason = {json.dumps(EVIL)}\n"
+    text = SCENE.replace('"A small scene"', json.dumps(EVIL)) + '[run]\nsolvers = ["dda", "bar"]\n' + gate
+    (place / "evil.toml").write_text(text)
+    summary = place / "summary.md"
+    ran = typed("run", "evil.toml", "--verbose", "--results", "r", "--summary", summary, cwd=place)
+    assert ran.returncode == 1
+    shown = typed("show", "evil.toml", cwd=place)
+    assert typed("gallery", "--results", "r", "--out", "g", cwd=place).returncode == 0
+    html = "\n".join(path.read_text() for path in (place / "g").glob("*.html"))
+    return {"terminal": ran.stdout + ran.stderr + shown.stdout, "summary": summary.read_text(), "gallery": html}
+
+
+@pytest.mark.parametrize("page", ["terminal", "summary", "gallery"])
+def test_control_characters_and_overrides_of_direction_are_escapes(pages: dict[str, str], page: str) -> None:
+    assert "\x1b" not in pages[page] and OVERRIDE not in pages[page]
+    assert "alert(1)" in pages[page]
+
+
+@pytest.mark.parametrize("page", ["summary", "gallery"])
+def test_markup_is_text(pages: dict[str, str], page: str) -> None:
+    assert "<script>alert" not in pages[page]
+
+
+def test_a_cell_of_the_summary_ends_where_it_should(pages: dict[str, str]) -> None:
+    rows = [line for line in pages["summary"].splitlines() if "alert" in line]
+    assert rows
+    assert all(len(re.findall(r"(?<!\\)\|", row)) == 5 for row in rows)
+
+
+def test_data_of_a_page_hold_visible_text() -> None:
+    assert OVERRIDE not in json.loads(str(_data({"a": [EVIL, {EVIL: 1.0}], "b": (1.0, 2.0)})))["a"][0]
+
+
+def test_a_template_writes_visible_text_and_leaves_markup() -> None:
+    template = environment().from_string("{{ text }}{{ markup|safe }}")
+    written = template.render(text=OVERRIDE, markup="<b>1</b>")
+    assert written == r"\u202e<b>1</b>"
+
+
+def test_lines_and_tabs_stay() -> None:
+    assert visible("a\n\tb\r\x07") == "a\n\tb\\r\\x07"

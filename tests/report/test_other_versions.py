@@ -1,0 +1,108 @@
+"""Results that another version wrote cost their own chapter, not the report and not the gallery."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import SCENE, typed
+
+from validation.gallery.site import build as build_gallery
+from validation.report.book import ordered_studies, unread_studies
+from validation.results import Results
+from validation.runs.row import Row
+
+Change = Callable[[dict[str, Any]], object]
+GATE = """
+[run]
+solvers = ["dda", "bar"]
+[[gate]]
+pair = ["dda", "bar"]
+metric = "displacement.l2"
+band = [0.0, 1.0]
+reason = "a test"
+"""
+
+
+@pytest.fixture(scope="module")
+def two(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the results of two scenes."""
+    place = tmp_path_factory.mktemp("two")
+    for name, step in (("mine", "time.step=0.002"), ("theirs", "time.step=0.001")):
+        (place / f"{name}.toml").write_text(SCENE + GATE)
+        done = typed("run", f"{name}.toml", "--set", step, "--results", "r", cwd=place)
+        assert done.returncode == 0, done.stderr
+    return place / "r"
+
+
+def change_manifest(results: Path, change: Change) -> None:
+    path = results / "studies" / "theirs.json"
+    manifest = json.loads(path.read_text())
+    change(manifest)
+    path.write_text(json.dumps(manifest))
+
+
+def change_rows(results: Path, change: Change) -> None:
+    path = results / "rows.jsonl"
+    rows = [json.loads(line) for line in path.read_text().splitlines() if line]
+    for row in rows:
+        row.pop("digest")
+        if row["study"] == "theirs":
+            change(row)
+        row["digest"] = hashlib.sha256(json.dumps(row, sort_keys=True).encode()).hexdigest()[:16]
+    path.write_text("\n".join(map(json.dumps, rows)) + "\n")
+
+
+def change_verdicts(results: Path, change: Change) -> None:
+    path = results / "verdicts.json"
+    verdicts = json.loads(path.read_text())
+    for verdict in verdicts:
+        if verdict["study"] == "theirs":
+            change(verdict)
+    path.write_text(json.dumps(verdicts))
+
+
+def redefine(manifest: dict[str, Any]) -> None:
+    for case in manifest["cases"]:
+        case["definition"]["future"] = {"key": 1}
+
+
+UNREADABLE = {
+    "manifest": (change_manifest, lambda manifest: manifest.update(cases=3)),
+    "definition": (change_manifest, redefine),
+    "outcome": (change_rows, lambda row: row.update(outcome="of the future")),
+    "row": (change_rows, lambda row: row.pop("metrics")),
+    "verdict": (change_verdicts, lambda verdict: verdict.update(verdict="MAYBE")),
+    "band": (change_verdicts, lambda verdict: verdict.pop("band")),
+}
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_one_study_is_left_out_by_name_and_the_others_are_told(name: str, two: Path, tmp_path: Path) -> None:
+    results = tmp_path / "r"
+    shutil.copytree(two, results)
+    edit, change = UNREADABLE[name]
+    edit(results, change)
+    kept = Results(results)
+    assert list(unread_studies(kept, ordered_studies(kept))) == ["theirs"]
+    build_gallery(kept, tmp_path / "gallery")
+    assert (tmp_path / "gallery" / "study-mine.html").exists()
+    assert not (tmp_path / "gallery" / "study-theirs.html").exists()
+    done = typed("report", "--results", results, "--out", tmp_path / "r.pdf")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.startswith("note: theirs is left out: ")
+
+
+def test_a_key_that_a_later_version_adds_to_a_row_is_passed_over(two: Path, tmp_path: Path) -> None:
+    results = tmp_path / "r"
+    shutil.copytree(two, results)
+    change_rows(results, lambda row: row.update(future=1))
+    kept = Results(results)
+    assert unread_studies(kept, ordered_studies(kept)) == {}
+    assert kept.rows() == Results(two).rows()
+    assert all(isinstance(row, Row) for row in kept.rows().values())

@@ -1,0 +1,153 @@
+"""One BLAS thread in every process of ours and in every calculation, and nobody's settings touched beside."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg  # noqa: F401 - so that both libraries are loaded
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from validation.engine.case import Case
+from validation.engine.executor import _pool
+from validation.engine.measure import execute
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.runs.threads import VARIABLES
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.contract import Solver
+from validation.solvers.registry import get_solver, solve
+
+MANY = 3  # threads of this process, whatever the machine has
+
+
+def threads() -> set[int]:
+    """Return the numbers of threads of the BLAS libraries of this process."""
+    return {info["num_threads"] for info in threadpool_info() if info["user_api"] == "blas"}
+
+
+@pytest.fixture
+def many_threads(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Let this process be one in which nobody has decided, with some threads."""
+    for name in VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    with threadpool_limits(MANY, user_api="blas"):
+        yield
+    assert not set(VARIABLES) & set(os.environ)
+
+
+class Looking(Solver):
+    """A solver that notes how many threads it sees."""
+
+    name = "looking"
+    sources = ("validation.runs",)
+
+    def __init__(self) -> None:
+        self.seen: list[set[int]] = []
+
+    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+        self.seen.append(threads())
+        time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+        return Run(Outcome.COMPLETED, History(time, dict.fromkeys(scene.run.columns, 0 * time)))
+
+
+def block() -> Scene:
+    """Return a scene of one block."""
+    return load_scene("figures-3-4").expand()[0].with_values({"time.steps": 5})
+
+
+def test_solve_from_python_takes_one_thread_and_leaves_the_others_as_they_were(many_threads: None) -> None:
+    looking = Looking()
+    assert solve(block(), looking).outcome is Outcome.COMPLETED
+    assert looking.seen == [{1}]
+    assert threads() == {MANY}
+
+
+def test_what_the_user_says_is_left(many_threads: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", str(MANY))
+    looking = Looking()
+    solve(block(), looking)
+    assert looking.seen == [{MANY}]
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS")
+
+
+def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
+    many_threads: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A gate of the pytest plug-in and a case on a Dask worker are executed so."""
+    looking = Looking()
+    monkeypatch.setattr(Case, "make_solver", lambda case: looking)
+    execute(Case(block(), "looking", ("history",)), "key", "study")
+    assert looking.seen == [{1}]
+    assert threads() == {MANY}
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+def test_a_worker_process_has_one_thread(many_threads: None, monkeypatch: pytest.MonkeyPatch, method: str) -> None:
+    before = multiprocessing.get_start_method()
+    multiprocessing.set_start_method(method, force=True)
+    try:
+        with _pool(None, 1) as pool:
+            assert pool.submit(threads_of_worker).result() == {1}
+    finally:
+        multiprocessing.set_start_method(before, force=True)
+
+
+def threads_of_worker() -> set[int]:
+    """Return what a worker sees; imported by a worker that is no copy of this process."""
+    return threads()
+
+
+def run_python(code: str, **environment: str) -> str:
+    """Run code in a process in which nobody has decided."""
+    kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=kept | environment, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()[-1]
+
+
+TYPED = """
+import os, sys
+sys.argv = ["dda-validate", "list", "studies"]
+from validation.__main__ import main
+try:
+    main()
+except SystemExit:
+    pass
+import numpy, scipy.linalg
+from threadpoolctl import threadpool_info
+print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_NUM_THREADS"))
+"""
+
+
+def test_a_command_has_one_thread_as_typed() -> None:
+    assert run_python(TYPED) == "{1} 1"
+
+
+def test_a_command_has_as_many_as_the_user_says() -> None:
+    assert run_python(TYPED, OMP_NUM_THREADS="2") == "{2} 2"
+
+
+def test_the_package_dda_touches_nothing() -> None:
+    code = "import os; before = dict(os.environ); import dda, validation; print(dict(os.environ) == before)"
+    assert run_python(code) == "True"
+
+
+def test_the_process_of_a_users_solver_has_one_thread(
+    many_threads: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "counting.py").write_text(
+        "import os\nabout = {}\n"
+        "def solve(scene):\n    raise RuntimeError('threads: ' + os.environ.get('OMP_NUM_THREADS', 'all'))\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    run = get_solver("counting:solve").solve(block())
+    assert "threads: 1" in run.notes[-1]

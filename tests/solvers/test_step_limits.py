@@ -1,0 +1,170 @@
+"""A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.engine.measure import attempt
+from validation.errors import InputError
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.contract import Solver
+from validation.solvers.registry import get_solver, solve
+from validation.solvers.soundness import MARGIN, reach
+
+BLOCK: dict[str, Any] = {"side": 2.0, "density": 2700.0, "young": 1e9}
+CONTACT: dict[str, Any] = {"stiffness": 1e9}
+OPEN: dict[str, Any] = {**CONTACT, "law": "unilateral"}
+PRESSURE: dict[str, Any] = {"pressure": 5e6}
+COLUMN: dict[str, Any] = {
+    "motion": "shear",
+    "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
+}
+PULSE: dict[str, Any] = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
+LIMIT = 1.5192e-3  # s of the paper's block on p = 1e9 N/m, alpha = 0, delta = 1/2
+
+
+def scene(step: float, steps: int = 300, **tables: Any) -> Scene:
+    """Return a scene under central differences, a block unless `tables` says otherwise."""
+    plain = {"time": {"step": step, "steps": steps, "alpha": 0.0, "delta": 0.5}, "fem": {"elements": 2}}
+    body = {} if "column" in tables else {"block": BLOCK, "contact": CONTACT, "load": PRESSURE}
+    return parse_scene({**body, **plain, **tables}, "limited")
+
+
+def refusal(solver: str, limited: Scene) -> str | None:
+    """Return why a run is refused, None where it is not."""
+    run = attempt(get_solver(solver), limited, full=False)[1]
+    return run.notes[-1] if run.outcome is Outcome.REFUSED else None
+
+
+SCENES = {
+    "locked": ("dda", {}),
+    "sixty digits": ("dda-60", {}),
+    "mesh": ("fem", {}),
+    "sixty digits of a mesh": ("fem-60", {}),
+    "adaptive": ("dda", {"damping": {"kinetic": "adaptive", "floor": 0.5}}),
+    "opening": ("dda", {"contact": OPEN}),
+    "frictionless": ("dda", {"contact": {**OPEN, "shear_stiffness": 0.0}}),
+    "thrown": ("dda", {"contact": OPEN, "block": {**BLOCK, "velocity": -1.0}, "load": {"gravity": 9.81}}),
+    "sliding": ("dda", {"contact": {**OPEN, "friction": 30.0}, "load": {**PRESSURE, "traction": 1e6}}),
+    "turning": ("dda", {"contact": OPEN, "run": {"geometry": "updated"}}),
+    "opening sub-blocks": ("dda", {"contact": OPEN, "block": {**BLOCK, "subdivide": [2, 2], "glue_ratio": 10.0}}),
+    "opening mesh": ("fem", {"contact": OPEN}),
+    "sliding mesh": ("fem", {"contact": {**OPEN, "friction": 30.0}, "load": {**PRESSURE, "traction": 1e6}}),
+    "column of blocks": ("dda", {"column": COLUMN, "input": PULSE}),
+    "column of elements": ("fem", {"column": COLUMN, "input": PULSE}),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name: str) -> None:
+    solver, tables = SCENES[name]
+    said = refusal(solver, scene(1.0, 2, **tables))
+    assert said is not None
+    limit = float(said.split("must not exceed ")[1].split(" s")[0])
+    assert refusal(solver, scene(1.001 * limit, 2, **tables)) is not None
+    run = solve(scene(0.999 * limit, **tables), solver)
+    assert run.outcome is Outcome.COMPLETED, run.notes
+
+
+def test_a_block_that_may_open_has_the_limit_of_the_locked_one() -> None:
+    locked, opening = (refusal("dda", scene(0.01, 2, contact=contact)) for contact in (CONTACT, OPEN))
+    assert locked == opening
+    assert locked is not None and f"must not exceed {LIMIT:g} s" in locked
+
+
+def test_a_rigid_stop_has_no_stable_step_of_a_conditional_scheme() -> None:
+    rigid = scene(1e-6, 2, contact={**OPEN, "stiffness": math.inf, "shear_stiffness": 0.0})
+    said = refusal("dda", rigid.with_values({"time.alpha": 0.2}))
+    assert said is not None and "rigid stop" in said
+    assert refusal("dda", rigid.with_values({"time.alpha": 0.25})) is None
+
+
+def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top() -> None:
+    flat = {"width": 0.67, "height": 0.17, "density": 2700.0, "young": 1e9}
+    load = {"pressure": 1e6, "eccentricity": 0.2}
+    said = refusal("dda", scene(0.1, 2, block=flat, contact=OPEN, load=load, run={"geometry": "updated"}))
+    assert said is not None and "must not exceed" in said
+
+
+GROWING = ("opening", "turning", "opening sub-blocks", "opening mesh", "locked", "mesh", "column of blocks")
+
+
+@pytest.mark.parametrize("name", GROWING)
+def test_a_step_that_is_allowed_runs_and_its_growth_is_an_outcome_of_its_own(name: str) -> None:
+    solver, tables = SCENES[name]
+    run = solve(scene(0.05, 20, **tables).with_values({"time.allow_unstable": True}), solver)
+    assert run.outcome is Outcome.UNBOUNDED, run.notes
+
+
+class Driven(Solver):
+    """A solver that returns the history that a test gives it."""
+
+    name = "driven"
+
+    def __init__(self, values: Any) -> None:
+        self.values = np.asarray(values, float)
+
+    def solve(self, scene: Scene, full: bool = False, fields: Any = None) -> Run:
+        time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+        return Run(Outcome.COMPLETED, History(time, {"displacement": self.values}))
+
+
+def test_plain_floats_that_overflow_are_an_outcome() -> None:
+    adaptive = {"kinetic": "adaptive", "floor": 0.9}
+    load = {"gravity": 9.81, "slope": -6.0}
+    growing = scene(0.2, 300, damping=adaptive, load=load).with_values({"time.delta": 0.3, "time.allow_unstable": True})
+    assert solve(growing, "dda").outcome is Outcome.OVERFLOW
+
+
+@pytest.mark.parametrize(
+    ("values", "outcome"),
+    [
+        ([0.0, math.nan, 0.0], Outcome.NOT_A_NUMBER),
+        ([0.0, math.inf, 0.0], Outcome.OVERFLOW),
+        ([0.0, 0.0], Outcome.WRONG_SHAPE),
+        ([0.0, 1e15, 0.0], Outcome.UNBOUNDED),
+        ([0.0, -1.0, 0.0], Outcome.COMPLETED),
+    ],
+)
+def test_solve_from_python_names_what_is_wrong_with_a_history(values: list[float], outcome: Outcome) -> None:
+    plain = scene(1e-3, 3, run={"columns": ["displacement"]})
+    assert solve(plain, Driven(values)).outcome is outcome
+
+
+def test_the_bound_is_that_of_a_free_body() -> None:
+    """Nothing holds a block that falls: it goes as far as the bound says, a wave's time and a step apart."""
+    falling = scene(0.01, 100, contact={**OPEN, "gap": 1000.0}, load={"gravity": 9.81})
+    falling = falling.with_values({"time.alpha": 0.25, "time.start": "consistent"})
+    run = solve(falling, "dda")
+    largest = float(np.max(np.abs(run.displacement)))
+    bound = reach(falling) - 1000.0  # the gap is added: a block may be pushed out of it
+    assert largest == pytest.approx(9.81 / 2, rel=1e-6)
+    assert largest < bound < 1.1 * largest
+
+
+def test_a_column_that_resonates_stays_far_below_the_bound() -> None:
+    sound = scene(1e-3, 3000, column=COLUMN, input=PULSE).with_values({"time.alpha": 0.25})
+    run = solve(sound, "fem")
+    assert run.outcome is Outcome.COMPLETED
+    assert float(np.max(np.abs(run.displacement))) < MARGIN / 100 * reach(sound)
+
+
+def test_the_motion_of_a_base_enters_the_bound(tmp_path: Path) -> None:
+    record = tmp_path / "base.csv"
+    record.write_text("time,x\n0,0\n1,2\n2,2\n")
+    shaken = scene(1e-3, 1000, load={"base_motion": str(record)})
+    assert reach(shaken) == pytest.approx(1.0 * 2 * 2 + 2.0, rel=0.01)  # T (2 m/s up and down again) + max |y|
+    record.unlink()
+    assert reach(shaken) == math.inf
+
+
+def test_a_refusal_of_a_scene_from_python_is_an_error() -> None:
+    with pytest.raises(InputError):
+        solve(scene(0.01, 2, contact=OPEN), "dda")

@@ -1,0 +1,90 @@
+"""The largest frequency of blocks of the package `dda` on contact that opens: that of the closed, sticking contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from validation.scenes.scene import Scene
+from validation.solvers.limits import StepLimit
+
+if TYPE_CHECKING:
+    import dda
+
+# A locked corner must have a shear spring; one so soft stands for none and moves no digit of the largest frequency.
+FRICTIONLESS = 1e-12  # of the normal stiffness
+
+
+def dda_limit(highest_frequency: Callable[[], float]) -> StepLimit:
+    """Return the limit of the scheme of `dda` at a largest frequency."""
+    import dda
+
+    return StepLimit(dda.spectral.critical_omega, highest_frequency)
+
+
+def closed_corners(stiffness: float, shear: float) -> dda.Contact:
+    """Return corners that stay closed and stick."""
+    import dda
+
+    return dda.Contact(stiffness, shear or FRICTIONLESS * stiffness)
+
+
+def closed_model(scene: Scene) -> dda.TwoBlockModel:
+    """Return the block of a scene on its base with both corners closed and sticking.
+
+    What has no pressure, such as a block that is thrown, is given one: its impact moves the same unknowns.
+    """
+    import dda
+
+    b, c, q = scene.block, scene.contact, scene.load
+    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    loads = q.pressure or 1.0, b.base, b.top, q.eccentricity, q.traction, q.gravity, None, q.slope
+    return dda.TwoBlockModel(block, closed_corners(c.stiffness, c.shear), *loads)
+
+
+def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:
+    """Return the largest frequency of a whole block in the unknowns that its load moves [rad/s]."""
+    import dda
+
+    return max(mode.frequency for mode in dda.modes(model, scheme))
+
+
+def opening_frequency(scene: Scene, scheme: dda.Scheme) -> float:
+    """Return the largest frequency of a whole block that may leave its base [rad/s]."""
+    if math.isinf(scene.contact.stiffness):
+        return math.inf
+    return largest_frequency(closed_model(scene), scheme)
+
+
+def opening_system_frequency(scene: Scene) -> float:
+    """Return the largest frequency of glued sub-blocks that may leave their base [rad/s]."""
+    import dda
+
+    b = scene.block
+    if math.isinf(scene.contact.stiffness):
+        return math.inf
+    columns, rows = b.subdivide or (1, 1)
+    return dda.highest_frequency(dda.subdivided(closed_model(scene), columns, rows, b.glue_ratio * b.young, b.pattern))
+
+
+def rolling_frequency(scene: Scene, scheme: dda.Scheme) -> float:
+    """Return the largest frequency of a block that may turn on to any of its edges [rad/s].
+
+    The directions of the springs turn against the block, so that the stiffer of the two acts along both. A pressure and
+    a traction move all six unknowns, as a block that turns does.
+    """
+    import dda
+
+    b, c = scene.block, scene.contact
+    if math.isinf(c.stiffness):
+        return math.inf
+    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    stiffness = max(c.stiffness, c.shear)
+    corners = closed_corners(stiffness, stiffness)
+    frequencies = []
+    for base in range(len(scene.block.outline)):
+        top = 0 if base else 1  # any other edge
+        model = dda.TwoBlockModel(block, corners, pressure=1.0, base=base, top=top, traction=1.0)
+        frequencies.append(largest_frequency(model, scheme))
+    return max(frequencies)

@@ -1,0 +1,119 @@
+r"""Whether a history is sound: one finite number for each step, and no motion that the scene could not have driven.
+
+What neither creates energy nor takes it from elsewhere (springs, closed, open or slipping contacts, damping) moves no
+faster than its load alone would drive it: with E the energy of a body of mass m under a force F in the frame of its
+base, dE/dt <= (|F| + m |y''|) v and v <= sqrt(2 E / m), so that
+
+    s = sqrt(2 E / m),   s' <= |F| / m + |y''|,   |u| <= s0 T + |F| T^2 / (2 m) + T integral |y''| dt + max |y|.
+
+A history beyond `MARGIN` times that bound is unbounded growth, whatever made it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.runs.run import Outcome, Run
+from validation.scenes.drive import motion_at
+from validation.scenes.record import base_record
+from validation.scenes.scene import Scene
+
+# The bound is of the mean over the body: a point of it may move further by the square root of the mass over that of
+# the point's surroundings, and a scheme overshoots in its first steps. A growing step passes a thousandfold at once.
+MARGIN = 1e3
+TINY = float(np.finfo(float).tiny)  # what stands for a mass or modulus that underflows
+LENGTHS = ("displacement", "horizontal_displacement", "gap_", "slide_", "largest_")  # columns in m begin so
+
+
+def checked(run: Run, scene: Scene) -> Run:
+    """Check a run's history against its scene; a defect replaces the outcome."""
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        return run
+    steps = scene.time.steps
+    for name in ("time", *scene.run.columns):
+        values = run.history.time if name == "time" else run.history.columns.get(name)
+        if values is None:
+            continue
+        if np.shape(values) != (steps,):
+            return _failed(run, Outcome.WRONG_SHAPE, f"{name} has shape {np.shape(values)}, not ({steps},)")
+        if np.isnan(values).any():
+            return _failed(run, Outcome.NOT_A_NUMBER, f"{name} at step {int(np.argmax(np.isnan(values))) + 1}")
+        if np.isinf(values).any():
+            return _failed(run, Outcome.OVERFLOW, f"{name} at step {int(np.argmax(np.isinf(values))) + 1}")
+    largest = MARGIN * reach(scene)
+    for name in scene.run.columns:
+        values = run.history.columns.get(name)
+        if values is None or not name.startswith(LENGTHS):
+            continue
+        beyond = np.abs(values) > largest
+        if beyond.any():
+            step = int(np.argmax(beyond)) + 1
+            said = f"{name} exceeds {largest:.3g} m, {MARGIN:g} times what the load can do, at step {step}"
+            return _failed(run, Outcome.UNBOUNDED, said)
+    return run
+
+
+def _failed(run: Run, outcome: Outcome, note: str) -> Run:
+    return replace(run, outcome=outcome, notes=(*run.notes, note))
+
+
+def reach(scene: Scene) -> float:
+    """Return the bound of the displacement that the load and the given energy of a scene can drive [m].
+
+    It is infinite where the motion of the base cannot be read: the solver that ran the scene has not read it either.
+    """
+    with np.errstate(all="ignore"):
+        try:
+            bound = _reach_of_block(scene) if scene.column is None else _reach_of_column(scene)
+        except InputError:
+            return math.inf
+    return math.inf if math.isnan(bound) else bound
+
+
+def _reach_of_block(scene: Scene) -> float:
+    b, c, q = scene.block, scene.contact, scene.load
+    start, end = b.edge(b.top)
+    top = math.dist(start, end)
+    mass = max(b.mass, TINY)
+    acceleration = (abs(q.pressure) + abs(q.traction)) * top / mass + abs(q.gravity)
+    # The surface moves before the mean does: as long as a wave takes through the block, the bound would be too small.
+    size = np.ptp(np.array(b.outline), axis=0)
+    travel = math.hypot(*size.tolist()) * math.sqrt(b.density / b.young)
+    time = scene.time.duration + scene.time.step + travel
+    moved = _base_motion(scene, time)
+    return abs(b.velocity) * time + acceleration * time * time / 2 + moved + c.gap + sum(c.band)
+
+
+def _base_motion(scene: Scene, time: float) -> float:
+    """Return T integral |y''| dt + max |y| of a base whose record is read linearly between its instants [m]."""
+    record = base_record(scene)
+    if record is None:
+        return 0.0
+    displacement = np.column_stack([record.x, record.y])
+    velocity = np.diff(displacement, axis=0) / np.diff(record.time)[:, None]
+    at_rest = np.zeros((1, 2))
+    jumps = np.diff(np.concatenate([at_rest, velocity, at_rest]), axis=0)
+    changes = float(np.sum(np.hypot(*jumps.T)))
+    return time * changes + float(np.max(np.hypot(*displacement.T)))
+
+
+def _reach_of_column(scene: Scene) -> float:
+    column = scene.column
+    if column is None:
+        raise InputError(f"{scene.name}: column: is needed, got a scene of a block")
+    mass = max(sum(layer.thickness * layer.density for layer in column.layer), TINY)  # kg/m2
+    speeds = [math.sqrt(max(column.modulus(layer), TINY) / layer.density) for layer in column.layer]
+    travel = sum(layer.thickness / speed for layer, speed in zip(column.layer, speeds, strict=True))
+    step = scene.time.step
+    time = scene.time.duration + step + travel
+    drive = motion_at(scene, step * np.arange(scene.time.steps + 1.0))
+    pushed = float(np.max(np.abs(drive.pressure))) / mass * time * time / 2
+    jumps = float(np.sum(np.abs(np.diff(drive.velocity, prepend=0.0))))
+    moved = time * jumps + float(np.max(np.abs(drive.displacement)))
+    # A transmitting base takes in at most Z v^2 of the incident wave.
+    taken_in = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2))
+    return pushed + 2 * moved + time * math.sqrt(2 * taken_in / mass)
