@@ -291,7 +291,8 @@ def _errors(found: Found, pair: tuple[str, str]) -> tuple[Array, Array]:
 def carrying_caption(found: Found, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(found)
-    said = "The longer the step, the more it damps, and the better DDA seems to agree with the bar"
+    turn = closed.most_damped(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
+    said = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
     if len(rows) > 1:
         said += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
         said += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
