@@ -49,7 +49,7 @@ def test_amplitudes_stand_under_their_solver_and_quantity() -> None:
 
 def test_the_damping_that_a_step_hides_is_told_at_its_frequency() -> None:
     rows = {("response-damping", f"dda at {f} Hz"): {"damping.steps": 0.0156 * f} for f in (5, 10)}
-    assert "by 7.8\u00a0% at 5 Hz, 15.6\u00a0% at 10 Hz of critical" in response.hidden(rows)
+    assert "steady ratios |Im W|/|W| = sin(ω dt/4) of 7.8\u00a0% at 5 Hz, 15.6\u00a0% at 10 Hz" in response.hidden(rows)
 
 
 # ---- waves --------------------------------------------------------------------------------------------------------

@@ -69,7 +69,7 @@ def test_the_register_lists_every_claim() -> None:
     claims = json.loads(json.dumps(dict(PAPER.data())))["claims"]  # as a manifest holds them
     table = claims_table(claims, {"C1": {"verdict": 2.0, "left": 0.001}, "C6": {"verdict": 1.0}})
     rows = {row[0]: row for row in table.rows}
-    assert {f"C{i}" for i in range(1, 22)} | {"S13", "S16", "S20", "S21", "S29", "S32"} == set(rows)
+    assert {f"C{i}" for i in range(1, 23)} | {"S13", "S16", "S20", "S21", "S29", "S32"} == set(rows)
     assert rows["C1"][1] == "confirmed" and rows["C1"][4] == "left 0.001"
     assert rows["C6"][1] == "under a condition" and "Condition: mode by mode" in rows["C6"][3]
     assert rows["C2"][1] == "not tested"

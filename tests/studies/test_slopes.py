@@ -179,7 +179,7 @@ def oracle(case: Scene, lagged: bool) -> Slider:
     return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)
 
 
-CREEP = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n in 0.4 s
+CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n
     (20.0, 30.0, 0.4, 0.811),
     (20.0, 22.0, 0.4, 1.210),
     (5.0, 30.0, 0.4, 0.0276),
@@ -190,7 +190,7 @@ CREEP = [  # slope and friction [deg], shear springs over normal ones, speed of 
 ]
 
 
-@pytest.mark.parametrize(("slope", "phi", "shear", "factor"), CREEP)
+@pytest.mark.parametrize(("slope", "phi", "shear", "factor"), CREEP_FACTORS)
 def test_the_creep_of_the_exact_block_scales_with_g_over_w_n_by_a_factor_of_slope_friction_and_springs(
     slope: float, phi: float, shear: float, factor: float
 ) -> None:
