@@ -28,12 +28,16 @@ from numpy.typing import ArrayLike
 from fem_reference.events.bar_march import Piece, pieces
 from fem_reference.events.bar_model import BarProblem, Units
 from fem_reference.events.decimals import HALF, TWO, ZERO, working
-from fem_reference.events.switches import Switch, TooManySwitchesError
+from fem_reference.events.switches import Switch, TooManySwitchesError, TooMuchWorkError
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 60
 """Decimal digits of the computation beyond those that it is known to lose."""
+PIECES = 6000
+"""Greatest number of pieces, about ten seconds and 200 MB."""
+FRONT = 4
+"""Travel times between two arrivals of the load's front at the base."""
 
 
 @dataclass(frozen=True)
@@ -188,6 +192,8 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
         If `end` is not positive and finite or `digits` is below 50.
     TooManySwitchesError
         If there are more switches than `limit`.
+    TooMuchWorkError
+        If there are more pieces than `PIECES`; see `most_pieces`.
     """
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
@@ -202,9 +208,22 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
             switches += bool(found) and piece.closed != found[-1].closed
             found.append(piece)
             if switches > limit:
-                raise TooManySwitchesError(f"more than {limit} switches by {float(piece.start * units.travel):g} s")
+                raise TooManySwitchesError(float(piece.start * units.travel), f"more than {limit} switches")
+            if len(found) > PIECES:
+                count = f"up to {most_pieces(problem, end):.3g} pieces until {end:g} s, of which {PIECES} are the limit"
+                raise TooMuchWorkError(float(piece.start * units.travel), f"a stiff base opens and closes in {count}")
         changes = tuple(_switches(found, units.travel))
     return BarMotion(problem, float(end), precision, found[0].closed, changes, tuple(found))
+
+
+def most_pieces(problem: BarProblem, end: float) -> float:
+    """Pieces that a motion of a stiff base may have, before it is computed.
+
+    The n-th front of the load at the base rings 2 n times, Laguerre's polynomial of degree n in 2 kappa s; if the base
+    opens and closes in each swing, as under a light weight, and each of these switches comes back as an echo after
+    every round trip, (2/3) n^3 pieces follow by the n-th front.
+    """
+    return 2 / 3 * (end / problem.travel / FRONT + 1) ** 3
 
 
 def _lost(problem: BarProblem, end: float) -> int:

@@ -1,11 +1,13 @@
 """The block of one strain with no-tension corners and friction, exact in time: from switch to switch.
 
 A corner is closed while it presses, N = -p w >= 0, and open while its gap w is positive; closed, it sticks, or slips
-at |T| = tan(phi) N + C. Between switches the block obeys M x'' + K x = F with the springs of its closed corners, in
-closed form. The next switch is the first instant at which a gap or a normal force falls through zero, the shear force
-of a corner that sticks reaches its limit, or the reference of one that slips comes to rest. Everything is computed in
-decimal arithmetic, so that the many switches of a stiff contact, each of which amplifies the errors before it, leave
-all digits of a float.
+at |T| = tan(phi) N + C. Between switches the block obeys M x'' + K x = F with the springs of its closed corners, whose
+power series is summed in ball arithmetic. The next switch is the first instant at which a gap or a normal force falls
+through zero, the shear force of a corner that sticks reaches its limit, or the reference of one that slips comes to
+rest. That it is the first is proven: up to it Bernstein's form of each of these functions, or Taylor's formula with a
+bound on the third derivative, is positive (`block_flow.Step.doubtful`, `enclosure.first_fall`), and the interval Newton
+operator proves that one root lies in the ball of its instant. Where two corners switch in one ball both switch in it;
+where a function comes so near to zero that a crossing is neither proven nor excluded, its instant is in `touches`.
 
 A corner at zero gap goes the way of the first derivative of its gap that is not zero: a block that touches
 at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
@@ -16,24 +18,30 @@ releases the energy T^2 / (2 p_s) of its spring.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from decimal import Decimal, getcontext
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from fem_reference.events.block_model import OPEN, STICKS, Base, BlockModel, BlockProblem, Course
-from fem_reference.events.block_pieces import FloatPiece, Piece, Pieces
-from fem_reference.events.block_rows import State
-from fem_reference.events.block_switching import Beginning, arrived, changes, settled
-from fem_reference.events.decimals import ZERO, working
-from fem_reference.events.switches import NoContactStateError, Switch, TooManySwitchesError
-from fem_reference.problem.instants import by_pieces, instants
+from fem_reference.events.block_flow import ANGLE, FLOAT_TERMS, ROUNDING
+from fem_reference.events.block_march import March, Node
+from fem_reference.events.block_model import OPEN, RIGHT, STICKS, BlockModel, BlockProblem, Course
+from fem_reference.events.block_switching import Flows
+from fem_reference.events.enclosure import working
+from fem_reference.events.switches import LostDigitsError, Switch
+from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 50
-"""Decimal digits of the computation."""
+"""Decimal digits of the first computation."""
+MOST_DIGITS = 240
+"""Decimal digits of the last one, where switches cost those of the ones before."""
+PROMISED = 1e-20
+"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
+CHUNK = 2000
+"""Instants that are computed together."""
+Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -58,6 +66,7 @@ class BlockHistory:
     load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J], shape (times,)
     released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
     friction: Array  # energy lost by friction until then [J], shape (times,)
+    displacement_radius: Array  # greatest distance of each displacement from the true one, shape (6, times)
 
     @property
     def energy(self) -> Array:
@@ -71,16 +80,63 @@ class BlockMotion:
 
     problem: BlockProblem
     end: float  # last instant [s]
+    digits: int  # decimal digits of the computation
     closed_at_start: tuple[bool, bool]  # whether M and N are closed just after t = 0
     switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
-    pieces: tuple[FloatPiece, ...]  # the pieces of the motion in the order of time
+    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
+    nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
+
+    @property
+    def radius(self) -> float:
+        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
+        return max((switch.radius for switch in self.switches), default=0.0)
+
+    @property
+    def simultaneous(self) -> tuple[float, ...]:
+        """Instants at which both corners switch within one ball [s]."""
+        corners: dict[str, set[str]] = {}
+        for switch in self.switches:
+            corners.setdefault(switch.midpoint, set()).add(switch.corner)
+        return tuple(float(time) for time, both in corners.items() if len(both) == 2)
+
+    @cached_property
+    def _flows(self) -> Flows:
+        with working(DIGITS):
+            return Flows(BlockModel(self.problem))
 
     @cached_property
     def _matrices(self) -> tuple[Array, Array, Array]:
-        with working(DIGITS):
-            model = BlockModel.of(self.problem)
-        mass, elastic, load = (np.array(x, dtype=float) for x in (model.mass, model.elastic, model.load))
-        return mass, elastic, load
+        model = self._flows.model
+        mass, load = (np.array([float(x) for x in part]) for part in (model.mass, model.load))
+        return mass, np.array([[float(x) for x in row] for row in model.elastic]), load
+
+    @cached_property
+    def _starts(self) -> Array:
+        return np.array([node.start[0] for node in self.nodes])
+
+    @cached_property
+    def _gathered(self) -> Stacked:
+        return Stacked(self.nodes)
+
+    @cached_property
+    def _spent(self) -> Array:
+        """Energy lost by friction and work of the base until each node [J], shape (2, nodes)."""
+        lengths = np.append(self._starts[1:], self.end) - self._starts
+        gains = np.zeros((2, len(self.nodes)))
+        for part in self._series(np.arange(len(self.nodes))):
+            gains[:, part.index] = part.spent(lengths[part.index])
+        return np.hstack([np.zeros((2, 1)), np.cumsum(gains, axis=1)[:, :-1]])
+
+    def _series(self, nodes: Places) -> Iterator[StepSeries]:
+        """The series of some nodes, those of one state of the corners together, at most `CHUNK` at once."""
+        gathered = self._gathered
+        keys = gathered.keys[nodes]
+        for key in np.unique(keys):
+            places = np.flatnonzero(keys == key)
+            for first in range(0, len(places), CHUNK):
+                chunk = places[first : first + CHUNK]
+                with working(DIGITS):
+                    yield StepSeries(self._flows, gathered, nodes[chunk], chunk)
 
     def at(self, times: ArrayLike) -> BlockHistory:
         """The motion at instants in any order.
@@ -91,14 +147,17 @@ class BlockMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        x, rate, rest = np.empty((12, len(t))), np.empty((12, len(t))), np.empty((7, len(t)))
-        for i, here in by_pieces(t, [piece.start[0] for piece in self.pieces]):
-            piece = self.pieces[i]
-            x[:, here], rate[:, here] = piece.values(t[here])
-            rest[:, here] = piece.contacts(t[here], x[:, here])
-        return self._history(t, x, rate, rest)
+        x, rate, rest, radius = (np.empty((count, len(t))) for count in (12, 12, 7, 6))
+        nodes = np.searchsorted(self._starts, t, side="right") - 1
+        for part in self._series(nodes):
+            here = part.index
+            s = (t[here] - part.start[0]) - part.start[1]
+            x[:, here], rate[:, here], radius[:, here] = part.values(s)
+            rest[:5, here] = part.contacts(x[:, here])
+            rest[5:, here] = self._spent[:, nodes[here]] + part.spent(s)
+        return self._history(t, x, rate, rest, radius)
 
-    def _history(self, t: Array, x: Array, rate: Array, rest: Array) -> BlockHistory:
+    def _history(self, t: Array, x: Array, rate: Array, rest: Array, radius: Array) -> BlockHistory:
         mass, elastic, load = self._matrices
         p, ps = self.problem.stiffness, self.problem.shear_stiffness
         closed = np.asarray(rest[:2] != OPEN, dtype=float)
@@ -123,6 +182,7 @@ class BlockMotion:
             load=-load @ x[:6] - rest[6],
             released=rest[4],
             friction=rest[5],
+            displacement_radius=radius,
         )
 
 
@@ -130,6 +190,83 @@ def _unknowns(x: Array) -> Array:
     """(u, v, r, ex, ey, gxy) of the first six rows u, v, ux, uy, vx, vy."""
     u, v, ux, uy, vx, vy = x[:6]
     return np.array([u, v, (vx - uy) / 2, ux, vy, uy + vx])
+
+
+class Stacked:
+    """The nodes of a motion as arrays, one column a node."""
+
+    def __init__(self, nodes: tuple[Node, ...]) -> None:
+        self.states = np.array([node.states for node in nodes], dtype=float).T
+        self.keys = 10 * self.states[0] + self.states[1]
+        self.start = np.array([node.start for node in nodes]).T
+        self.values = np.array([node.values for node in nodes]).T
+        self.radius = np.array([node.radius for node in nodes]).T
+        self.base = np.array([node.base for node in nodes]).T
+        self.references = np.array([node.references for node in nodes]).T
+        self.slipped = np.array([node.slipped for node in nodes]).T
+        self.released = np.array([node.released for node in nodes])
+
+
+class StepSeries:
+    """Power series of what is reported, in floats, from nodes in one state of the corners."""
+
+    def __init__(self, flows: Flows, stacked: Stacked, nodes: Places, index: Places) -> None:
+        self.index = index  # places of the nodes among those that were asked for
+        states = stacked.states[:, nodes[0]]
+        self.flow = flows[int(states[0]), int(states[1])]
+        self.scale = ANGLE / self.flow.rate
+        self.start, self.states = stacked.start[:, nodes], stacked.states[:, nodes]
+        self.slipped, self.released = stacked.slipped[:, nodes], stacked.released[nodes]
+        self.references, self.base = stacked.references[:, nodes], stacked.base[:, nodes]
+        table = np.einsum("ij,kjl->kil", self.flow.outputs, self.flow.powers(self.scale))
+        self.c = table @ stacked.values[:, nodes]  # over (s / scale)^k, shape (terms, 12, nodes)
+        self.c[0, 8:10] += self.flow.stretched[:, None]
+        for corner in (0, 1):
+            if self.states[corner, 0] == STICKS:
+                self.c[0, 10 + corner] += self.references[corner]
+        for row, (place, speed) in enumerate(((0, 2), (1, 3))):
+            self.c[0, row] += self.base[place]
+            self.c[1, row] += self.base[speed] * self.scale
+        J = np.abs(self.flow.jacobian(self.scale))[:6] + np.eye(14)[:6]
+        self.radius = J @ stacked.radius[:, nodes]
+
+    def values(self, s: Array) -> tuple[Array, Array, Array]:
+        """Unknowns, gaps, stretches s - r and slides, their rates, and radii of the displacements."""
+        z = s / self.scale
+        value, rate, size = self.c[-1].copy(), np.zeros_like(self.c[0]), np.abs(self.c[-1, :6])
+        for k in range(FLOAT_TERMS - 2, -1, -1):
+            rate = rate * z + value
+            value = value * z + self.c[k]
+            size = size * z + np.abs(self.c[k, :6])
+        u, v, ux, uy, vx, vy = self.radius + ROUNDING * size
+        return value, rate / self.scale, np.array([u, v, (vx + uy) / 2, ux, vy, uy + vx])
+
+    def contacts(self, values: Array) -> Array:
+        """States, movements of the references, energies lost by opening, shape (5, nodes)."""
+        slipping = np.abs(self.states) == RIGHT
+        moved = slipping * (values[10:12] - values[8:10] - self.references)
+        return np.vstack([self.states, self.slipped + moved, self.released])
+
+    def spent(self, s: Array) -> Array:
+        """Energy lost by friction and work of the base from the nodes on [J], shape (2, nodes)."""
+        z, count = s / self.scale, 2 * FLOAT_TERMS
+        total = np.zeros((2, count, len(z)))
+        k = np.arange(1, FLOAT_TERMS)[:, None]
+        p, ps = float(self.flow.model.p), float(self.flow.model.ps)
+        for c in (0, 1):
+            stretch, gap = self.c[:, 8 + c], self.c[:, 6 + c]
+            if abs(self.flow.states[c]) == RIGHT:  # the integral of -T r', T = -p_s (s - r)
+                moved = (self.c[:, 10 + c] - stretch)[1:] * k
+                for i in range(FLOAT_TERMS):
+                    total[0, i + 1 : i + FLOAT_TERMS] += ps * stretch[i] * moved
+            if self.flow.states[c] != OPEN:  # the integral of N y' + T x'
+                power = -p * gap * self.base[3] - ps * stretch * self.base[2]
+                total[1, 1 : FLOAT_TERMS + 1] += power * self.scale
+        result, power = np.zeros((2, len(z))), np.ones_like(z)
+        for i in range(1, count):
+            power = power * z
+            result += total[:, i] * power / i
+        return result
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
@@ -142,7 +279,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     end
         Last instant [s].
     digits
-        Decimal digits of the computation, at least 30.
+        Decimal digits of the computation, at least 30; twice as many are taken, up to `MOST_DIGITS`, where the instants
+        of the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
 
@@ -152,6 +290,10 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         If `end` is not positive and finite or `digits` is below 30.
     TooManySwitchesError
         If there are more switches than `limit`.
+    TooMuchWorkError
+        If the motion takes more steps than are allowed; the contact oscillates too fast for its length.
+    LostDigitsError
+        If switches amplify what the motion may be off until nothing can be decided.
     NoContactStateError
         If no state of the corners agrees with the motion that follows from it.
     """
@@ -159,65 +301,26 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 30:
         raise ValueError(f"digits: must be at least 30, got {digits!r}")
-    pieces: list[FloatPiece] = []
-    switches: list[Switch] = []
-    with working(digits):
-        for piece, found in _march(BlockModel.of(problem), Course.of(problem.base), Decimal(end)):
-            pieces.append(FloatPiece(piece, pieces[-1] if pieces else None))
-            switches += found
-            if len(switches) > limit:
-                raise TooManySwitchesError(f"more than {limit} switches by {float(piece.state.time):g} s")
-    start = [bool(state != OPEN) for state in pieces[0].states]
-    return BlockMotion(problem, float(end), (start[0], start[1]), tuple(switches), tuple(pieces))
+    while True:
+        try:
+            with working(digits):
+                march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
+                march.run(problem.velocity)
+        except LostDigitsError:
+            if digits >= MOST_DIGITS:
+                raise
+        else:
+            if max((switch.radius for switch in march.switches), default=0.0) <= PROMISED * end:
+                break
+            if digits >= MOST_DIGITS:
+                raise LostDigitsError(_last_good(march), f"{len(march.switches)} switches have cost the digits")
+        digits = min(2 * digits, max(digits, MOST_DIGITS))
+    start = (march.closed_at_start[0], march.closed_at_start[1])
+    touches, nodes = tuple(march.touches), tuple(march.nodes)
+    return BlockMotion(problem, float(end), digits, start, tuple(march.switches), touches, nodes)
 
 
-def _march(model: BlockModel, course: Course, end: Decimal) -> Iterator[tuple[Piece, list[Switch]]]:
-    """The pieces one after another, each with the switches at its start."""
-    pieces = Pieces(model)
-    state, found = _first(model, course.base(ZERO)), list[Switch]()
-    if not model.locked:
-        state = settled(pieces, state)
-    while state.time < end:
-        piece = pieces(state)
-        yield piece, found
-        before, state = state, _next(pieces, piece, course, end)
-        found = changes(before, state)
-
-
-def _first(model: BlockModel, base: Base) -> State:
-    """The state at t = 0; the shear springs are relaxed."""
-    states = (OPEN, OPEN) if model.gap > base.y else (STICKS, STICKS)
-    return State(ZERO, [ZERO] * 6, model.velocity, states, (-base.x, -base.x), ZERO, (ZERO, ZERO), base)
-
-
-def _next(pieces: Pieces, piece: Piece, course: Course, end: Decimal) -> State:
-    """The state at the next switch, at the next row of the base's record, or where the piece has become long enough."""
-    state = piece.state
-    following = course.following(state.time)
-    row = end if following is None else min(end, following)
-    left = row - state.time
-    s = left if piece.longest is None else min(left, piece.longest)
-    beginning, switched = Beginning(pieces, state), False
-    corners = () if pieces.model.locked else (0, 1)
-    for watched in (one for c in corners for one in piece.corner(c).watched()):
-        lead = beginning.lead(watched)
-        found = ZERO if lead.sign < 0 else None
-        if lead.sign > 0 and lead.clear < s:
-            found = piece.first_fall(watched, s, lead.clear)
-        if found is not None:
-            s, switched = found, True
-    x, rate = piece.after(s)
-    time = row if s == left else state.time + s
-    base = course.base(time) if s == left else state.base.after(s)
-    there = arrived(pieces.model, replace(state, time=time, displacement=x, velocity=rate, base=base))
-    if pieces.model.locked or (not switched and s < left):
-        return there
-    return _settled(pieces, there, s / end)
-
-
-def _settled(pieces: Pieces, state: State, share: Decimal) -> State:
-    """The state with its corners as they agree with the motion, which cannot be as they were a moment before."""
-    found = settled(pieces, state)
-    if found.states == state.states and share <= Decimal(10) ** (-getcontext().prec // 2):
-        raise NoContactStateError(f"the state of the corners contradicts the motion at {float(state.time)!r} s")
-    return found
+def _last_good(march: March) -> float:
+    """The last switch that is enclosed as promised [s]."""
+    good = [switch.time for switch in march.switches if switch.radius <= PROMISED * march.end]
+    return good[-1] if good else 0.0

@@ -1,4 +1,4 @@
-"""The block of one strain on two corner springs: its data, and its matrices in decimal arithmetic.
+"""The block of one strain on two corner springs: its data, and its matrices in ball arithmetic.
 
 The block is a rectangle of width a and height b whose displacement is linear, with X, Y from the centroid::
 
@@ -6,8 +6,10 @@ The block is a rectangle of width a and height b whose displacement is linear, w
 
 The usual unknowns (u, v, r, ex, ey, gxy) are ex = ux, ey = vy, gxy = uy + vx and r = (vx - uy) / 2. In
 (u, v, ux, uy, vx, vy) the mass matrix is diagonal: m (1, 1, a^2/12, b^2/12, a^2/12, b^2/12), m = rho a b.
-The corners M = (0, 0) and N = (a, 0) have the normal gap w = g0 + v(X, -b/2) - y(t), positive when open, and
-slide by s = u(X, -b/2) - x(t), where (x, y) is the motion of the base.
+
+All motion is seen from the base, which is at (x, y) and moves evenly between the rows of its record, and v is counted
+from where the corners touch: u and v stand for u - x and v - y + g0. The corners M = (0, 0) and N = (a, 0) have the
+normal gap w = v(X, -b/2), positive when open, and slide by s = u(X, -b/2).
 
 On the block act N = -p w upwards and T towards +x. A corner that sticks has T = -p_s (s - r); one that slips has
 T = sigma (tan(phi) N + C), with sigma against the direction of its sliding, and moves its reference, r = s + T / p_s.
@@ -17,10 +19,11 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass, fields, replace
-from decimal import Decimal
+from dataclasses import dataclass, fields
+from functools import cached_property
 
-from fem_reference.events.decimals import HALF, ONE, TWO, ZERO, Matrix, Vector
+from flint import arb, arb_mat
+
 from fem_reference.problem.motion import Motion
 
 CORNERS = ("M", "N")
@@ -30,6 +33,7 @@ UNSIGNED = ("shear_stiffness", "gap", "cohesion")
 OPEN, STICKS, RIGHT, LEFT = 0, 1, 2, -2
 """States of a corner; `RIGHT` and `LEFT` slip towards +x and -x."""
 States = tuple[int, int]
+Vector = list[arb]
 
 
 def sigma(state: int) -> int:
@@ -115,148 +119,103 @@ class BlockProblem:
 class Base:
     """Where the base is at an instant, and how it goes on until the next row of its record."""
 
-    x: Decimal = ZERO  # displacement along the base [m]
-    y: Decimal = ZERO  # displacement upwards [m]
-    vx: Decimal = ZERO  # rate of x [m/s]
-    vy: Decimal = ZERO  # rate of y [m/s]
-
-    def after(self, s: Decimal) -> Base:
-        """The base a time s later."""
-        return replace(self, x=self.x + self.vx * s, y=self.y + self.vy * s)
+    x: arb  # displacement along the base [m]
+    y: arb  # displacement upwards [m]
+    vx: arb  # rate of x [m/s]
+    vy: arb  # rate of y [m/s]
 
 
-@dataclass(frozen=True)
 class Course:
-    """The path of the base from row to row of its record, held beyond its ends."""
+    """The path of the base from row to row of its record; it stays where it is beyond the ends."""
 
-    rows: tuple[tuple[Decimal, Decimal, Decimal], ...]  # instants [s] with x and y [m]
+    def __init__(self, motion: Motion | None) -> None:
+        self.motion = motion or Motion((0.0,), (0.0,), (0.0,))
 
-    @classmethod
-    def of(cls, motion: Motion | None) -> Course:
-        """The path of a record; a base at rest without one."""
-        if motion is None:
-            return cls(((ZERO, ZERO, ZERO),))
-        rows = zip(motion.time, motion.x, motion.y, strict=True)
-        return cls(tuple((Decimal(t), Decimal(x), Decimal(y)) for t, x, y in rows))
+    def from_row(self, index: int) -> Base:
+        """The base at a row of its record, and its velocity from then on; before the first row it is there at rest."""
+        motion, still = self.motion, arb(0)
+        x, y = arb(motion.x[max(index, 0)]), arb(motion.y[max(index, 0)])
+        if index < 0 or index + 1 == len(motion.time):
+            return Base(x, y, still, still)
+        spacing = arb(motion.time[index + 1]) - arb(motion.time[index])
+        return Base(x, y, (arb(motion.x[index + 1]) - x) / spacing, (arb(motion.y[index + 1]) - y) / spacing)
 
-    def base(self, time: Decimal) -> Base:
-        """The base from an instant on."""
-        later = bisect_right(self.rows, time, key=lambda row: row[0])
-        if later in (0, len(self.rows)):
-            return Base(*self.rows[min(later, len(self.rows) - 1)][1:])
-        (t0, x0, y0), (t1, x1, y1) = self.rows[later - 1 : later + 1]
-        vx, vy = (x1 - x0) / (t1 - t0), (y1 - y0) / (t1 - t0)
-        return Base(x0 + vx * (time - t0), y0 + vy * (time - t0), vx, vy)
-
-    def following(self, time: Decimal) -> Decimal | None:
-        """The first instant of the record after an instant, None after the last one."""
-        later = bisect_right(self.rows, time, key=lambda row: row[0])
-        return self.rows[later][0] if later < len(self.rows) else None
+    def at_start(self) -> tuple[int, Base]:
+        """The last row up to t = 0 (-1: there is none), and the base then."""
+        index = bisect_right(self.motion.time, 0.0) - 1
+        row = self.from_row(index)
+        passed = -arb(self.motion.time[max(index, 0)])
+        return index, Base(row.x + row.vx * passed, row.y + row.vy * passed, row.vx, row.vy)
 
 
-Pair = tuple[Decimal, Decimal]
-
-
-@dataclass(frozen=True)
 class BlockModel:
-    """Matrices of a block in the unknowns (u, v, ux, uy, vx, vy)."""
+    """Matrices of a block in the unknowns (u, v, ux, uy, vx, vy), in the precision of the current context."""
 
-    mass: Vector  # diagonal of the mass matrix [kg, kg m2]
-    elastic: Matrix  # stiffness of the strained block [N/m, N m]
-    load: Vector  # loads of pressure, traction and weight [N, N m]
-    normal: Matrix  # gap of each corner less g0, as rows over the unknowns [-, m]
-    shear: Matrix  # shear stretch of each corner, as rows over the unknowns [-, m]
-    gap: Decimal  # gap g0 at t = 0 [m]
-    p: Decimal  # normal stiffness of a corner [N/m]
-    ps: Decimal  # shear stiffness of a corner [N/m]
-    velocity: Vector  # velocities at t = 0 [m/s, 1/s]
-    tan: Decimal | None  # tan(phi) [-]; None: a closed corner never slips
-    C: Decimal  # cohesion of a corner [N]
-    locked: bool = False  # whether the corners never change their state
+    def __init__(self, problem: BlockProblem) -> None:
+        a, b = arb(problem.width), arb(problem.height)
+        m = arb(problem.density) * a * b
+        self.locked = problem.locked  # whether the corners never change their state
+        self.mass = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
+        self.height = problem.height  # b [m]
+        # gap and slide of each corner, as rows over the unknowns [-, m]
+        self.normal = [[arb(0), arb(1), arb(0), arb(0), x, -b / 2] for x in (-a / 2, a / 2)]
+        self.shear = [[arb(1), arb(0), x, -b / 2, arb(0), arb(0)] for x in (-a / 2, a / 2)]
+        self.p = arb(problem.stiffness)  # normal stiffness of a corner [N/m]
+        self.ps = arb(problem.shear_stiffness)  # shear stiffness of a corner [N/m]
+        # tan(phi) of the doubles that DDA computes with too; None: a closed corner never slips
+        self.tan = None if problem.friction is None else arb(math.tan(math.radians(problem.friction)))
+        self.cohesion = a * arb(problem.cohesion) / 2  # of a corner [N]
+        self.elastic = _elastic(problem, a * b)  # stiffness of the strained block [N/m, N m]
+        self.load = _load(problem, a, b, m)  # loads of pressure, traction and weight [N, N m]
 
-    @classmethod
-    def of(cls, problem: BlockProblem) -> BlockModel:
-        """The matrices in the precision of the current decimal context."""
-        a, b, rho = Decimal(problem.width), Decimal(problem.height), Decimal(problem.density)
-        m = rho * a * b
-        second = (m * a * a / 12, m * b * b / 12)
-        half, down = a / 2, -(b / 2)  # rounded before signs are given: what is symmetric cancels to an exact zero
-        return cls(
-            mass=[m, m, *second, *second],
-            elastic=_elastic(problem, a * b),
-            load=_load(problem, a, b, m),
-            normal=[[ZERO, ONE, ZERO, ZERO, x, down] for x in (-half, half)],
-            shear=[[ONE, ZERO, x, down, ZERO, ZERO] for x in (-half, half)],
-            gap=Decimal(problem.gap),
-            p=Decimal(problem.stiffness),
-            ps=Decimal(problem.shear_stiffness),
-            velocity=[ZERO, Decimal(problem.velocity), ZERO, ZERO, ZERO, ZERO],
-            tan=None if problem.friction is None else Decimal(math.tan(math.radians(problem.friction))),
-            C=a * Decimal(problem.cohesion) / 2,
-            locked=problem.locked,
-        )
+    @cached_property
+    def friction(self) -> arb:
+        """tan(phi) of a corner that can slip, else 0."""
+        return arb(0) if self.tan is None else self.tan
 
-    def stiffness(self, states: States) -> Matrix:
-        """Stiffness with the springs of the closed corners; not symmetric where one slips."""
+    def accelerations(self, states: States) -> tuple[arb_mat, arb_mat, arb_mat]:
+        """The B, f and R of x'' = f + R r - B x with the springs of the closed corners; B need not be symmetric.
+
+        r are the references of both corners, which count where a corner sticks.
+        """
         K = [list(row) for row in self.elastic]
+        F, R = list(self.load), [[arb(0), arb(0)] for _ in range(6)]
         for c, state in enumerate(states):
-            for left, right, k in self._springs(c, state):
-                for i in range(6):
-                    K[i] = [K[i][j] + k * left[i] * right[j] for j in range(6)]
-        return K
-
-    def _springs(self, corner: int, state: int) -> list[tuple[Vector, Vector, Decimal]]:
-        """Stiffnesses k of a corner with the direction of their force and that of what they feel."""
-        n, s = self.normal[corner], self.shear[corner]
-        if state == OPEN:
-            return []
-        if state == STICKS:
-            return [(n, n, self.p), (s, s, self.ps)]
-        return [(n, n, self.p), (s, n, sigma(state) * self.friction * self.p)]
-
-    @property
-    def friction(self) -> Decimal:
-        """tan(phi) of a corner that can slip."""
-        return ZERO if self.tan is None else self.tan
-
-    def forces(self, states: States, references: Pair, base: Base) -> tuple[Vector, Vector]:
-        """Loads and the parts of the spring forces that do not depend on the block, at a time s: F0 + F1 s."""
-        F0, F1 = list(self.load), [ZERO] * 6
-        for c, state in enumerate(states):
-            if state != OPEN:
-                (N0, N1), (T0, T1) = self._pushes(state, references[c], base)
-                both = list(zip(self.normal[c], self.shear[c], strict=True))
-                F0 = [f + N0 * n + T0 * s for f, (n, s) in zip(F0, both, strict=True)]
-                F1 = [f + N1 * n + T1 * s for f, (n, s) in zip(F1, both, strict=True)]
-        return F0, F1
-
-    def _pushes(self, state: int, reference: Decimal, base: Base) -> tuple[Pair, Pair]:
-        """Normal and shear force of a closed corner, less what the block's displacement adds, and their rates."""
-        N = self.p * (base.y - self.gap), self.p * base.vy
-        if state == STICKS:
-            return N, (self.ps * (base.x + reference), self.ps * base.vx)
-        sign = sigma(state)
-        return N, (sign * (self.friction * N[0] + self.C), sign * self.friction * N[1])
+            n, s = self.normal[c], self.shear[c]
+            for i in range(6):
+                if state == STICKS:
+                    K[i] = [K[i][j] + self.p * n[i] * n[j] + self.ps * s[i] * s[j] for j in range(6)]
+                    R[i][c] = self.ps * s[i]
+                elif state != OPEN:
+                    direction = n[i] + sigma(state) * self.friction * s[i]
+                    K[i] = [K[i][j] + self.p * direction * n[j] for j in range(6)]
+                    F[i] = F[i] + sigma(state) * self.cohesion * s[i]
+        m = self.mass
+        B = arb_mat([[K[i][j] / m[i] for j in range(6)] for i in range(6)])
+        f = arb_mat([[F[i] / m[i]] for i in range(6)])
+        return B, f, arb_mat([[R[i][c] / m[i] for c in (0, 1)] for i in range(6)])
 
 
-def _elastic(problem: BlockProblem, area: Decimal) -> Matrix:
+def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
     """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4)."""
-    E, mu = Decimal(problem.young), Decimal(problem.poisson)
+    E, mu = arb(problem.young), arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))
     if problem.hypothesis == "plane strain":
-        E, mu = E / (1 - mu * mu), mu / (1 - mu)
+        E = E / (1 - mu * mu)
+        mu = mu / (1 - mu)
     direct = area * E / (1 - mu * mu)
-    K = [[ZERO] * 6 for _ in range(6)]
+    K = [[arb(0)] * 6 for _ in range(6)]
     K[2][2] = K[5][5] = direct
     K[2][5] = K[5][2] = mu * direct
     K[3][3] = K[4][4] = K[3][4] = K[4][3] = shear
     return K
 
 
-def _load(problem: BlockProblem, a: Decimal, b: Decimal, m: Decimal) -> Vector:
+def _load(problem: BlockProblem, a: arb, b: arb, m: arb) -> Vector:
     """Virtual work of the pressure on its part of the top, of the traction and of the weight."""
-    q, e, t = Decimal(problem.pressure), Decimal(problem.eccentricity), Decimal(problem.traction)
-    push = q * (a - TWO * abs(e))
-    turn, weight = math.radians(problem.slope), m * Decimal(problem.gravity)
-    along, down = weight * Decimal(math.sin(turn)), weight * Decimal(math.cos(turn))
-    return [t * a + along, -push - down, ZERO, t * a * b * HALF, -push * e, -push * b * HALF]
+    q, e, t = arb(problem.pressure), arb(problem.eccentricity), arb(problem.traction)
+    push = q * (a - 2 * abs(e))
+    turn = math.radians(problem.slope)
+    weight = m * arb(problem.gravity)
+    along, down = weight * arb(math.sin(turn)), weight * arb(math.cos(turn))
+    return [t * a + along, -push - down, arb(0), t * a * b / 2, -push * e, -push * b / 2]

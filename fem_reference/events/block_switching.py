@@ -7,169 +7,122 @@ alone, and what a corner does right after an instant shows in the derivative in 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from decimal import Decimal, getcontext
-from functools import cached_property
 from itertools import product
 
-import numpy as np
+from flint import arb, arb_mat
 
-from fem_reference.events.block_model import CORNERS, LEFT, OPEN, RIGHT, STICKS, BlockModel, States, sigma
-from fem_reference.events.block_pieces import Pieces
-from fem_reference.events.block_rows import Corner, Row, State
-from fem_reference.events.decimals import ZERO, Matrix, Vector, dot
-from fem_reference.events.series import Stepper
-from fem_reference.events.switches import NoContactStateError, Switch
-from fem_reference.problem.problem import Array
+from fem_reference.events.block_flow import Corner, Flow, Row
+from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, States, sigma
+from fem_reference.events.enclosure import is_blank
+from fem_reference.events.switches import NoContactStateError
 
-DERIVATIVES = 8
-"""Derivatives of a function after which it counts as zero for ever."""
-BOUNDED = 16
-"""Derivatives that bound those left out, which fall as 1 / k! in units of the fastest rate."""
+DERIVATIVES = 10
+"""Terms of a function's series after which it counts as zero for ever."""
+FEW = 4
+"""Terms that are looked at first."""
 
 
-def settled(pieces: Pieces, state: State) -> State:
-    """The state with its corners as they agree with the motion from now on.
+class Flows(dict[States, Flow]):
+    """The flows of one block, each made when it is first asked for."""
+
+    def __init__(self, model: BlockModel) -> None:
+        super().__init__()
+        self.model = model
+
+    def __missing__(self, states: States) -> Flow:
+        self[states] = Flow(self.model, states)
+        return self[states]
+
+
+def functions(rows: list[Row], terms: list[arb_mat], references: arb_mat, length: arb) -> list[list[arb]]:
+    """Coefficients of the powers of time / length of some rows, from those of the unknowns.
+
+    Unknowns of two columns are a midpoint and what it may be off; both are added.
+    """
+    columns = terms[0].ncols()
+    flat: list[arb] = []
+    for term in terms:
+        entries = term.entries()
+        for j in range(columns):
+            flat += entries[j::columns]
+    weights = arb_mat(6, len(rows), [row.weights[i] for i in range(6) for row in rows])
+    sums = (arb_mat(columns * len(terms), 6, flat) * weights).entries()
+    result = []
+    for i, row in enumerate(rows):
+        c = sums[i :: len(rows)]
+        if columns == 2:
+            c = [middle + radius for middle, radius in zip(c[::2], c[1::2], strict=True)]
+        if row.of_rates:
+            c = [c[k] * k / length for k in range(1, len(c))]
+        c[0] += row.constant + row.references[0] * references[0, 0] + row.references[1] * references[1, 0]
+        result.append(c)
+    return result
+
+
+def lead(coefficients: list[arb]) -> int | None:
+    """Place of the first coefficient that is not zero; None if the function rests at zero."""
+    return next((k for k, c in enumerate(coefficients[:DERIVATIVES]) if not is_blank(c)), None)
+
+
+def value(row: Row, x: arb_mat, references: arb_mat) -> arb:
+    """Value of a function."""
+    sides = row.references[0] * references[0, 0] + row.references[1] * references[1, 0]
+    return (arb_mat([row.weights]) * x)[0, 0] + row.constant + sides
+
+
+def settled(flows: Flows, states: States, x: arb_mat, v: arb_mat, references: arb_mat, time: float) -> States:
+    """The states of both corners as they agree with the motion from now on.
+
+    Closed corners that stick are tried first: what rests does so in this state.
+
+    Parameters
+    ----------
+    flows
+        The block.
+    states
+        The states until now.
+    x, v, references
+        Balls for the unknowns, their rates and both references; those of corners that do not stick are up to date.
+    time
+        The instant, for the message [s].
 
     Raises
     ------
     NoContactStateError
         If no choice agrees.
     """
-    choices = [_choices(Corner(pieces.model, state, c)) for c in (0, 1)]
-    for first, second in product(*choices):
-        tried = _switched(pieces.model, state, (first, second))
-        if agrees(pieces, tried):
-            return tried
-    raise NoContactStateError(f"no state of the corners agrees with the motion at {float(state.time)!r} s")
+    first, second = (_choices(flows.model, c, states[c], x, references) for c in (0, 1))
+    for choice in product(first, second):
+        if agrees(flows[choice], x, v, references):
+            return choice
+    raise NoContactStateError(f"no state of the corners agrees with the motion at {time!r} s")
 
 
-def agrees(pieces: Pieces, state: State) -> bool:
-    """Whether every watched function of both corners is positive from now on, or rests at zero.
-
-    Closed corners that stick are tried first: what rests does so in this state.
-    """
-    start = Beginning(pieces, state)
-    corners = [Corner(pieces.model, state, c) for c in (0, 1)]
-    return all(start.lead(row).sign >= 0 for corner in corners for row in corner.watched())
-
-
-def changes(before: State, after: State) -> list[Switch]:
-    """The switches from one state to the next; a corner that closes may slip at once."""
-    pairs = zip(CORNERS, zip(before.states, after.states, strict=True), strict=True)
-    return [Switch(float(after.time), corner, _kind(*pair)) for corner, pair in pairs if pair[0] != pair[1]]
-
-
-def _kind(before: int, after: int) -> str:
-    if OPEN in (before, after):
-        return "opens" if after == OPEN else "closes"
-    return "sticks" if after == STICKS else "slips"
+def agrees(flow: Flow, x: arb_mat, v: arb_mat, references: arb_mat) -> bool:
+    """Whether every watched function of both corners is positive from now on, or rests at zero."""
+    length = arb(1 / flow.rate)
+    a = flow.acceleration(x, references)
+    for count in (FEW, DERIVATIVES + 1):  # most functions show at once where they go
+        terms = flow.terms(x, v, a, length, count)
+        resting = 0
+        for c in functions(flow.watched, terms, references, length):
+            first = lead(c)
+            if first is None:
+                resting += 1
+            elif not c[first] > 0:
+                return False
+        if not resting:
+            return True
+    return True
 
 
-def arrived(model: BlockModel, state: State) -> State:
-    """The state with the references where slipping, or an open corner's slide, has taken them."""
-    references, slipped = list(state.references), list(state.slipped)
-    for c in (0, 1):
-        corner = Corner(model, state, c)
-        if corner.is_in != STICKS:
-            references[c] = corner.value(corner.slide) - corner.value(corner.stretch)
-        if corner.is_in in (RIGHT, LEFT):
-            slipped[c] += references[c] - state.references[c]
-    return replace(state, references=(references[0], references[1]), slipped=(slipped[0], slipped[1]))
-
-
-def _choices(corner: Corner) -> list[int]:
+def _choices(model: BlockModel, index: int, state: int, x: arb_mat, references: arb_mat) -> list[int]:
     """States that a corner may take without a jump of its forces other than those that opening releases."""
-    touching = _vanishes(corner, corner.gap)
-    if corner.is_in == OPEN and not touching:
+    corner = Corner(model, index, STICKS)
+    touching = is_blank(value(corner.gap, x, references))
+    if state == OPEN and not touching:
         return [OPEN]
     closed = [STICKS]
-    if corner.model.tan is not None:
-        stuck = corner.as_if(STICKS)
-        closed += [way for way in (RIGHT, LEFT) if _vanishes(stuck, stuck.reserve(sigma(way)))]
+    if model.tan is not None:
+        closed += [way for way in (RIGHT, LEFT) if is_blank(value(corner.reserves[sigma(way)], x, references))]
     return [*closed, OPEN] if touching else closed
-
-
-def _vanishes(corner: Corner, row: Row) -> bool:
-    """Whether a function is zero but for rounding."""
-    size = abs(row.constant) + dot(map(abs, row.weights), map(abs, corner.state.displacement))
-    return abs(corner.value(row)) <= _tolerance() * size
-
-
-def _tolerance() -> Decimal:
-    return Decimal(10) ** (-getcontext().prec // 2)
-
-
-def _switched(model: BlockModel, state: State, states: States) -> State:
-    """The state with its corners as given, and the energy lost where they open."""
-    released = state.released
-    for c, (was, now) in enumerate(zip(state.states, states, strict=True)):
-        if now == OPEN != was:
-            corner = Corner(model, state, c)
-            released += model.ps * corner.value(corner.stretch) ** 2 / 2
-    return replace(state, states=states, released=released)
-
-
-@dataclass(frozen=True)
-class Lead:
-    """How a function begins."""
-
-    sign: int  # of its first derivative that is not zero, the function itself included; 0 if there is none
-    clear: Decimal = ZERO  # time until which it keeps this sign, where value and rate begin at zero [s]
-
-
-class Beginning:
-    """The first terms of the motion's power series after a state, with what bounds the others."""
-
-    def __init__(self, pieces: Pieces, state: State) -> None:
-        self.pieces, self.state = pieces, state
-
-    def lead(self, row: Row) -> Lead:
-        """How a watched function begins."""
-        absolute = [abs(w) for w in row.weights]
-        for x, constant in self._known(row):
-            value = dot(row.weights, x) + constant
-            if abs(value) > _tolerance() * (dot(absolute, map(abs, x)) + abs(constant)):
-                return Lead(1 if value > 0 else -1)
-        terms, bounds = self._of(row)
-        own = enumerate(zip(terms, bounds[: len(terms)], strict=True))
-        first = next((k for k, (x, bound) in own if abs(x) > _tolerance() * Decimal(bound)), None)
-        if first is None:
-            return Lead(0)
-        rest = np.array([abs(float(x)) for x in terms[first + 1 :]] + [2 * sum(bounds[len(terms) :])])
-        share = min(1.0, abs(float(terms[first])) / 2 / max(rest.sum(), 1e-300))
-        return Lead(1 if terms[first] > 0 else -1, self._scale * Decimal(share))
-
-    def _known(self, row: Row) -> list[tuple[Vector, Decimal]]:
-        """What a function is of, with its constant; and the same of its rate, unless that takes accelerations."""
-        x, rate = self.state.displacement, self.state.velocity
-        return [(rate, row.constant)] if row.of_rates else [(x, row.constant), (rate, row.drift)]
-
-    @cached_property
-    def _stepper(self) -> Stepper:
-        return self.pieces.stepper(self.state.states)
-
-    @cached_property
-    def _scale(self) -> Decimal:
-        return 1 / Decimal(self._stepper.rate)
-
-    @cached_property
-    def _terms(self) -> tuple[Matrix, Array]:
-        """Coefficients of the unknowns, and bounds of these and of more."""
-        state = self.state
-        start = state.displacement, state.velocity
-        forces = self.pieces.model.forces(state.states, state.references, state.base)
-        terms = self._stepper.coefficients(start, forces, self._scale, DERIVATIVES + 2)
-        return terms, self._stepper.bounds(start, forces, self._scale, BOUNDED + 2)
-
-    def _of(self, row: Row) -> tuple[list[Decimal], Array]:
-        """Terms of a function, and bounds of their size."""
-        own, sizes = self._terms
-        terms, bounds = [dot(row.weights, x) for x in own], sizes @ np.abs([float(w) for w in row.weights])
-        if row.of_rates:
-            terms = [k * x / self._scale for k, x in enumerate(terms)][1:]
-            bounds = (np.arange(len(bounds)) * bounds / float(self._scale))[1:]
-        for k, x in enumerate((row.constant, row.drift * self._scale)):
-            terms[k] += x
-            bounds[k] += abs(float(x))
-        return terms, bounds

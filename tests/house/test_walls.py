@@ -96,7 +96,10 @@ def packages(names: frozenset[str]) -> set[str]:
 
 @pytest.mark.parametrize(
     ("package", "allowed"),
-    [("dda", {"dda", "numpy", "scipy"}), ("fem_reference", {"fem_reference", "numpy", "scipy", "skfem", "meshio"})],
+    [
+        ("dda", {"dda", "numpy", "scipy"}),
+        ("fem_reference", {"fem_reference", "numpy", "scipy", "skfem", "meshio", "flint"}),
+    ],
 )
 def test_a_solver_package_imports_only_what_it_may(package: str, allowed: set[str]) -> None:
     standard = set(sys.stdlib_module_names)
@@ -163,6 +166,7 @@ def test_no_print_no_exit_no_assert_in_library_code() -> None:
 
 def test_import_dda_costs_numpy_only() -> None:
     assert not loaded("import dda") & {"scipy", "skfem", "matplotlib", "pydantic", "validation", "fem_reference"}
+    assert "flint" not in loaded("import fem_reference, validation")  # ball arithmetic is the exact motions' own
 
 
 def test_a_scene_of_dda_alone_imports_no_finite_elements() -> None:

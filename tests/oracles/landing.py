@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Decimal
 
-from fem_reference.events.decimals import HALF, ONE, ZERO, root, working
-from fem_reference.events.oscillation import Oscillation
+from mpmath import cos, exp, findroot, mp, mpf, sin, sqrt
 
 DIGITS = 40
 """Decimal digits of the computation."""
@@ -25,10 +23,9 @@ def first_landing(height: float, density: float, young: float) -> float:
     height, density, young
         Height b [m], density [kg/m3] and Young's modulus [Pa], all positive.
     """
-    with working(DIGITS):
-        base = Oscillation((ONE, ZERO, -ONE / 6), ((ONE, -ONE, ZERO),))
-        tau = base.first_fall(Decimal(4))
-    return float(tau or ZERO) * height * math.sqrt(density / (12 * young))
+    with mp.workdps(DIGITS):
+        tau = findroot(lambda x: x * x / 6 - 1 + cos(x), (mpf(2), mpf(4)), solver="anderson")
+    return float(tau) * height * math.sqrt(density / (12 * young))
 
 
 @dataclass(frozen=True)
@@ -46,22 +43,27 @@ def micro_impacts() -> MicroImpacts:
     base alone, with the impulse J = m |w'| / 2, after which v' += J / m, e' -= (b / 2) J / (m b^2 / 12), and
     the block flies on and vibrates at sqrt(12) c / b until its base lands again. None of this depends on data.
     """
-    with working(DIGITS):
-        half, w = HALF, Decimal(12).sqrt()
-        v, e, rate, now = -ONE, ZERO, ZERO, ZERO
-        times: list[Decimal] = []
-        fall: Decimal | None = ZERO
-        while fall is not None:
-            now += fall
-            times.append(now)
-            speed = abs(v - half * rate)
+    with mp.workdps(DIGITS):
+        w = sqrt(mpf(12))
+        v, e, rate, now = mpf(-1), mpf(0), mpf(0), mpf(0)
+        times: list[float] = []
+        while True:
+            times.append(float(now))
+            speed = abs(v - rate / 2)
             v, rate = v + speed / 2, rate - 3 * speed
-            base = Oscillation((half * e, v, ZERO), ((w, -half * e, -half * rate / w),))
-            fall = base.first_fall(2 * (base.size(ZERO) / abs(v) + 1))
-            if fall is not None:
-                shape = Oscillation((ZERO, ZERO, ZERO), ((w, e, rate / w),))
-                e, rate, _ = shape(fall)
-        return MicroImpacts(tuple(map(float, times)), float(v))
+
+            def gap(t: mpf, e: mpf = e, v: mpf = v, rate: mpf = rate) -> mpf:
+                return e / 2 + v * t - (e * cos(w * t) + rate / w * sin(w * t)) / 2
+
+            # the base swings by less than its amplitude about a line: after this it is down, or up for good
+            last = 2 * (abs(e) + abs(rate) / w) / abs(v) + 2
+            grid = [last * i / 2000 for i in range(1, 2001)]
+            below = next((i for i, t in enumerate(grid) if gap(t) < 0), None)
+            if below is None:
+                return MicroImpacts(tuple(times), float(v))
+            fall = findroot(gap, (grid[below - 1], grid[below]), solver="anderson")
+            e, rate = e * cos(w * fall) + rate / w * sin(w * fall), rate * cos(w * fall) - e * w * sin(w * fall)
+            now += fall
 
 
 def stiff_opening() -> float:
@@ -69,9 +71,5 @@ def stiff_opening() -> float:
 
     kappa = k / (W rho c) [1/s]. Its gap then grows at the rate (q / (rho c)) (8 x e^-x - 2).
     """
-    with working(DIGITS):
-
-        def miss(x: Decimal) -> tuple[Decimal, Decimal]:
-            return x.exp() - 1 - 2 * x * x, x.exp() - 4 * x
-
-        return float(root(miss, HALF, ONE))
+    with mp.workdps(DIGITS):
+        return float(findroot(lambda x: exp(x) - 1 - 2 * x * x, (mpf("0.5"), mpf(1)), solver="anderson"))

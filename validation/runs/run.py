@@ -52,6 +52,10 @@ class Outcome(Told):
         "several consistent contact states",
         "Several contact states are consistent, even over a hundredth of the step; use a smaller step.",
     )
+    HORIZON = (
+        "exact up to a horizon",
+        "The exact motion could be followed up to an instant only, its horizon; run no more steps than lead there.",
+    )
     RAISED = "raised", "The solver raised an error."
     TIMEOUT = "timeout", "The solver did not finish within its time limit."
     REFUSED = "refused", "The scene asks for something that the solver must refuse."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import operator
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -151,7 +152,7 @@ class Motion(Prepared):
         """Run the scene."""
         no_fields(self.name, self.scene, fields)
         check_columns(self.scene, self.names)
-        from fem_reference.events.switches import NoContactStateError
+        from fem_reference.events.switches import HorizonError, NoContactStateError
 
         began = perf_counter()
         try:
@@ -159,11 +160,18 @@ class Motion(Prepared):
                 columns = dict(zip(self.names, self.moved(), strict=True))
         except NoContactStateError as error:
             return Run(Outcome.NO_CONTACT_STATE, notes=(f"{error}; any other load, however near, has one",))
+        except HorizonError as error:
+            steps = math.floor(error.time / self.scene.time.step)
+            return Run(Outcome.HORIZON, notes=(f"{error}; the scene may have {steps} steps",))
         asked = {name: columns[name] for name in self.scene.run.columns}
         work = {"switches": len(self.found or ()), "steps": self.scene.time.steps}
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
-        said = "exact in time", switches_in_words(self.found or ())
-        return Run(Outcome.COMPLETED, History(self.instants(), asked), work, seconds, said)
+        notes = ("exact in time", switches_in_words(self.found or ()), *self.bounds())
+        return Run(Outcome.COMPLETED, History(self.instants(), asked), work, seconds, notes)
+
+    def bounds(self) -> Iterable[str]:
+        """Yield what is proven of the motion that was run."""
+        return ()
 
     def moved(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns in the order of `names`."""
@@ -202,6 +210,19 @@ class BlockMotion(Motion):
         self.found, at = self.motion.switches, self.motion.at(self.instants())
         u, v, r = at.displacement[:3]
         return (v, at.contact_pressure, u, r, *at.gap, *at.normal_force, *at.shear_force, *at.slide, *at.states)
+
+    def bounds(self) -> Iterable[str]:
+        """Yield the proven radii of the instants and of the displacement, and what could not be told apart."""
+        motion = self.motion
+        if motion.switches:
+            yield f"proven: each switch is the first, and its instant lies within {motion.radius:.1e} s of the midpoint"
+        radius = motion.at(self.instants()).displacement_radius[1].max()
+        yield f"proven: the displacement is off by at most {radius:.1e} m, of which floats round the most"
+        if motion.touches:
+            times = ", ".join(f"{time:.9g}" for time in motion.touches[:TOLD])
+            yield f"grazing: at {times} s a switch can be neither proven nor excluded, and none is taken"
+        if motion.simultaneous:
+            yield f"both corners switch within one ball {len(motion.simultaneous)} times"
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""

@@ -1,0 +1,158 @@
+"""Ball arithmetic: the first instant at which a smooth function falls through zero, enclosed and proven.
+
+A ball is a midpoint with a radius that holds the number; Arb (python-flint) rounds every operation outwards. An
+interval of the search is passed over only where Taylor's formula shows that the function stays positive or rises in
+it, with balls for its value and slope at the middle and for its second derivative over the whole interval. Where the
+same formula shows that it falls throughout, the signs at the ends decide, and the interval Newton operator proves that
+exactly one root lies in the ball that is returned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from flint import arb, arb_poly, ctx
+
+BITS_A_DIGIT = 3.3219281
+GUARD_BITS = 24  # beyond the digits that are asked for
+NEWTON_STEPS = 200
+
+
+@contextmanager
+def working(digits: float) -> Iterator[None]:
+    """Ball arithmetic of so many decimal digits, whatever the caller's own precision is."""
+    before = ctx.prec
+    ctx.prec = int(digits * BITS_A_DIGIT) + GUARD_BITS
+    try:
+        yield
+    finally:
+        ctx.prec = before
+
+
+@contextmanager
+def exact_sums() -> Iterator[None]:
+    """Four times the current precision, in which sums and differences of instants are exact."""
+    before = ctx.prec
+    ctx.prec = 4 * before
+    try:
+        yield
+    finally:
+        ctx.prec = before
+
+
+def ball(radius: arb | float) -> arb:
+    """The ball about zero."""
+    return arb(0, radius)
+
+
+def radius_of(value: arb) -> float:
+    """Radius of a ball as a float, rounded upwards."""
+    return float(value.rad()) * (1 + 1e-15)
+
+
+def is_blank(value: arb) -> bool:
+    """Whether of a number less than a quarter of the digits is known; it then counts as zero."""
+    return bool(value.contains(0)) or value.rel_accuracy_bits() < ctx.prec // 4
+
+
+class Local(NamedTuple):
+    """A function about the middle of an interval."""
+
+    value: arb  # at the middle
+    slope: arb  # at the middle
+    bend: arb  # encloses the second derivative over the interval
+
+
+Smooth = Callable[[arb, arb], Local]
+"""From the middle of an interval and half its length to the function there."""
+
+
+class Fall(NamedTuple):
+    """The first fall of a function through zero."""
+
+    at: arb  # encloses the root
+    grazing: bool  # whether it was too flat to prove that the root is the only one
+
+
+class Polynomial:
+    """A polynomial with balls for coefficients, on an interval from zero to `end`."""
+
+    def __init__(self, coefficients: list[arb], end: arb) -> None:
+        self.value = arb_poly(coefficients)
+        self.slope = self.value.derivative()
+        self.bend = self.slope.derivative()
+        third = self.bend.derivative()
+        self.third = arb_poly([abs(c) for c in third.coeffs()])(end)  # bounds the third derivative
+
+    def __call__(self, middle: arb, half: arb) -> Local:
+        """The polynomial about the middle of an interval."""
+        return Local(self.value(middle), self.slope(middle), self.bend(middle) + ball((self.third * half).upper()))
+
+
+def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> Fall | None:
+    """The first point in (0, end] at which a function falls through zero, None if it does not.
+
+    Parameters
+    ----------
+    function
+        Positive just after zero.
+    end
+        End of the search.
+    touches
+        Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
+        crossing can be neither proven nor excluded; they count as none.
+    """
+    finest = end * arb(2) ** (-ctx.prec // 2)
+    pending = [(arb(0), end)]
+    while pending:
+        low, high = pending.pop()
+        half = ((high - low) / 2).mid()
+        middle = (low + half).mid()
+        value, slope, bend = function(middle, half)
+        down = bend.lower()
+        if value - abs(slope) * half + (down * half * half / 2 if down < 0 else 0) > 0:
+            continue
+        change = abs(bend) * half
+        if slope - change > 0:
+            continue
+        falls = slope + change < 0
+        if falls or half < finest:
+            if function(high, arb(0)).value < 0:
+                return _root(function, low, high) if falls else Fall(middle + ball(half), True)
+            if not falls and touches is not None:
+                touches.append(middle)
+        else:
+            pending += [(middle, high), (low, middle)]
+    return None
+
+
+def _root(function: Smooth, low: arb, high: arb) -> Fall:
+    """The root of a function that falls throughout an interval, by Newton's method inside the bracket."""
+    exact = arb(0)
+    x = ((low + high) / 2).mid()
+    width = high - low
+    start, end = low, high
+    for _ in range(NEWTON_STEPS):
+        here = function(x, exact)
+        if here.value > 0:
+            low = x
+        elif here.value < 0:
+            high = x
+        else:
+            break
+        following = (x - here.value / here.slope).mid()
+        if not low <= following <= high:
+            following = ((low + high) / 2).mid()
+        finished = abs(following - x) <= width * arb(2) ** (4 - ctx.prec)
+        x = following
+        if finished:
+            break
+    here = function(x, exact)
+    reach = ((abs(here.value) / abs(here.slope)).upper() * 4 + width * arb(2) ** (8 - ctx.prec)).mid()
+    near = function(x, reach)
+    offset = near.value / (near.slope + near.bend * ball(reach))
+    if not abs(offset) < reach:  # too flat for the operator; the bracket is proven by its signs all the same
+        return Fall(((start + end) / 2).mid() + ball((end - start) / 2), True)
+    return Fall(x - offset, False)

@@ -1,0 +1,203 @@
+"""Ball arithmetic of the exact motions: first falls that must not be missed, flows, and enclosures that hold."""
+
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import thinned
+from flint import arb, arb_mat, ctx
+from oracles.friction_oracle import slipping_problem
+
+from fem_reference.events import block_events, block_march
+from fem_reference.events.block_events import solve
+from fem_reference.events.block_flow import ANGLE, FLOAT_TERMS, ROUNDING, Flow, bernstein, to_floats
+from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, BlockProblem
+from fem_reference.events.enclosure import Polynomial, ball, first_fall, is_blank, working
+from fem_reference.events.switches import LostDigitsError, TooMuchWorkError
+
+PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
+ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
+STATES = [(OPEN, OPEN), (STICKS, STICKS), (STICKS, OPEN), (RIGHT, LEFT), (RIGHT, RIGHT), (LEFT, STICKS), (OPEN, RIGHT)]
+
+
+def polynomial(c: list[float | arb]) -> Polynomial:
+    return Polynomial([arb(x) for x in c], arb(1))
+
+
+def test_the_working_precision_is_independent_of_the_callers() -> None:
+    before = ctx.prec
+    with working(100):
+        assert ctx.prec > 330
+    assert ctx.prec == before
+
+
+@pytest.mark.parametrize("seed", thinned(range(60), 6))
+def test_the_first_fall_of_a_polynomial(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    c = rng.normal(size=30) * 4.0 ** np.arange(30) / np.cumprod([1, *range(1, 30)])
+    grid = np.linspace(0, 1, 200_001)
+    values = np.polyval(c[::-1], grid)
+    c[0] -= values.min() * rng.uniform(0.5, 1.1) if seed % 2 else c[0] - 1e-3
+    values = np.polyval(c[::-1], grid)
+    sign = 1 if c[0] > 0 else -1
+    with working(50):
+        fall = first_fall(polynomial([float(sign * x) for x in c]), arb(1))
+    below = np.flatnonzero((sign * values[1:-1] >= 0) & (sign * values[2:] < 0))
+    assert (fall is None) == (len(below) == 0)
+    if fall is not None:
+        assert 0 <= float(fall.at) - grid[below[0] + 1] <= grid[1]
+        assert not fall.grazing
+
+
+@pytest.mark.parametrize("depth", ["1e-3", "1e-8", "1e-14", "1e-20"])
+def test_a_dip_of_any_depth_is_seen_and_one_that_stays_above_is_none(depth: str) -> None:
+    """(z - 1/3)^2 (1 + z^3) less or more than a depth: floats cannot tell, balls can; the root is enclosed."""
+    with working(50):
+        third = arb(1) / 3
+        square = [third * third, -2 * third, arb(1)]
+        for sign in (-1, 1):
+            touches: list[arb] = []
+            function = polynomial([square[0] + sign * arb(depth), *square[1:], *square])
+            fall = first_fall(function, arb(1), touches)
+            assert (fall is not None) == (sign < 0)
+            assert not touches
+            if fall is not None:
+                reach = 8 * fall.at.rad()  # the ball is as narrow as rounding, which hides the signs at its ends
+                low, high = fall.at.mid() - reach, fall.at.mid() + reach
+                assert function.value(low) > 0 > function.value(high)
+                assert float(fall.at.rad()) < 1e-28
+                assert fall.at < third
+
+
+def test_a_touch_is_named_and_counts_as_none() -> None:
+    with working(50):
+        third = arb(1) / 3
+        touches: list[arb] = []
+        touching = polynomial([third * third + ball(arb("1e-45")), -2 * third, arb(1)])
+        assert first_fall(touching, arb(1), touches) is None
+        assert touches
+        assert all(abs(float(touch) - 1 / 3) < 1e-15 for touch in touches)
+
+
+@pytest.mark.parametrize("late", ["1e-3", "1e-12", "1e-16"])
+def test_a_crossing_just_before_the_end_is_seen(late: str) -> None:
+    with working(50):
+        fall = first_fall(polynomial([1, -1 - arb(late)]), arb(1))
+        assert fall is not None
+        assert fall.at.overlaps(1 / (1 + arb(late)))
+        assert first_fall(polynomial([1, -1 + arb(late)]), arb(1)) is None
+
+
+def test_a_number_of_which_little_is_known_counts_as_zero() -> None:
+    with working(50):
+        assert is_blank(arb(0))
+        assert is_blank(arb("1e-60") + ball(arb("1e-61")))
+        assert not is_blank(arb("1e-60"))
+
+
+@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
+def test_a_flow_is_the_exponential_of_its_matrix(states: tuple[int, int]) -> None:
+    rng = np.random.default_rng(3)
+    with working(50):
+        flow = Flow(BlockModel(ROUGH), states)
+        x, v = (arb_mat(6, 1, rng.normal(size=6).tolist()) for _ in range(2))
+        r = arb_mat(2, 1, [0.1, -0.3])
+        length = arb(ANGLE / flow.rate)
+        a = flow.acceleration(x, r)
+        ends = [sum((term[i, 0] for term in flow.series(x, v, a, length)), arb(0)) for i in range(6)]
+        A = arb_mat(18, 18)
+        for i in range(6):
+            A[i, 6 + i] = A[12 + i, 12 + i] = arb(0)
+            A[i, 6 + i] = arb(1)
+            A[6 + i, 12 + i] = arb(1)
+            for j in range(6):
+                A[12 + i, 6 + j] = -flow.B[i, j]
+        exact = (A * length).exp() * arb_mat(18, 1, [*x.entries(), *v.entries(), *a.entries()])
+        for i in range(6):
+            assert ends[i].overlaps(exact[i, 0])
+            assert float(ends[i].rad()) < 1e-45 * max(1.0, abs(float(ends[i])))
+        step = flow.step(ANGLE / flow.rate)
+        moved = step.matrix * arb_mat(18, 1, [*x.entries(), *v.entries(), *a.entries()])
+        for i in range(12):
+            assert abs(float(moved[i, 0] - exact[i, 0])) < 1e-9 * float(abs(exact[i, 0]) + 1)  # its length is a float
+
+
+@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
+def test_floats_bound_what_is_watched(states: tuple[int, int]) -> None:
+    """The least of Bernstein's forms, less its margin, is below every value of the function in balls."""
+    rng = np.random.default_rng(5)
+    with working(50):
+        flow = Flow(BlockModel(ROUGH), states)
+        step = flow.step(ANGLE / flow.rate)
+        x, v = (arb_mat(6, 1, (rng.normal(size=6) * 1e-3).tolist()) for _ in range(2))
+        r = arb_mat(2, 1, [1e-4, -3e-4])
+        a = flow.acceleration(x, r)
+        values = flow.values(x, v, a, r)
+        terms = step.tables @ values
+        terms[:, 0] += step.constants
+        least = (terms @ bernstein()).min(axis=1) - step.sizes @ (ROUNDING * np.abs(values))
+        for share in (0.0, 0.3, 0.55, 1.0):
+            s = arb(step.length) * share
+            C, S, P = flow.floats(float(s))
+            X = to_floats(x)[:, 0] + S @ to_floats(v)[:, 0] + P @ to_floats(a)[:, 0]
+            V = C @ to_floats(v)[:, 0] + S @ to_floats(a)[:, 0]
+            for row, bound in zip(flow.watched, least, strict=True):
+                at = np.array([float(w) for w in row.weights]) @ (V if row.of_rates else X) + float(row.constant)
+                at += 0 if row.of_rates else float(row.references[0]) * 1e-4 - float(row.references[1]) * 3e-4
+                assert at >= bound - 1e-12 * abs(at)
+
+
+def test_what_floats_leave_out_is_below_their_rounding() -> None:
+    assert ANGLE**FLOAT_TERMS / float(mpmath.factorial(FLOAT_TERMS)) < 1e-3 * ROUNDING
+
+
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 3))
+def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: bool) -> None:
+    problem = slipping_problem(seed, moved)
+    end = 6 * problem.height * (problem.density / problem.young) ** 0.5
+    motion, finer = solve(problem, end), solve(problem, end, digits=90)
+    assert motion.switches
+    assert motion.radius < 1e-35 * end
+    with working(100):
+        for switch, other in zip(motion.switches, finer.switches, strict=True):
+            apart = abs(arb(switch.midpoint) - arb(other.midpoint))
+            assert apart < arb(switch.radius + other.radius) + abs(arb(switch.midpoint)) * arb("1e-39")  # as printed
+    t = np.linspace(0, end, 50)
+    one, more = motion.at(t), finer.at(t)
+    assert np.all(np.abs(one.displacement - more.displacement) <= one.displacement_radius + more.displacement_radius)
+    assert one.displacement_radius.max() < 1e-12 * np.abs(one.displacement).max()
+
+
+def test_corners_that_switch_in_one_ball_are_named() -> None:
+    centred = solve(PAPER, 0.05)
+    assert len(centred.simultaneous) == len(centred.switches) / 2 > 3
+    assert not solve(replace(ROUGH, eccentricity=0.3), 0.01).simultaneous
+
+
+def test_a_stiff_contact_is_followed_by_few_steps() -> None:
+    """One millisecond at p = 1e18 N/m are 27000 radians, 6800 steps, of which none needs a second look."""
+    problem = replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81)
+    motion = solve(problem, 1e-3)
+    assert len(motion.nodes) < 10_000
+    assert not motion.switches
+    weight = 2700.0 * 2.0 * 9.81
+    assert motion.at(np.linspace(2e-4, 1e-3, 50)).contact_pressure.mean() < 2 * weight
+
+
+def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(block_march, "STEPS", 50)
+    with pytest.raises(TooMuchWorkError, match="50 steps") as caught:
+        solve(replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81), 1e-3)
+    assert 0 < caught.value.time < 1e-5
+
+
+def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    stiff = replace(PAPER, stiffness=1e11)
+    assert solve(stiff, 0.02, digits=30).digits == 30
+    monkeypatch.setattr(block_events, "PROMISED", 1e-40)
+    assert solve(stiff, 0.02, digits=30).digits == 60
+    monkeypatch.setattr(block_events, "MOST_DIGITS", 30)
+    with pytest.raises(LostDigitsError) as caught:
+        solve(stiff, 0.02, digits=30)
+    assert 0 <= caught.value.time < 0.02
