@@ -140,6 +140,20 @@ def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_on
     assert contact.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
 
 
+@pytest.mark.parametrize(
+    ("alpha", "delta", "rises"),
+    [(0.5, 1.0, False), (0.6, 1.2, False), (0.75, 1.5, False), (0.75, 1.0, True), (1.0, 1.0, True)],
+)
+def test_without_switching_energy_rises_at_2_alpha_above_delta_only(alpha: float, delta: float, rises: bool) -> None:
+    scheme = {"time.alpha": alpha, "time.delta": delta, "time.step": 1e-2, "time.steps": 20, "time.start": "consistent"}
+    row, _ = execute(Case(PAPER.with_values(scheme), "dda"), "", "")
+    rise, gained = row.metrics["energy.rise"], row.metrics["energy.switching_gain"]
+    assert isinstance(rise, float) and isinstance(gained, float) and gained <= 1e-12
+    assert (rise > 1) == rises and (rises or rise < 1e-10)
+    # the second term of the energy that falls, at the start: (alpha - delta/2) dt^2 4 F^2/(2 m)
+    assert rise * float(row.metrics["energy.given"]) <= (alpha - delta / 2) * 1e-4 * 2 * 1e7**2 / 10800 + 1e-4
+
+
 def test_what_is_needed_is_the_landing_of_the_scene_at_its_springs() -> None:
     found = contact.needed(PAPER, 3.757, 0.05, 1e-3)
     assert found.steps is not None and found.steps_now is not None and found.restitution is not None
@@ -183,7 +197,8 @@ def test_forces_of_an_impact() -> None:
     assert contact.impact_force(scene, -2.0) == pytest.approx(1.471 * contact.quarter_mass_force(scene, 2.0), rel=1e-3)
     soft = scene.with_values({"contact.stiffness": 1e7})
     assert contact.impact_force(soft, 1.0) == pytest.approx(2 * contact.quarter_mass_force(soft, 1.0), rel=1e-2)
-    assert math.isinf(contact.impact_force(scene.with_values({"contact.stiffness": math.inf}), 1.0))
+    stop = scene.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
+    assert math.isinf(contact.impact_force(stop, 1.0))
     assert contact.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
     assert scene.block.mass == 10800
 

@@ -65,8 +65,9 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
         "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
         "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
         "average. This is a rigid mass. The block of one strain is one only in two limits, with a quarter of its mass, "
-        "ω_c = √(8 p / m), at p ≫ E, and with all of it, ω_c = √(2 p / m), at p ≪ E; its own restitution, without a "
-        f"time step, is {own[1.0]:.3f}, {own[10.0]:.3f} and {own[100.0]:.3f} at p = 1, 10 and 100E, and at p ≫ E it lands in "
+        "ω_c = √(8 p / m), at p ≫ E, and with all of it, ω_c = √(2 p / m), at p ≪ E; without a time step its own "
+        f"restitution is {own[1.0]:.3f}, {own[10.0]:.3f} and {own[100.0]:.3f} at p = 1, 10 and 100E, and "
+        f"at p ≫ E it lands in "
         "three contacts in a row."
     )
     figure = contact.restitution_figure(curves, MARKS)
