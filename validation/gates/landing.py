@@ -25,6 +25,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.gates import closed_forms
 from validation.runs.history import Array
@@ -179,7 +180,7 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     depth = 0.0
     start = 0
     while start * sample <= 1.01 * longest:  # in parts: a stiff contact ends in the first of very many
-        times = np.arange(start, start + 4 * SAMPLES + 1) * sample
+        times = np.asarray(np.arange(start, start + 4 * SAMPLES + 1) * sample, dtype=np.float64)
         gaps = motion.gap(times)
         depth = max(depth, _deepest(motion, times, gaps))
         crossed = 1 + np.flatnonzero(gaps[1:] > 0 if opens else gaps[1:] < 0)
@@ -322,7 +323,7 @@ def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, 
 
     passed = np.zeros(len(phases))
     kept = np.zeros(len(phases))
-    active = np.arange(len(phases))
+    active = np.arange(len(phases), dtype=np.intp)
     while active.size:
         contact.advance(state, passed, active, limit)
         active = active[passed[active] < limit]
@@ -365,7 +366,7 @@ class _Stretch:
             matrix = powers[WINDOW]
         return cls(contact, tuple(reversed(levels)))
 
-    def advance(self, state: Array, passed: Array, chosen: Array, limit: float) -> None:
+    def advance(self, state: Array, passed: Array, chosen: NDArray[np.intp], limit: float) -> None:
         """Advance the chosen rows of states to the last step of the stretch; `passed` is infinite where there is none.
 
         A flight has none where it is the last, and a stretch of more steps than the limit is none.
