@@ -19,7 +19,6 @@ from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.rigid.impacts import impact_restitution
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}
@@ -41,7 +40,7 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         ({"time.gg": 0.98}, {kinds.LARGE_STEP, kinds.DRAG}),
         ({"time.gg": 0.98, "time.step": 2e-3}, {kinds.HIDDEN}),
         (STIFF | AVERAGE, {kinds.LARGE_STEP, kinds.MAY_GAIN, kinds.GAINED, kinds.PENALTY}),
-        (STIFF | {"time.step": 2e-5, "time.steps": 250}, {kinds.PENALTY}),
+        (STIFF | {"time.step": 2e-5, "time.steps": 250}, {kinds.LARGE_STEP, kinds.PENALTY}),  # three contacts in a row
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-4]}, {kinds.PULLING}),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-6]}, set()),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [1e-3, 0.0]}, {kinds.GAINED}),  # p (1 mm)^2 a landing
@@ -64,11 +63,12 @@ def test_a_peak_not_far_above_that_of_the_bar_is_no_alarm(tmp_path: Path) -> Non
 
 def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
     large = raised(PAPER.with_values(STIFF), tmp_path)[kinds.LARGE_STEP]
-    assert large.values["omega"] == pytest.approx(math.sqrt(8e11 / 10800) * 1e-3)  # 8.6
-    assert "arbitrary, from 0" in large.sentence
-    assert large.values["mean"] == pytest.approx(0.5, abs=0.05)
+    assert large.values["omega"] == pytest.approx(math.sqrt(8e11 / 10800) * 1e-3, rel=1e-2)  # 8.6, a quarter of m
+    assert "by where in the step the block lands" in large.sentence
+    assert large.values["own"] == pytest.approx(0.9323, abs=1e-4)
     soft = raised(PAPER, tmp_path)[kinds.LARGE_STEP]
-    assert "arbitrary" not in soft.sentence and soft.values["omega"] == pytest.approx(0.8607, abs=1e-4)
+    assert "by where" not in soft.sentence and soft.values["omega"] == pytest.approx(0.3617, abs=1e-4)
+    assert soft.values["own"] == pytest.approx(0.9307, abs=1e-4) and soft.values["high"] < 0.75
     pulls = raised(PAPER.with_values({"contact.band": [0.0, 1e-3]}), tmp_path)[kinds.PULLING]
     assert pulls.values["pull"] == pytest.approx(2e6)  # 2 p f0, a fifth of the load
 
@@ -86,9 +86,9 @@ LANDED = {"contact.gap": 1e-3, "switches.first_closing": 5e-3}
         (kinds.PENALTY, HARD, {"contact.peak_force": 6e7}, "6e+07 N, is 4 times that of the exact bar"),
         (kinds.PULLING, {"contact.band": [0.0, 1e-3]}, {}, "up to 2e+06 N, 20 % of the load"),
         (kinds.HIDDEN, {"time.step": 2e-3}, {}, "dt = 0.002 s is beyond 0.001897 s"),
-        (kinds.MAY_GAIN, STIFF | AVERAGE, LANDED, "delta = 0.5 with w_c dt = 8.61"),
-        (kinds.LARGE_STEP, STIFF, LANDED, "w_c dt = 8.61, w_c = sqrt(8 p / m): the restitution of a contact is "
-         "arbitrary, from 0.014 to 0.95"),
+        (kinds.MAY_GAIN, STIFF | AVERAGE, LANDED, "alpha = 0.25, delta = 0.5 with w_c dt = 8.56"),
+        (kinds.MAY_GAIN, STIFF | {"time.alpha": 0.4, "time.allow_unstable": True}, LANDED, "alpha = 0.4, delta = 1"),
+        (kinds.LARGE_STEP, STIFF, LANDED, "w_c dt = 8.56: an unloaded landing leaves the centre of mass 0.48 to"),
     ],
 )  # fmt: skip
 def test_a_sentence_tells_the_numbers_of_its_run(
@@ -131,26 +131,46 @@ def test_the_opening_is_hidden_by_the_height_and_not_the_width() -> None:
     assert contact.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
 
 
+def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_one() -> None:
+    may = {(0.4, 1.0), (0.45, 0.9), (0.25, 0.5), (0.55, 1.2)}
+    cannot = {(0.5, 1.0), (0.75, 1.0), (0.6, 1.2), (0.75, 1.5)}
+    for alpha, delta in may | cannot:
+        scene = PAPER.with_values({"time.alpha": alpha, "time.delta": delta, "time.allow_unstable": True})
+        assert contact.cannot_gain(scene) == ((alpha, delta) in cannot)
+    assert contact.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
+
+
 @pytest.mark.parametrize(
-    "scheme", [{}, AVERAGE, AVERAGE | {"contact.rule": "implicit"}, {"time.alpha": 0.3025, "time.delta": 0.6}]
+    ("alpha", "delta", "rises"),
+    [(0.5, 1.0, False), (0.6, 1.2, False), (0.75, 1.5, False), (0.75, 1.0, True), (1.0, 1.0, True)],
 )
-@pytest.mark.parametrize("error", [0.01, 0.05])
-def test_the_step_that_is_advised_keeps_the_restitution_asked_for(scheme: dict[str, Any], error: float) -> None:
-    scene = PAPER.with_values(scheme)
-    found = contact.needed(scene, 3.757, error, 1e-4)
-    off = max(abs(found.restitution.low - 1), abs(found.restitution.high - 1))
-    assert 0.3 * error < off < 1.1 * error
-    there = scene.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})
-    assert contact.omega(there) == pytest.approx(found.omega)
+def test_without_switching_energy_rises_at_2_alpha_above_delta_only(alpha: float, delta: float, rises: bool) -> None:
+    scheme = {"time.alpha": alpha, "time.delta": delta, "time.step": 1e-2, "time.steps": 20, "time.start": "consistent"}
+    row, _ = execute(Case(PAPER.with_values(scheme), "dda"), "", "")
+    rise, gained = row.metrics["energy.rise"], row.metrics["energy.switching_gain"]
+    assert isinstance(rise, float) and isinstance(gained, float) and gained <= 1e-12
+    assert (rise > 1) == rises and (rises or rise < 1e-10)
+    # the second term of the energy that falls, at the start: (alpha - delta/2) dt^2 4 F^2/(2 m)
+    assert rise * float(row.metrics["energy.given"]) <= (alpha - delta / 2) * 1e-4 * 2 * 1e7**2 / 10800 + 1e-4
+
+
+def test_what_is_needed_is_the_landing_of_the_scene_at_its_springs() -> None:
+    found = contact.needed(PAPER, 3.757, 0.05, 1e-3)
+    assert found.steps is not None and found.steps_now is not None and found.restitution is not None
+    assert found.restitution.error == pytest.approx(0.05, rel=0.1)
+    assert found.steps_now.longest == pytest.approx(2.74e-4, rel=1e-2)  # at p = E
+    assert found.steps == contact.allowed_steps(PAPER.with_values({"contact.stiffness": found.stiffness}), 0.05)
+    plain = contact.as_dict(found)
+    assert (plain["step"], plain["step_now"]) == (found.steps.longest, found.steps_now.longest)
 
 
 def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
-    """A block that is dropped penetrates by V sqrt(m / (8 p)) in its first contact."""
-    fallen = PAPER.with_values({"load.pressure": 0.0, "block.velocity": -1.0, "time.step": 1e-5, "time.steps": 100})
+    """A block that is dropped penetrates by 1.48 V sqrt(m / (8 p)), in the second of its contacts."""
+    fallen = PAPER.with_values({"load.pressure": 0.0, "block.velocity": -1.0, "time.step": 1e-5, "time.steps": 500})
     found = contact.needed(fallen, 1.0, 0.05, 1e-4)
-    assert found.stiffness == pytest.approx(10800 / 8e-8)
+    assert found.stiffness == pytest.approx(1.471**2 * 10800 / 8e-8, rel=1e-2)
     row, _ = execute(Case(fallen.with_values({"contact.stiffness": found.stiffness}), "block-events"), "", "")
-    assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.05)
+    assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.02)
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
@@ -162,37 +182,35 @@ def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() 
         return 3e-4 * (tried[0] / p) ** 0.5  # three times too deep at first
 
     found = contact.needed(PAPER, 1.0, 0.05, 1e-4, probe)
-    assert found.first_guess == tried[0] == pytest.approx(10800 / 8e-8)
+    assert found.first_guess == tried[0] > 10800 / 8e-8
     assert found.stiffness == pytest.approx(9 * tried[0]) and found.depth == pytest.approx(1e-4)
-    assert contact.omega(PAPER.with_values({"contact.stiffness": found.stiffness, "time.step": found.step})) == (
-        pytest.approx(found.omega)
-    )
     never = contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: 2e-4)
     assert never.depth == 2e-4 and never.stiffness > 1e4 * never.first_guess
     assert contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: None).depth is None
 
 
-def test_the_stated_examples() -> None:
-    """At p = 100E and 5 %: 7.4 us at (1/2, 1) and 73 us at (1/4, 1/2)."""
-    stiff = PAPER.with_values(STIFF)
-    assert contact.needed(stiff, 1.0, 0.05, 1e-4).step_now == pytest.approx(7.4e-6, abs=5e-8)
-    assert contact.needed(stiff.with_values(AVERAGE), 1.0, 0.05, 1e-4).step_now == pytest.approx(73e-6, abs=6e-7)
-
-
 def test_forces_of_an_impact() -> None:
-    scene = PAPER.with_values(STIFF | {"load.pressure": 0.0, "block.velocity": -2.0, "time.step": 1e-6})
-    row, _ = execute(Case(scene.with_values({"time.steps": 400}), "block-events"), "", "")
+    """The second contact is the greatest at p = 100 E, 1.47 times that of a quarter of the mass."""
+    scene = PAPER.with_values(STIFF | {"load.pressure": 0.0, "block.velocity": -2.0, "time.step": 1e-5})
+    row, _ = execute(Case(scene.with_values({"time.steps": 600}), "block-events"), "", "")
     assert row.metrics["contact.peak_force"] == pytest.approx(contact.impact_force(scene, -2.0), rel=0.02)
+    assert contact.impact_force(scene, -2.0) == pytest.approx(1.471 * contact.quarter_mass_force(scene, 2.0), rel=1e-3)
+    soft = scene.with_values({"contact.stiffness": 1e7})
+    assert contact.impact_force(soft, 1.0) == pytest.approx(2 * contact.quarter_mass_force(soft, 1.0), rel=1e-2)
+    stop = scene.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
+    assert math.isinf(contact.impact_force(stop, 1.0))
     assert contact.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
     assert scene.block.mass == 10800
 
 
-def test_the_restitution_of_a_phase_lies_in_the_range_of_the_map() -> None:
-    found = contact.restitution(PAPER, math.inf)
-    assert found is not None and (found.low, found.high) == pytest.approx((0.0, 1.0), abs=1e-12)
-    assert impact_restitution(0.5, 1.0, 1.0, math.inf, 0.25) == pytest.approx(0.5)
-    constant = contact.restitution(PAPER, 10.0)
+def test_a_landing_is_not_known_for_every_scene() -> None:
+    found = contact.restitution(PAPER)
+    assert found is not None and found.low < found.mean < found.high < found.own
     rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}
-    assert contact.restitution(rules["implicit"], 10.0) == constant
-    assert contact.restitution(rules["energy-conserving"], 10.0) == contact.Restitution(1.0, 1.0, 1.0, 1.0)
-    assert contact.restitution(PAPER.with_values({"time.alpha": 0.1, "time.delta": 0.9}), 1.0) is None
+    assert contact.restitution(rules["implicit"]) is not None
+    assert contact.restitution(rules["energy-conserving"]) is None
+    assert contact.restitution(PAPER.with_values({"block.vertices": [[0, 0], [2, 0], [2.2, 2], [0, 2]]})) is None
+    rigid = PAPER.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
+    landed = contact.restitution(rigid)
+    assert landed is not None and landed.own == pytest.approx(0.8913, abs=1e-4)
+    assert contact.allowed_steps(rigid, 0.05) is None

@@ -1,12 +1,7 @@
-"""What springs and time step make of a contact that opens, and which of them give an accuracy asked for.
+"""What springs and time step make of a contact that opens, and which of them keep a restitution and a penetration.
 
-The block of one strain meets its springs with a quarter of its mass: the base moves with 1/m of the translation and
-3/m of the strain. With p at either corner
-
-    w_c = sqrt(8 p / m),   Omega = w_c dt
-
-decide how a contact ends: Omega << 1 follows the motion, Omega > 2 returns a speed that depends on where in the step
-the block has landed.
+All of it is about one landing: an unloaded, unstrained rectangle that comes down on both corners. `gates.landing` has
+the block's own landing, exact in time, and that of a time step; the advice is the difference of the two.
 """
 
 from __future__ import annotations
@@ -16,63 +11,59 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
-from validation.gates import closed_forms
+from validation.gates import closed_forms, landing
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.rigid.impacts import impact_statistics
+from validation.solvers.events import rectangle
 
 RAISES, LEAST_RAISE = 8, 1.2  # of p, until the exact block stays above the penetration asked for
-WRONG, ARBITRARY = 0.3, 2.0  # Omega beyond which the restitution is off by a fifth, and depends on the phase alone
-
-
-@dataclass(frozen=True)
-class Restitution:
-    """Restitution of a contact over its phase [-]."""
-
-    mean: float
-    low: float
-    high: float
-    energy: float  # mean of e^2, the share of the energy that is left
+NOTABLE = 0.1  # error of the restitution, and its range over the phase, from which on they are an alarm
 
 
 @dataclass(frozen=True)
 class Needed:
-    """Springs and time step that give an accuracy asked for."""
+    """Springs and time steps that keep a penetration and a restitution."""
 
     stiffness: float  # p [N/m]
-    step: float  # dt at that p [s]
     depth: float | None  # how deep the exact block goes at that p [m]; None where that was not asked or has no answer
-    first_guess: float  # p from the load at rest and one landing at the speed V, as in the formula [N/m]
-    step_now: float  # dt at the present p [s]
-    omega: float  # w_c dt of both [-]
-    restitution: Restitution | None  # what the scheme then really returns
+    first_guess: float  # p from the load at rest and one unloaded landing [N/m]
+    steps: landing.AllowedSteps | None  # at that p; None where the landing of the scheme is not known
+    steps_now: landing.AllowedSteps | None  # at the present p
+    restitution: landing.SteppedLanding | None  # at that p and the longest of its steps
 
 
 def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
-    """Return w_c = sqrt(8 p / m) of a scene, or of other springs [rad/s]."""
-    return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / scene.block.mass)
+    """Return w_c, pi over the duration of an unloaded first contact, of a scene or of other springs [rad/s]."""
+    return landing.contact_frequency(scene, stiffness)
 
 
 def omega(scene: Scene) -> float:
-    """Return Omega = w_c dt of a scene [-]."""
+    """Return w_c dt of a scene [-]."""
     return contact_frequency(scene) * scene.time.step
 
 
-def restitution(scene: Scene, at: float) -> Restitution | None:
-    """Return what the scene's scheme makes of a contact at Omega; None where the map of the scheme is not defined.
+def stepping(scene: Scene) -> landing.Stepping | None:
+    """Return the scheme of a landing; None where it is not known.
 
-    A contact force that is fully implicit acts as constant acceleration does; energy-conserving contact returns all.
+    Energy-conserving contact is not linear between switches, a scheme with alpha = 0 has no contact force at the end of
+    its step, and only a rectangle lands as one strain.
     """
-    t, rule = scene.time, scene.contact.rule
-    if rule == "energy-conserving" and t.discount == 1:
-        return Restitution(1.0, 1.0, 1.0, 1.0)
-    scheme = (0.5, 1.0) if rule == "implicit" else (t.alpha, t.delta)
-    try:
-        return Restitution(*impact_statistics(*scheme, t.discount, at))
-    except ValueError:
+    scheme = landing.Stepping.of(scene)
+    known = scheme.exists and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
+    return scheme if known else None
+
+
+def restitution(
+    scene: Scene, step: float | None = None, stiffness: float | None = None
+) -> landing.SteppedLanding | None:
+    """Return what the scene's scheme makes of a landing, at its own step and springs or at others; None if unknown."""
+    scheme = stepping(scene)
+    if scheme is None:
         return None
+    ratio = landing.stiffness_ratio(scene, stiffness)
+    return landing.stepped_landing(
+        scheme, ratio, scene.time.step if step is None else step, landing.transit(scene)
+    )
 
 
 def hidden_from(scene: Scene) -> float | None:
@@ -85,19 +76,29 @@ def hidden_from(scene: Scene) -> float | None:
     whatever p and gg. None where it does not rise at all, or does not start on its springs at rest.
     """
     b, q, t = scene.block, scene.load, scene.time
-    height = float(np.ptp([y for _, y in b.outline]))
+    height = landing.height(scene)
     weight = b.density * q.gravity * height / q.pressure if q.pressure > 0 else 2.0
     from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
     if not (from_zero and scene.contact.gap == 0 == b.velocity and weight < 2):
         return None
-    modulus, _ = closed_forms.moduli(scene)
-    free = height * math.sqrt(b.density / modulus / (6 * t.alpha))
+    free = landing.transit(scene) / math.sqrt(6 * t.alpha)
     return free * math.sqrt((1 - weight / 2) / (1 + weight))
 
 
-def impact_force(scene: Scene, speed: float) -> float:
-    """Return the force V sqrt(p m / 2) with which the block of one strain lands on its springs at a speed [N]."""
+def quarter_mass_force(scene: Scene, speed: float) -> float:
+    """Return the force V sqrt(p m / 2) of a quarter of the mass that lands at a speed on the springs [N]."""
     return abs(speed) * math.sqrt(scene.contact.stiffness * scene.block.mass / 2)
+
+
+def impact_force(scene: Scene, speed: float) -> float:
+    """Return the greatest force of an unloaded landing of the block of one strain at a speed, exact in time [N].
+
+    That of a quarter of the mass times 1.47 (p >> E, in the second contact of the landing) to 2 (p << E).
+    """
+    ratio = landing.stiffness_ratio(scene)
+    if math.isinf(ratio):
+        return math.inf
+    return landing.own_landing(ratio).depth * quarter_mass_force(scene, speed)
 
 
 def wave_force(scene: Scene, speed: float) -> float:
@@ -106,24 +107,24 @@ def wave_force(scene: Scene, speed: float) -> float:
     return abs(speed) * math.sqrt(modulus * scene.block.density) * scene.block.base_length
 
 
-def largest_omega(scene: Scene, error: float) -> float:
-    """Return the Omega at which the restitution differs from 1 by an error.
+def cannot_gain(scene: Scene) -> bool:
+    """Return whether opening and closing can put no energy into the block.
 
-    4 y / (pi (2 delta - 1)) of algorithmic damping, and sqrt(8 y) of the phase; the smaller of the two.
+    With delta >= 1 and 2 alpha >= delta the energy E + (alpha - delta/2) dt^2 A'MA/2 cannot rise, since the springs'
+    energy is convex; the two rules beside Newmark's have no such condition.
     """
-    over = 1.0 if scene.contact.rule == "implicit" else 2 * scene.time.delta - 1
-    phase = math.sqrt(8 * error)
-    return min(phase, 4 * error / (math.pi * over)) if over > 0 else phase
+    t = scene.time
+    return scene.contact.rule != "newmark" or (t.delta >= 1 and 2 * t.alpha >= t.delta)
 
 
 def needed(
     scene: Scene, speed: float, error: float, penetration: float, probe: Callable[[float], float | None] | None = None
 ) -> Needed:
-    """Return springs and time step for a restitution error and a penetration.
+    """Return springs and time steps for a restitution error and a penetration.
 
-    p = max(W / (2 x), V^2 m / (8 x^2)) holds the load at rest and one landing; the strain of the block and the second
-    of two impacts in a row go deeper. So p is raised, as the square of the depth, until the exact block stays above x;
-    and dt = Omega / w_c with the Omega of `largest_omega`.
+    p = max(W / (2 x), D^2 V^2 m / (8 x^2)) holds the load at rest and one unloaded landing, D = 1.47 to 2 by p itself.
+    Load and strain at the landing go deeper still, so p is raised, as the square of the depth, until the exact block
+    stays above x. The steps are those at which a landing differs from the block's own restitution by no more than y.
 
     Parameters
     ----------
@@ -132,26 +133,37 @@ def needed(
     speed
         Greatest speed V at which the base lands [m/s].
     error
-        Error y of the restitution [-].
+        Error y of the restitution of the centre of mass, from that of the block itself [-].
     penetration
         Penetration x [m].
     probe
         Function of p that returns how deep the exact block goes [m], None where there is no answer.
     """
     static = abs(opened.pushing(scene)) / (2 * penetration)
-    landing = speed**2 * scene.block.mass / (8 * penetration**2)
-    p = max(static, landing) or scene.contact.stiffness  # without load and speed any springs do
-    limit = largest_omega(scene, error)
+    landed = landing.springs_for(scene, speed, penetration) if speed else 0.0
+    p = max(static, landed) or scene.contact.stiffness  # without load and speed any springs do
     enough, depth = p, probe(p) if probe else None
     for _ in range(RAISES):
         if probe is None or depth is None or depth <= penetration:
             break
         enough *= max(LEAST_RAISE, (depth / penetration) ** 2)
         depth = probe(enough)
-    steps = limit / contact_frequency(scene, enough), limit / contact_frequency(scene)
-    return Needed(enough, steps[0], depth, p, steps[1], limit, restitution(scene, limit))
+    steps = allowed_steps(scene, error, enough)
+    returned = None
+    if steps is not None and steps.longest is not None:
+        returned = restitution(scene, steps.longest, enough)
+    return Needed(enough, depth, p, steps, allowed_steps(scene, error), returned)
+
+
+def allowed_steps(scene: Scene, error: float, stiffness: float | None = None) -> landing.AllowedSteps | None:
+    """Return the steps that keep a restitution on a scene's or other springs; None if unknown or on a rigid stop."""
+    scheme, ratio = stepping(scene), landing.stiffness_ratio(scene, stiffness)
+    if scheme is None or math.isinf(ratio):
+        return None
+    return landing.allowed_steps(scheme, ratio, landing.transit(scene), error)
 
 
 def as_dict(found: Needed) -> dict[str, Any]:
-    """Return plain data for JSON."""
-    return asdict(found)
+    """Return plain data for JSON, with the longest steps by their own names as well."""
+    longest = {"step": found.steps, "step_now": found.steps_now}
+    return asdict(found) | {name: None if steps is None else steps.longest for name, steps in longest.items()}

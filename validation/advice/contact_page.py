@@ -17,6 +17,12 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
+DEFAULT_ERROR, DEFAULT_PENETRATION = 0.05, 1e-4  # of the restitution [-], and [m], where none is asked for
+ALONG = "horizontal.final"  # displacement along the base at the end [m]
+MEAN_RATE = "contact.restitution_mean"
+APART = 0.01  # of the run-out of a rigid block, from which on that of the exact block is said beside it
+MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
+
 Line = tuple[str, ...]
 LINES = (  # what a line is called, its metric, and how the value is scaled and written
     ("switches", "switches.count", 1.0, ""),
@@ -26,13 +32,17 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
     ("peak contact force", "contact.peak_force", 1e-6, " MN"),
     ("impulse of the contact", "contact.impulse", 1e-6, " MN s"),
     ("fastest landing", "contact.landing_speed", 1.0, " m/s"),
-    ("restitution of the block", "contact.restitution", 1.0, ""),
-    ("restitution of the first contact", "contact.restitution_first", 1.0, ""),
-    ("restitution, mean of contacts", "contact.restitution_mean", 1.0, ""),
+    ("restitution, centre of mass", "contact.restitution", 1.0, ""),
+    ("rate of the gap after / before, first contact", "contact.restitution_first", 1.0, ""),
+    ("rate of the gap after / before, mean of contacts", MEAN_RATE, 1.0, ""),
     ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
     ("energy, greatest above the start", "energy.rise", 100.0, " %"),
 )
-SLIPS = (("slip", "contact.slip", 1e3, " mm"), ("slip per second, at the end", "contact.slip_rate", 1e3, " mm/s"))
+SLIPS = (
+    ("displacement along the base", ALONG, 1e3, " mm"),
+    ("slip", "contact.slip", 1e3, " mm"),
+    ("slip per second, at the end", "contact.slip_rate", 1e3, " mm/s"),
+)
 LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
 ALARMS = (contact_alarms, friction.friction_alarms)
 
@@ -66,7 +76,8 @@ def scenes(scene: Scene) -> dict[str, Scene]:
             f"{scene.name}: contact.law: must be unilateral for the command contact, got locked, which neither opens "
             "nor lands; unlock it with --set contact.law=unilateral"
         )
-    plain = scene.with_values({"run.columns": ["displacement", "contact_pressure"]})
+    along = ["horizontal_displacement"] if features.FRICTION in features.of(scene) else []
+    plain = scene.with_values({"run.columns": ["displacement", "contact_pressure", *along]})
     free = plain.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else plain
     return {own(): plain, exact(): free, of_role(Role.TRUTH): free}
 
@@ -74,8 +85,8 @@ def scenes(scene: Scene) -> dict[str, Scene]:
 def answer(
     scene: Scene,
     rows: Mapping[str, Row],
-    error: float,
-    penetration: float,
+    error: float | None = None,
+    penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
 ) -> dict[str, Any]:
     """Return everything as plain data.
@@ -87,24 +98,34 @@ def answer(
     rows
         Its rows by solver, without the solvers that do not apply.
     error, penetration
-        The restitution error [-] and the penetration [m] that are asked for.
+        The restitution error [-] and the penetration [m] that are asked for; None where the user asked for none: then
+        those of `DEFAULT_ERROR` and `DEFAULT_PENETRATION`, but no advice on landings to a block that slides.
     probe
         How deep the exact block goes on springs p [m], None where there is no answer.
     """
-    omega = contact.omega(scene)
     speed = landing_speed(scene, rows)
-    now = contact.restitution(scene, omega)
+    returned = contact.restitution(scene)
+    slides = friction.sliding(scene)
+    stated = {"restitution_error": error, "penetration": penetration}
+    requested = any(value is not None for value in stated.values())
+    limits = {
+        "restitution_error": DEFAULT_ERROR if error is None else error,
+        "penetration": DEFAULT_PENETRATION if penetration is None else penetration,
+    }
+    need = None
+    if requested or slides is None:
+        need = contact.needed(scene, speed, limits["restitution_error"], limits["penetration"], probe)
     return {
         "scene": scene.name,
-        "omega": omega,
+        "omega": contact.omega(scene),
         "contact_frequency": contact.contact_frequency(scene),
-        "restitution_now": None if now is None else asdict(now),
+        "restitution_now": None if returned is None else asdict(returned),
         "landing_speed": speed,
-        "asked": {"restitution_error": error, "penetration": penetration},
-        "needed": contact.as_dict(contact.needed(scene, speed, error, penetration, probe)),
+        "asked": limits | {"stated": [name for name, value in stated.items() if value is not None]},
+        "needed": None if need is None else contact.as_dict(need),
         "hidden_from": contact.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
-        "sliding": friction.as_dict(friction.sliding(scene)),
+        "sliding": friction.as_dict(slides),
         "alarms": [alarm.record() for find in ALARMS for alarm in find(scene, rows)],
     }
 
@@ -120,7 +141,7 @@ def plain(value: Any) -> Any:
 
 def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
-    kept = ("switches.", "contact.", "energy.", "horizon.")
+    kept = ("switches.", "contact.", "energy.", "horizon.", ALONG)
     return {name: value for name, value in row.metrics.items() if name.startswith(kept)}
 
 
@@ -142,11 +163,19 @@ def page(scene: Scene, found: Mapping[str, Any], absent: Mapping[str, str]) -> I
     yield from _aligned(table(scene, found["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
+    if any(_number(run, MEAN_RATE) > 1 for run in found["runs"].values()):
+        yield (
+            "A gap may open faster than it closed without any gain of energy: strain, load and the other corner drive "
+            "the base too; gains are the lines of energy."
+        )
+        yield ""
     slides = friction.sliding(scene)
     if slides is not None:
         yield from friction.lines(scene, slides)
+        yield from _hops(slides, found["runs"])
         yield ""
-    yield from _needed(scene, found)
+    if found["needed"] is not None:
+        yield from _needed(scene, found)
     for alarm in found["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
 
@@ -172,7 +201,7 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
             (f"energy lost by {words}", *(_value(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()))
         )
     lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
-    lines.append(("histories agree up to", *(_value(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
+    lines.append(("repeatable to 1e-6 up to", *(_value(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
     return lines
 
 
@@ -199,23 +228,41 @@ def _solves(run: Mapping[str, Value]) -> str:
     return f"{mean:.4g}, {most:.0f}" if isinstance(mean, float) and isinstance(most, float) else "-"
 
 
+def _number(run: Mapping[str, Value], metric: str) -> float:
+    """Return a number of a run, NaN where it has none."""
+    value = run.get(metric)
+    return value if isinstance(value, float) else math.nan
+
+
+def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> Iterator[str]:
+    """Say where the exact block moves otherwise than a rigid one that stays on the slope."""
+    run = runs.get(exact(), {})
+    moved, share = abs(_number(run, ALONG)), _number(run, "contact.open_share")
+    if slides.stands or not share > 0 or not abs(moved - slides.run_out) > APART * slides.run_out:
+        return
+    yield (
+        f"  hops        the exact block is open for {100 * share:.3g} % of the time and moves {moved:.4g} m: the "
+        "run-out above is that of a block that stays on the slope and never sticks"
+    )
+
+
 def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
     need, asked = found["needed"], found["asked"]
     error, depth = asked["restitution_error"], asked["penetration"]
+    why = "Asked for" if asked["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
-        f"Asked for: a restitution within {100 * error:g} % and a penetration below {depth:g} m, landing at "
-        f"{found['landing_speed']:.4g} m/s under {abs(opened.pushing(scene)):.4g} N."
+        f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
+        f"landing at {found['landing_speed']:.4g} m/s under {abs(opened.pushing(scene)):.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
-    yield f"  time step   dt <= {need['step']:.3g} s at that p, {need['step_now']:.3g} s at the present one"
-    for words, map_ in (("with these", need["restitution"]), ("at present", found["restitution_now"])):
-        if map_ is None:
-            yield f"  {words}  the restitution map is not defined for this scheme"
-            continue
+    ratio = need["stiffness"] / scene.block.young
+    if ratio > MODERATE:
         yield (
-            f"  {words}  a contact returns {map_['mean']:.3g} of its speed on average, {map_['low']:.3g} to "
-            f"{map_['high']:.3g}, and {map_['energy']:.3g} of its energy"
+            f"              that is {ratio:.4g} E, for the penetration of a landing, p ~ (V / x)^2; at rest springs of "
+            f"{MODERATE:g} E give way by {_at_rest(scene, MODERATE * scene.block.young):.2g} m"
         )
+    if found["landing_speed"] > 0:
+        yield from _step_lines(scene, found)
     if scene.time.gg_rate is None and scene.time.discount < 1:
         left = 100 * friction.kept_way(scene.time.discount, scene.time.step, 1.0)
         yield (
@@ -224,9 +271,39 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
         )
 
 
+def _at_rest(scene: Scene, stiffness: float) -> float:
+    """Return how far springs give way under the load at rest [m]."""
+    return abs(opened.pushing(scene)) / (2 * stiffness)
+
+
+def _step_lines(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what is said of time steps and of the restitution that they leave."""
+    need = found["needed"]
+    for words, steps in (("time step   at that p", need["steps"]), ("            at present", need["steps_now"])):
+        yield f"  {words}: {_allowed(steps, scene.time.discount)}"
+    for words, map_ in (("with these", need["restitution"]), ("at present", found["restitution_now"])):
+        if map_ is not None:
+            yield (
+                f"  {words}  an unloaded landing leaves the centre of mass {map_['mean']:.3g} of its speed, "
+                f"{map_['low']:.3g} to {map_['high']:.3g} by phase; the block's own is {map_['own']:.3g}"
+            )
+
+
+def _allowed(steps: Mapping[str, Any] | None, gg: float) -> str:
+    """Return in words which steps are allowed."""
+    if steps is None:
+        return "not known for this scheme, contact rule, outline or rigid stop"
+    if steps["longest"] is None:
+        discount = f" with gg = {gg:g}" if gg < 1 else ""
+        return f"none{discount}; the least error is {100 * steps['best']:.3g} %, at dt = {steps['best_step']:.3g} s"
+    if steps["shortest"] is None:
+        return f"dt <= {steps['longest']:.3g} s"
+    return f"dt from {steps['shortest']:.3g} s, below which gg takes more, to {steps['longest']:.3g} s"
+
+
 def _depth(need: Mapping[str, Any], asked: float) -> str:
     if need["depth"] is None:
-        return ", for the load at rest and one landing"
+        return ", for the load at rest and one unloaded landing"
     reached = "" if need["depth"] <= asked else ", and no stiffer ones were tried"
     return f": the exact block then penetrates {need['depth']:.3g} m{reached}"
 

@@ -120,8 +120,8 @@ def lines(scene: Scene, found: Sliding) -> Iterator[str]:
         )
     else:
         yield (
-            f"  slides      by {found.run_out:.5g} m in {t.duration:.4g} s at {found.acceleration:.4g} m/s2, and "
-            f"tan(phi) x settlement = {found.offset:.3g} m ahead of that"
+            f"  slides      if rigid, at rest and touching at t = 0: by {found.run_out:.5g} m in {t.duration:.4g} s at "
+            f"{found.acceleration:.4g} m/s2; springs put it tan(phi) x settlement = {found.offset:.3g} m ahead"
         )
         if t.discount < 1:
             yield (

@@ -21,11 +21,17 @@ if TYPE_CHECKING:
 def contact(
     scene: SceneArgument,
     error: Annotated[
-        float, typer.Option("--restitution-error", help="Error of the restitution asked for, 0.05 for 5 %.", min=1e-6)
-    ] = 0.05,
+        float | None,
+        typer.Option(
+            "--restitution-error",
+            help="Allowed difference from the block's own restitution, 0.05 for 5 %. (0.05 if neither this nor "
+            "--penetration is stated)",
+            min=1e-6,
+        ),
+    ] = None,
     penetration: Annotated[
-        float, typer.Option("--penetration", help="Largest penetration asked for, in m.", min=1e-12)
-    ] = 1e-4,
+        float | None, typer.Option("--penetration", help="Largest penetration, in m. (1e-4 if not stated)", min=1e-12)
+    ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> int:

@@ -94,13 +94,13 @@ CALCULATORS = (
         "rebound",
         "Rebound",
         "Which share of its speed does a contact return?",
-        "Restitution e of a mass without load on a no-tension spring under the scheme, over the phase θ: where in a "
-        "step it lands, 0 to 1. The base of the block of one strain meets its springs with w_c = √(8 p/m).",
+        "Restitution e of a rigid mass without load on a no-tension spring under the scheme, over the phase θ: where "
+        "in a step it lands, 0 to 1. For one contact of the base of a block much softer than its springs (p ≥ 100E), a "
+        "quarter of the mass, w_c = √(8 p/m); the whole block lands otherwise: dda-validate contact.",
         (
             STIFFNESS,
             Control("step", "Time step dt", "s", 0.0005, 1e-5, 1.0, True),
             *STEPPING[1:],
-            Control("error", "Restitution error that is allowed", "", 0.05, 1e-3, 0.5, True),
         ),
         BLOCK,
         (("phase", "Restitution over the phase of the landing"), ("steps", "Mean, least and greatest over the step")),

@@ -120,7 +120,11 @@ def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Num
 def _opening(scene: Scene) -> Iterator[Number]:
     if scene.contact.law != "unilateral":
         return
-    yield Number("Omega", contact.omega(scene), "", "w_c dt of a landing, w_c = sqrt(8 p/m)")
+    yield Number("Omega", contact.omega(scene), "", "w_c dt of a landing, w_c = pi over its first contact")
+    if (landed := contact.restitution(scene)) is not None:
+        yield Number("e own", landed.own, "", "restitution of an unloaded landing of this block, without a step")
+        yield Number("e least", landed.low, "", "restitution under this step, least over where in it the block lands")
+        yield Number("e most", landed.high, "", "restitution under this step, greatest")
     hidden = contact.hidden_from(scene)
     if hidden is not None:
         yield Number("dt seen", hidden, "s", "largest step that shows the block leave its springs at t = 0")
@@ -200,10 +204,11 @@ def _coarse(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
 def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
     if scene.time.step > found.get("dt seen", math.inf):
         yield "dt is too large to show that the block leaves its springs at t = 0"
-    if found.get("Omega", 0.0) > contact.ARBITRARY:
-        yield f"Omega > {contact.ARBITRARY:g}: the rebound speed depends on where in the step the block lands"
-    elif found.get("Omega", 0.0) > contact.WRONG:
-        yield f"Omega > {contact.WRONG:g}: the restitution of a landing is off by a fifth or more"
+    least, most = found.get("e least", math.nan), found.get("e most", math.nan)
+    if most - least > contact.NOTABLE:
+        yield f"the restitution of a landing, {least:.2g} to {most:.2g}, depends on where in the step the block lands"
+    elif max(abs(least - found.get("e own", math.nan)), abs(most - found.get("e own", math.nan))) > contact.NOTABLE:
+        yield f"the step changes the restitution of a landing from {found['e own']:.2g} to {least:.2g}"
 
 
 def _steep(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:

@@ -110,10 +110,8 @@ const calculators = (() => {
 
   function rebound(s) {
     const block = block_of(s), frequency = f.base_frequency(block), omega = frequency * s.step;
-    const limit = f.largest_omega(s.delta, s.error), command = `dda-validate contact unlocked-constant --restitution-error ` +
-      `${s.error} --set time.steps=50 ${set({ ...of_block(s), ...stepping(s) })}`;
-    const facts = [["w_c dt", figure(omega)], ["dt for the error allowed", `${figure(limit / frequency)} s`]];
-    const values = { frequency, omega, limit, step: limit / frequency, statistics: null };
+    const command = `dda-validate contact unlocked-constant --set time.steps=50 ${set({ ...of_block(s), ...stepping(s) })}`;
+    const facts = [["w_c dt", figure(omega)]], values = { frequency, omega, statistics: null };
     if (!map_defined(s) || omega < LEAST_OMEGA) {
       const why = omega < LEAST_OMEGA ? "w_c dt is below 0.01: the contact is followed in hundreds of steps" :
         "The map is defined for α > 0 and 1/2 ≤ δ ≤ min(1, α + 1/2)";

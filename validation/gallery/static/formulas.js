@@ -346,20 +346,14 @@ const formulas = (() => {
     return { mean, low, high, energy };
   }
 
-  // ---- validation.advice.contact ---------------------------------------------------------------------------------------
+  // ---- validation.gates.landing ---------------------------------------------------------------------------------------
 
-  // w_c = sqrt(8 p / m): the base of the block of one strain moves with a quarter of its mass
+  // w_c = sqrt(8 p / m): at p >> E the base of the block of one strain moves with a quarter of its mass
   function base_frequency({ width, height, density, stiffness }) {
     return Math.sqrt(8 * stiffness / (density * width * height));
   }
 
-  // The Omega at which the restitution differs from 1 by an error y: min(sqrt(8 y), 4 y / (pi (2 delta - 1)))
-  function largest_omega(delta, error) {
-    const over_half = 2 * delta - 1, phase = Math.sqrt(8 * error);
-    return over_half > 0 ? Math.min(phase, 4 * error / (Math.PI * over_half)) : phase;
-  }
-
   return { trace, determinant, spectral_radius, damping_ratio, period_elongation, critical_omega, dda_frequency,
     contact_frequency, family, advise, squared_frequency, wavenumber, ratio, passage, branches, impact_statistics,
-    base_frequency, largest_omega, linspace, geomspace };
+    base_frequency, linspace, geomspace };
 })();

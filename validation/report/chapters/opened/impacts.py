@@ -23,7 +23,7 @@ QUANTITIES = (  # title, metric, factor
 )
 NOTE = (
     "A step sees a switch at its end. The peak force of a rigid wall is ρ c V a; where a stepped solution gives "
-    "more, it is that of the springs under a step that is too long for them."
+    "more, it is that of the springs: 1.5 to 2 times V √(p m / 2) of the exact block, another under a long step."
 )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.gates import landing
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import Case, Group, groups, verdicts_of
 from validation.report.chapters.scene import gate_count, opening
@@ -54,15 +55,20 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
         mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
         curves.append(contact.Curve(words, omega, mean, low, high, dots))
     caption = (
-        "Share of its landing speed that a block keeps, over ω_c dt: mean (line) and range over the phase of the "
-        "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. The springs alone "
-        "would return all of it, e = 1."
+        "Share of its landing speed that a rigid block keeps, over ω_c dt: mean (line) and range over the phase of the "
+        "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. Without a time "
+        "step a rigid block keeps all of it, e = 1."
     )
+    own = {ratio: landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
     said = (
         "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ 1 − π ω_c dt / 4 for (1/2, 1); at ω_c "
         "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
         "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
-        "average. The block of one strain lands with a quarter of its mass, ω_c = √(8 p / m)."
+        "average. This is a rigid mass. The block of one strain is one only in two limits, with a quarter of its mass, "
+        "ω_c = √(8 p / m), at p ≫ E, and with all of it, ω_c = √(2 p / m), at p ≪ E; without a time step its own "
+        f"restitution is {own[1.0]:.3f}, {own[10.0]:.3f} and {own[100.0]:.3f} at p = 1, 10 and 100E, and "
+        f"at p ≫ E it lands in "
+        "three contacts in a row."
     )
     figure = contact.restitution_figure(curves, MARKS)
     return [

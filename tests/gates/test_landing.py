@@ -1,0 +1,198 @@
+"""The landing of the block of one strain: against the exact motion, against `dda` step by step, and in its limits."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.engine.case import Case
+from validation.engine.measure import execute
+from validation.gates import landing
+from validation.scenes.scene import Scene
+from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
+
+UNLOADED = load_scene("impact").expand()[0].with_values(
+    {"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0}
+)
+TRANSIT = landing.transit(UNLOADED)
+SCHEMES = (
+    {"time.alpha": 0.5, "time.delta": 1.0},
+    {"time.alpha": 0.25, "time.delta": 0.5},
+    {"time.alpha": 0.275, "time.delta": 0.55},
+    {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.99},
+    {"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": "implicit"},
+)
+
+
+def on_springs(ratio: float, **values: Any) -> Scene:
+    """Return the unloaded landing on springs of p/E."""
+    return UNLOADED.with_values({"contact.stiffness": ratio * UNLOADED.block.young, **values})
+
+
+def restitution_of(scene: Scene, solver: str) -> float:
+    row, _ = execute(Case(scene, solver), "", "")
+    value = row.metrics["contact.restitution"]
+    assert isinstance(value, float)
+    return value
+
+
+def stepped_by_dda(ratio: float, scheme: dict[str, Any], step: float, phase: float, transits: float = 30.0) -> float:
+    """Return the restitution of a landing that `dda` steps: it starts above the springs by the rest of the step."""
+    scene = on_springs(ratio, **scheme, **{"time.step": step, "time.steps": math.ceil(transits * TRANSIT / step)})
+    gap = scene.time.discount * step * (1 - phase)
+    return restitution_of(scene.with_values({"contact.gap": gap}), "dda")
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 3.0, 10.0, 100.0])
+def test_the_own_landing_is_that_of_the_exact_motion(ratio: float) -> None:
+    own = landing.own_landing(2 * ratio)
+    scene = on_springs(ratio, **{"time.step": 0.05 * TRANSIT, "time.steps": 200})
+    row, _ = execute(Case(scene, "block-events"), "", "")
+    assert row.metrics["contact.restitution"] == pytest.approx(own.restitution, abs=1e-12)
+    assert row.metrics["contact.restitution_first"] == pytest.approx(own.first_rate, abs=1e-11)
+    assert row.metrics["switches.first_opening"] == pytest.approx(own.duration * TRANSIT, rel=1e-12)
+    quarter = math.sqrt(scene.block.mass / (8 * scene.contact.stiffness))
+    assert row.metrics["contact.penetration"] == pytest.approx(own.depth * quarter, rel=2e-2)  # sampled in the row
+
+
+def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
+    """A quarter of the mass at p >> E, all of it at p << E; at p = E the first contact is neither, nor is it at 3E."""
+    scene = on_springs(1.0)
+    stiff, soft, middle = (landing.contact_frequency(scene, r * scene.block.young) for r in (1e5, 1e-5, 1.0))
+    assert stiff == pytest.approx(landing.quarter_mass_frequency(scene, 1e5 * scene.block.young), rel=1e-4)
+    assert soft == pytest.approx(landing.whole_mass_frequency(scene, 1e-5 * scene.block.young), rel=1e-4)
+    whole = landing.whole_mass_frequency(scene)
+    assert middle < 0.9 * whole < 0.5 * landing.quarter_mass_frequency(scene)
+    assert landing.own_landing(2e5).first_rate == pytest.approx(1.0, abs=1e-4)
+    assert landing.own_landing(2e-5).restitution == pytest.approx(1.0, abs=1e-6)
+    assert landing.own_landing(2.0).first_rate == pytest.approx(0.4445, abs=1e-4)
+    assert landing.own_landing(2.0).restitution == pytest.approx(0.9307, abs=1e-4)
+
+
+def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
+    """Over V sqrt(p m / 2): 2 in the soft limit, 1.47 in the stiff one, whose second impact is the deepest."""
+    depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 60)]
+    assert depths[0] == pytest.approx(2.0, abs=1e-2) and depths[-1] == pytest.approx(1.4755, abs=1e-2)
+    assert min(depths) > 1.46 and max(depths) < 2.0
+    assert landing.rigid_stop() == pytest.approx((1.0, 1.475549201, 1.307094874, 0.89132203751993), abs=1e-9)
+
+
+def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> None:
+    kept = [landing.own_landing(2 * ratio).restitution for ratio in np.geomspace(1e-2, 1e4, 60)]
+    assert 0.8 < min(kept) < 0.83 and 0.999 < max(kept) < 1
+    assert landing.own_landing(2e9).restitution == pytest.approx(landing.rigid_stop()[-1], abs=1e-4)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
+def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
+    stepping = landing.Stepping.of(on_springs(ratio, **scheme))
+    for omega in (0.1, 0.7, 3.0):
+        step = omega / landing.contact_frequency(on_springs(ratio))
+        for phase in (0.15, 0.5, 0.8):
+            expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
+            assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
+    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
+        scheme = landing.Stepping(alpha, delta, lambda _: 1.0)
+        for omega in (0.3, 2.0, 7.0):
+            step = omega / math.sqrt(1e-8)
+            phases = np.array([0.1, 0.45, 0.9])
+            found = landing.restitutions(scheme, 1e-8, step, 1.0, phases)
+            expected = [impact_restitution(alpha, delta, 1.0, omega, float(phase)) for phase in phases]
+            assert found == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("scheme", [SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]])
+def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does_not(
+    ratio: float, scheme: dict[str, Any]
+) -> None:
+    error = 0.05
+    stepping = landing.Stepping.of(on_springs(ratio, **scheme))
+    found = landing.allowed_steps(stepping, 2 * ratio, TRANSIT, error)
+    assert found.longest is not None and found.shortest is None
+    own = landing.own_landing(2 * ratio).restitution
+    phases = np.linspace(0, 1, 201)
+    largest = {}
+    for factor in (0.5, 0.8, 1.0, 1.02, 1.05, 1.2):
+        step = factor * found.longest
+        off = np.abs(landing.restitutions(stepping, 2 * ratio, step, TRANSIT, phases) - own)
+        largest[factor] = off.max()
+        if factor in (1.0, 1.2):
+            worst = min(float(phases[int(np.argmax(off))]), 0.999)  # at 1 the step before ends on the springs
+            by_dda = stepped_by_dda(ratio, scheme, step, worst, 12.0)
+            assert abs(by_dda - own) == pytest.approx(off.max(), abs=2e-3)
+    assert max(largest[factor] for factor in (0.5, 0.8, 1.0)) < 1.03 * error  # a kink may lie between two phases
+    assert max(largest[factor] for factor in (1.02, 1.05, 1.2)) > error  # the error rises, not in every stretch
+
+
+def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
+    """Gg = 0.9999: too many steps take too much, too long ones as well; gg = 0.99 has none that keeps 2 %."""
+    stepping = landing.Stepping(0.5, 1.0, lambda _: 0.9999)
+    found = landing.allowed_steps(stepping, 2.0, TRANSIT, 0.05)
+    assert found.shortest is not None and found.longest is not None and found.shortest < found.longest
+
+    def off(step: float) -> float:
+        return landing.stepped_landing(stepping, 2.0, step, TRANSIT).error
+
+    assert off(0.9 * found.shortest) > 0.05 > off(1.1 * found.shortest)
+    assert off(0.9 * found.longest) < 0.05 < off(1.1 * found.longest)
+    none = landing.allowed_steps(landing.Stepping(0.5, 1.0, lambda _: 0.99), 2.0, TRANSIT, 0.02)
+    assert none.longest is None and none.best > 0.15
+    rate = landing.allowed_steps(landing.Stepping(0.5, 1.0, lambda step: math.exp(-1.0 * step)), 2.0, TRANSIT, 0.05)
+    assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
+
+
+def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
+    for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
+        stepping = landing.Stepping(alpha, delta, lambda _: 1.0)
+        coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-4, 2e-6))
+        assert coarse is not None and fine is not None
+        assert math.log(coarse / fine, 100) == pytest.approx(1 / order, rel=0.1)
+
+
+def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:
+    for depth in (1e-4, 1e-3, 5e-3):
+        p = landing.springs_for(UNLOADED, 1.0, depth)
+        scene = on_springs(p / UNLOADED.block.young, **{"time.step": 0.01 * TRANSIT, "time.steps": 1000})
+        row, _ = execute(Case(scene, "block-events"), "", "")
+        assert row.metrics["contact.penetration"] == pytest.approx(depth, rel=2e-2)
+    soft = landing.springs_for(UNLOADED, 1.0, 1.0) / (UNLOADED.block.mass / 2)
+    stiff = landing.springs_for(UNLOADED, 1.0, 1e-5) / (UNLOADED.block.mass / 8e-10)
+    assert soft == pytest.approx(1.0, rel=1e-2) and stiff == pytest.approx(1.4755**2, rel=1e-2)
+
+
+def test_opening_gains_only_below_delta_of_one_or_alpha_of_half_of_it() -> None:
+    """The rigid landing on stiff springs: e <= 1 with delta >= 1 and 2 alpha >= delta, above it otherwise."""
+
+    def largest(alpha: float, delta: float) -> float:
+        scheme = landing.Stepping(alpha, delta, lambda _: 1.0)
+        matrices = landing._step_matrices(scheme, 1.0, 1e-3, math.inf)
+        assert np.isfinite(matrices[1]).all()
+        return max(rigid(alpha, delta, phase) for phase in np.linspace(0.001, 0.999, 500))
+
+    assert largest(0.3, 1.0) == pytest.approx(2.33, abs=0.01) and largest(0.4, 1.0) == pytest.approx(1.5, abs=0.01)
+    assert largest(0.25, 0.5) == pytest.approx(3.0, abs=0.03) and largest(0.45, 0.9) > 1.2
+    for alpha, delta in ((0.5, 1.0), (0.6, 1.2), (0.75, 1.5), (0.75, 1.0)):
+        assert largest(alpha, delta) <= 1
+    assert max(largest(0.6, 1.2), largest(0.75, 1.5)) == pytest.approx(0.666, abs=0.002)
+    assert impact_statistics(0.25, 0.5, 1.0, math.inf)[2] == pytest.approx(3.0)
+
+
+def rigid(alpha: float, delta: float, phase: float) -> float:
+    """Return the restitution of a rigid mass on a rigid stop, in units of V and dt: the recursion by hand."""
+    A = phase / alpha
+    v = -1 + delta * A
+    while (w := v + (0.5 - alpha) * A) < 0:
+        following = -w / alpha
+        v += (1 - delta) * A + delta * following
+        A = following
+    return v + (1 - delta) * A
