@@ -490,15 +490,15 @@ with scikit-fem and one factorisation for each set of closed nodes, with its fac
 ## Steps that switch
 
 Microseconds of processor time a step of one history with its set-up, the least of some runs, what numba compiles once
-not counted; the budget is what a step is allowed to take. MuJoCo and pymunk step the same box as a rigid one on a plane with their
-own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
+not counted; the budget is what a step is allowed to take. MuJoCo and pymunk step the same box as a rigid one on a plane
+with their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
 
 | what | steps | switches | ours [us] | budget [us] | met | MuJoCo [us] | pymunk [us] | answers apart |
 |---|---|---|---|---|---|---|---|---|
 {steps}
 
-Error of the rotation over the tilt until the block of `field-rocking` comes down, and seconds of the processor; "fine" are the settings
-for accuracy of `examples/peers` (MuJoCo) and fifty iterations without slop (pymunk).
+Error of the rotation over the tilt until the block of `field-rocking` comes down, and seconds of the processor; "fine"
+are the settings for accuracy of `examples/peers` (MuJoCo) and fifty iterations without slop (pymunk).
 
 | dt [s] | dda | MuJoCo | MuJoCo, fine | pymunk | pymunk, fine |
 |---|---|---|---|---|---|
