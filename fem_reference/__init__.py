@@ -13,10 +13,10 @@ from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Mode, Result
 
 if TYPE_CHECKING:
-    from fem_reference.contact.shear import Friction
+    from fem_reference.contact.kernel import UNILATERAL_COLUMNS
+    from fem_reference.contact.stepper import Friction
     from fem_reference.exact.bar import Bar, applicable
     from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, solve_adaptive
-    from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
     from fem_reference.history.solver import solve, static
     from fem_reference.history.unilateral import Unilateral, UnilateralResult, solve_unilateral
     from fem_reference.mesh.model import assemble
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 _HOMES = {
     "ADAPTIVE_COLUMNS": "history.adaptive",
     "Bar": "exact.bar",
-    "Friction": "contact.shear",
+    "Friction": "contact.stepper",
     "applicable": "exact.bar",
     "assemble": "mesh.model",
     "highest_frequency": "scheme.eigen",
     "modes": "scheme.eigen",
     "solve": "history.solver",
     "static": "history.solver",
-    "UNILATERAL_COLUMNS": "history.opening_columns",
+    "UNILATERAL_COLUMNS": "contact.kernel",
     "Unilateral": "history.unilateral",
     "UnilateralResult": "history.unilateral",
     "solve_adaptive": "history.adaptive",

@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
@@ -25,7 +26,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import numpy as np  # noqa: E402  (after the number of threads is set)
-from rivals import block_numpy, elements_skfem  # noqa: E402
+from rivals import block_numpy, elements_skfem, engines  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
@@ -39,7 +40,10 @@ from validation.engine.study import Study  # noqa: E402
 from validation.runs.results import Results  # noqa: E402
 from validation.runs.run import Outcome  # noqa: E402
 from validation.runs.threads import VARIABLES  # noqa: E402
+from validation.scenes.record import base_record  # noqa: E402
+from validation.scenes.scene import Scene  # noqa: E402
 from validation.solvers.registry import get_solver  # noqa: E402
+from validation.solvers.rigid.rocking import quarter_period, rocking  # noqa: E402
 
 TYPED = "stiff-contact"  # the study that is run as typed
 AS_TYPED = 1.5  # largest ratio of its seconds over those on one BLAS thread
@@ -231,6 +235,183 @@ def fenicsx_line(n: int = 64, steps: int = 1000) -> str:
     return line(name, ours, rival, min(sum(run.seconds.values()) for run in runs), 0, difference(own, other))
 
 
+# ---- microseconds a step --------------------------------------------------------------------------------------------
+
+
+def step_line(
+    name: str,
+    steps: int,
+    switches: int,
+    seconds: float,
+    budget: float,
+    engine_seconds: Sequence[float | str],
+    compared: str,
+) -> str:
+    """Return a line of the table of steps, and print it.
+
+    Parameters
+    ----------
+    name
+        What is stepped.
+    steps, switches
+        Number of steps, and of them how many change a contact state.
+    seconds
+        Seconds of all steps, set-up counted.
+    budget
+        Greatest number of microseconds a step that is asked for.
+    engine_seconds
+        Seconds of the same number of steps of each of `engines.ENGINES`, or why there are none.
+    compared
+        How far the answers are apart, in words.
+    """
+    ours = 1e6 * seconds / steps
+    met = "yes" if ours <= budget else f"no, {ours / budget:.1f} times"
+    others = [each if isinstance(each, str) else f"{1e6 * each / steps:.1f}" for each in engine_seconds]
+    text = (
+        f"| {name} | {steps:,} | {switches:,} | {ours:.3g} | {budget:g} | {met} | {' | '.join(others)} | {compared} |"
+    )
+    print(text, flush=True)
+    return text
+
+
+def engine_runs(
+    dt: float, gravity: np.ndarray, **box: float | tuple[float, float]
+) -> dict[str, tuple[float, np.ndarray]]:
+    """Return seconds and rows of each engine that is there."""
+    found = {}
+    for engine in engines.ENGINES:
+        if not engines.absent(engine):
+            found[engine] = least(lambda: engines.box(engine, dt, gravity, **box), 1)  # noqa: B023
+    return found
+
+
+def engine_seconds(runs: dict[str, tuple[float, np.ndarray]]) -> list[float | str]:
+    """Return the seconds of each engine, or why it has none."""
+    return [runs[engine][0] if engine in runs else engines.absent(engine) for engine in engines.ENGINES]
+
+
+def opening_steps(steps: int = 10**5, dt: float = 1e-5, p: float = 1.5e9) -> str:
+    """Return the line of a block on corners that open; the engines drop the same box by a millimetre."""
+    model = opening_model(p)
+    seconds, answer = least(lambda: opening_history(steps, dt, model), 5)
+    switches = np.count_nonzero(np.diff(answer.closed_m))
+    off = difference(tuple(answer.columns.values()), block_numpy.opening(steps, dt=dt, p=p))
+    runs = engine_runs(dt, np.tile([0.0, -9.81], (steps, 1)), gap=1e-3)
+    compared = f"numpy loop, all states' inverses: {off:.0e}"
+    return step_line("dda, contact that opens", steps, switches, seconds, 0.1, engine_seconds(runs), compared)
+
+
+def slope_scene(steps: int) -> Scene:
+    """Return the block on an incline under a record, in as many steps."""
+    scene = load_scene("slope-quake").model_copy(update={"sweep": {}})
+    step = scene.time.step * scene.time.steps / steps
+    return scene.with_values({"time.step": step, "time.steps": steps, "contact.stiffness": 1e11})
+
+
+def slipping_steps(steps: int = 10**5) -> str:
+    """Return the line of a block that slips on an incline under a record."""
+    scene = slope_scene(steps)
+    seconds, run = least(lambda: solve(scene, "dda"), 3)
+    slide = run.history.columns["slide_m"]
+    speed = np.abs(np.diff(slide))
+    switches = np.count_nonzero(np.diff(speed > 1e-3 * speed.max()))  # below that it is held by its springs
+    record, dt, turn = base_record(scene), scene.time.step, np.radians(scene.load.slope)
+    place = np.interp(dt * np.arange(-1, steps + 1), record.time, record.x)
+    gravity = np.tile(scene.load.gravity * np.array([np.sin(turn), -np.cos(turn)]), (steps, 1))
+    gravity[:, 0] -= np.diff(place, 2) / dt**2
+    runs = engine_runs(dt, gravity, friction=float(np.tan(np.radians(scene.contact.friction))))
+    far = [f"{engine} {abs(rows[-1, 0] / slide[-1] - 1):.1%}" for engine, (_, rows) in runs.items()]
+    compared = f"slide of {slide[-1]:.3g} m: {', '.join(far) or 'none'}"
+    return step_line("dda, slope under a record", steps, switches, seconds, 1.0, engine_seconds(runs), compared)
+
+
+def rocking_box(scene: Scene) -> dict[str, float | tuple[float, float]]:
+    """Return the box of `field-rocking` for the engines."""
+    tangent = float(np.tan(np.radians(scene.contact.friction)))
+    return {
+        "size": (scene.block.width, scene.block.height),
+        "tilt": float(np.radians(scene.block.tilt)),
+        "friction": tangent,
+    }
+
+
+def turning_steps(steps: int = 30_000, dt: float = 1e-4) -> str:
+    """Return the line of a block that rocks on its corners with impacts; the fall is compared, which has no impact."""
+    scene = load_scene("field-rocking").with_values({"time.step": dt, "time.steps": steps})
+    box = rocking_box(scene)
+    seconds, run = least(lambda: solve(scene, "dda"), 2)
+    rotation = box["tilt"] + run.history.columns["rotation"]
+    impacts = np.count_nonzero(np.diff(np.sign(rotation)))
+    runs = engine_runs(dt, np.tile([0.0, -9.81], (steps, 1)), **box)
+    far = [f"dda {fall_error(rotation, dt, box):.0e}"]
+    far += [f"{engine} {fall_error(rows[:, 2], dt, box):.0e}" for engine, (_, rows) in runs.items()]
+    compared = f"exact fall: {', '.join(far)}"
+    return step_line("dda, rocking with impacts", steps, impacts, seconds, 3.0, engine_seconds(runs), compared)
+
+
+def fall_error(rotation: np.ndarray, dt: float, box: dict[str, float | tuple[float, float]]) -> float:
+    """Return the greatest error of a rotation over the tilt, until the block comes down for the first time."""
+    (width, height), tilt = box["size"], box["tilt"]
+    count = min(len(rotation), int(quarter_period(width, height, tilt) / dt))
+    exact = rocking(width, height, tilt, dt * np.arange(1, count + 1)).rotation
+    return float(np.abs(rotation[:count] - exact).max() / tilt)
+
+
+def fem_steps(steps: int = 10**5, checked: int = 2000) -> str:
+    """Return the line of bonded elements on a base that opens, its first steps against those of the mesh itself."""
+    problem, scheme = opening_elements(16, 1e-4, 1e9)
+    contact, columns = fem_reference.Unilateral(shear="glued"), ("displacement", "contact_pressure", "open_share")
+    solved = lambda count, full: fem_reference.solve_unilateral(  # noqa: E731
+        problem, scheme, count, contact, full=full, columns=columns
+    )
+    solved(steps, False)
+    seconds, answer = least(lambda: solved(steps, False), 2)
+    mesh = solved(checked, True)
+    off = max(
+        np.abs(answer.columns[name][:checked] - mesh.columns[name]).max() / np.abs(mesh.columns[name]).max()
+        for name in columns[:2]
+    )
+    spent = f"{1e6 * mesh.stepping_seconds / checked:.0f} us"
+    switches = np.count_nonzero(np.diff(answer.columns["open_share"]))
+    compared = f"steps of the mesh, {spent}: {off:.0e}; {answer.notes[-1]}"
+    return step_line("fem, 16 x 16, bonded, opens", steps, switches, seconds, 20.0, ["-", "-"], compared)
+
+
+def least(run: Callable[[], Any], repeats: int) -> tuple[float, Any]:
+    """Return the least processor seconds of some runs, and the answer; what is compiled at the first is not counted."""
+    answer = run()
+    seconds = []
+    for _ in range(repeats):
+        began = time.process_time()
+        answer = run()
+        seconds.append(time.process_time() - began)
+    return min(seconds), answer
+
+
+def accuracy_lines(steps: Sequence[float] = (5e-3, 1e-3, 2e-4)) -> list[str]:
+    """Return the lines of error against time for the fall of the tilted block of `field-rocking`."""
+    scene = load_scene("field-rocking")
+    box, lines = rocking_box(scene), []
+    end = quarter_period(*box["size"], box["tilt"])
+    for dt in steps:
+        count = int(end / dt)
+        fall = scene.with_values({"time.step": dt, "time.steps": count})
+        seconds, run = least(lambda: solve(fall, "dda"), 2)  # noqa: B023
+        rotation = box["tilt"] + run.history.columns["rotation"]
+        cells = [f"{fall_error(rotation, dt, box):.0e}, {seconds:.2g}"]
+        for engine in engines.ENGINES:
+            for fine in (False, True):
+                if engines.absent(engine):
+                    cells.append(engines.absent(engine))
+                    continue
+                gravity = np.tile([0.0, -9.81], (count, 1))
+                seconds, rows = least(lambda: engines.box(engine, dt, gravity, fine=fine, **box), 2)  # noqa: B023
+                cells.append(f"{fall_error(rows[:, 2], dt, box):.0e}, {seconds:.2g}")
+        lines.append(f"| {dt:g} | {' | '.join(cells)} |")
+        print(lines[-1], flush=True)
+    return lines
+
+
 # ---- growth ---------------------------------------------------------------------------------------------------------
 
 
@@ -332,6 +513,23 @@ with scikit-fem and one factorisation for each set of closed nodes, with its fac
 |---|---|---|---|---|---|---|---|---|
 {elements}
 
+## Steps that switch
+
+Microseconds of processor time a step of one history with its set-up, the least of some runs, what numba compiles once
+not counted; the budget is what a step is allowed to take. MuJoCo and pymunk step the same box as a rigid one on a plane
+with their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
+
+| what | steps | switches | ours [us] | budget [us] | met | MuJoCo [us] | pymunk [us] | answers apart |
+|---|---|---|---|---|---|---|---|---|
+{steps}
+
+Error of the rotation over the tilt until the block of `field-rocking` comes down, and seconds of the processor; "fine"
+are the settings for accuracy of `examples/peers` (MuJoCo) and fifty iterations without slop (pymunk).
+
+| dt [s] | dda | MuJoCo | MuJoCo, fine | pymunk | pymunk, fine |
+|---|---|---|---|---|---|
+{accuracy}
+
 ## Growth
 
 | what | sizes | seconds | exponent |
@@ -367,6 +565,8 @@ def main() -> None:
         contests="\n".join([*map(compete, contests(quick)), fenicsx_line()]),
         opening="\n".join(opening_line(*case) for case in OPENING[: 1 if quick else None]),
         elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
+        steps="\n".join([opening_steps(), slipping_steps(), turning_steps(), fem_steps()]),
+        accuracy="\n".join(accuracy_lines()),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),
         threads=threads_line(1 if quick else 2),

@@ -1,35 +1,30 @@
-"""One step of the Newmark scheme with kinetic damping on a base that carries no tension.
-
-With S = M + alpha dt^2 K of the block without the base's springs, factorised once for each length of step::
-
-    D* = D + gg dt V + dt^2 (1/2 - alpha) A
-    A1 = S^-1 (F - K D*) + S^-1 B' (N, T)          the free block, then the contact forces
-    D1 = D* + alpha dt^2 A1
-    V1 = gg V + dt ((1 - delta) A + delta A1)
-
-so that M A1 = F - K D1 + B' (N, T) without a division by alpha dt^2. The gaps at the end are those of the free
-block plus C N, C = alpha dt^2 B S^-1 B'. Nothing depends on the contact states but the small problem of the forces.
-Where the base moves its own way is taken from the gaps and slips.
-
-With implicit contact (Kane, Repetto, Ortiz and Marsden, 1999) A is the block's own, M A1 = F - K D1, under average
-acceleration, and the forces of the step's end throw it besides, D by dt^2 / 2 and V by dt times Q = M^-1 B' (N, T)::
-
-    D1 = D* + alpha dt^2 (A1 + Q / (2 alpha)),   V1 = gg V + dt ((1 - delta) A + delta A1) + dt Q
-"""
+"""The block on its contact points with its scheme: what each length of step needs is made once."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.linalg import eigh
 from scipy.sparse import csr_array, vstack
 
-from fem_reference.contact.open_close import OPEN, SLIP, STICK, Contact, Flags, FrictionlessBase, States, Trial
+from fem_reference.contact import kernel
+from fem_reference.contact.kernel import (
+    CONVERGED,
+    OPEN,
+    STARTED,
+    STICK,
+    TIME,
+    UNILATERAL_COLUMNS,
+    UNSETTLED,
+    ContactState,
+)
 from fem_reference.contact.points import ContactModel
-from fem_reference.contact.shear import Friction, ShearBase, ShearStep, sheared
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.newmark import State, Work, effective_matrix, initial_acceleration, predictor, velocity
+from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration
 
 SHEARS = ("frictionless", "glued")
 RULES = ("newmark", "implicit")
@@ -39,40 +34,53 @@ KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
 DENSE = 256
 """Greatest number of forces whose responses are kept, eight bytes an unknown each."""
+NO_POINTS = np.empty((0, 5, 0))
 
 
 @dataclass(frozen=True)
-class ContactState:
-    """Motion and contact at the end of a step."""
+class Friction:
+    """Coulomb's friction along the base, |T| <= tan(angle) N + cohesion times a point's length of the base.
 
-    motion: State  # displacement [m], velocity [m/s] and acceleration [m/s2] of the unknowns
-    gap: Array  # gap w of each point [m], negative where pressed, shape (points,)
-    slip: Array  # displacement s of each point along the base [m]; zero where none is glued
-    reference: Array  # slip r at which the shear spring of each point is unstrained [m]
-    normal: Array  # normal force N of each point on the block [N]
-    shear: Array  # tangential force T of each point on the block [N]
-    states: States  # state of each point that the last step found
-    slid: Array  # sum of what the reference of each point has moved while it was closed [m]
-    time: float  # time of the state [s]
-    base: Array  # way of the base's points since t = 0, normal to it and along it [m], shape (2,)
-    given: float  # work that the moving base has done on the block since t = 0 [J]
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    angle: float  # friction angle [deg], from 0 to below 90
+    cohesion: float = 0.0  # shear stress that a closed base bears without any pressure [Pa]
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.angle < 90:
+            raise ValueError(f"friction: must be at least 0 and below 90, got {self.angle!r}")
+        if not (math.isfinite(self.cohesion) and self.cohesion >= 0):
+            raise ValueError(f"cohesion: must be finite and not negative, got {self.cohesion!r}")
 
     @property
-    def closed(self) -> Flags:
-        """Points that are closed."""
-        closed: Flags = self.states != OPEN
-        return closed
+    def tangent(self) -> float:
+        """Tangent of the angle [-]."""
+        return math.tan(math.radians(self.angle))
 
 
 @dataclass(frozen=True)
-class _Matrices:
-    """What belongs to one length of step."""
+class Operator:
+    """A matrix that is known by its product with a vector, written as that of a diagonal or of a matrix."""
 
-    scheme: Scheme
-    solve: Callable[[Array], Array]
-    response: Array | None  # S^-1 B', shape (unknowns, forces); None for many forces, where steps solve twice
-    C: Array  # alpha dt^2 B S^-1 B' [m/N], shape (forces, forces)
-    small: FrictionlessBase | ShearBase  # the problem of the forces
+    product: Callable[[Array], Array]
+
+    def __mul__(self, vector: Array) -> Array:
+        return self.product(vector)
+
+    __matmul__ = __mul__
+
+
+class Marched(NamedTuple):
+    """What a march has done."""
+
+    state: ContactState  # after the completed steps
+    steps: int  # number of completed steps
+    solves: int  # solutions of the contact in the last step
+    outcome: int  # `CONVERGED`, or why the march ended early
 
 
 @dataclass
@@ -91,9 +99,15 @@ class ContactStepper:
     limit: int = 6  # greatest number of solutions of the open-close iteration [-]
     rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the block
     friction: Friction | None = None  # limit of the forces of glued points; none if absent
+    columns: tuple[str, ...] = ()  # columns that a march keeps, among `UNILATERAL_COLUMNS`
+    modal: bool = False  # step in the natural modes of the block, by products with diagonals
+    compiled: Callable[..., Any] | None = None  # what is compiled of the kernel's march; as it stands if None
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
+        for name in self.columns:
+            if name not in UNILATERAL_COLUMNS:
+                raise ValueError(f"columns: must be among {UNILATERAL_COLUMNS}, got {name!r}")
         if self.shear not in SHEARS:
             raise ValueError(f"shear: must be one of {SHEARS}, got {self.shear!r}")
         if self.rule not in RULES:
@@ -102,147 +116,162 @@ class ContactStepper:
             raise ValueError(f"friction: goes with shear = 'glued' only, got it with {self.shear!r}")
         if self.limit < 1:
             raise ValueError(f"limit: must be at least 1, got {self.limit!r}")
-        both = vstack([self.model.normal, self.model.tangential])
-        self._B = csr_array(both if self.shear == "glued" else self.model.normal)
-        self._weight = 1.0
-        self._thrown: Callable[[Array], Array] | None = None
-        if self.rule == "implicit":
-            if (self.scheme.alpha, self.scheme.delta) != AVERAGE:
-                raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
-            self._weight = 1 / (2 * self.scheme.alpha)
-            mass = self.work.factor(self.model.M)
-            thrown = self._responses(mass)[0]
-            self._thrown = (lambda f: mass(self._B.T @ f)) if thrown is None else (lambda f: thrown @ f)
-        self._lengths: dict[float, _Matrices] = {}
-        self._matrices(self.scheme.step)
+        implicit = self.rule == "implicit"
+        if implicit and (self.scheme.alpha, self.scheme.delta) != AVERAGE:
+            raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
+        model = self.model
+        both = vstack([model.normal, model.tangential])
+        self._B: Any = csr_array(both if self.shear == "glued" else model.normal)
+        self._M: Any = model.M
+        self._K: Any = model.K
+        self._F = model.F
+        self._upwards = model.upwards
+        names = ("displacement", "horizontal_displacement", "rotation")
+        self._rows = np.array([model.observers[name] for name in names])
+        self._momentum = model.M @ model.upwards
+        self._momentum = self._momentum / float(model.upwards @ self._momentum)
+        if self.modal:
+            self._use_modes()
+        self._impulse = self._responses(self._factor(self._M))[0] if implicit else None
+        self._lengths: dict[float, tuple[kernel.Block, kernel.Law]] = {}
+        self._length(self.scheme.step)
 
     def start(self, gap: float = 0.0, speed: float = 0.0) -> ContactState:
         """State at t = 0: unstrained, a gap above the base [m], with one velocity upwards [m/s]."""
-        zero, none = np.zeros_like(self.model.F), np.zeros(len(self.model.share))
-        mass = self.work.factor(self.model.M) if self.scheme.start == "consistent" else None
-        motion = State(zero, speed * self.model.upwards, initial_acceleration(self.model.F, mass))
-        states = np.full(len(none), STICK if gap == 0 else OPEN, dtype=np.int8)
-        return ContactState(motion, none + gap, none, none, none, none, states, none, 0.0, np.zeros(2), 0.0)
-
-    def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Contact]:
-        """One step, of a shorter `length` [s] where that is given.
-
-        Returns
-        -------
-        state, contact
-            The state at the end and the contact found; None where there is none, with the reason in `contact`.
-        """
-        own = self._matrices(self.scheme.step if length is None else length)
-        scheme, old = own.scheme, state.motion
-        ahead = predictor(old, scheme)
-        residual = self.model.F - self.model.K @ ahead
-        free = own.solve(residual)
-        way = self._way(state.time + scheme.step) - state.base
-        moved = self._B @ (ahead - old.D + scheme.alpha * scheme.step**2 * free)
-        moved -= np.repeat(way, len(self.model.share))[: len(moved)]
-        contact = self._contact(state, own, moved)
-        if contact.trial is None:
-            return None, contact
-        N, T = contact.trial.normal, contact.trial.shear
-        forces = np.concatenate([N, T]) if self.shear == "glued" else N
-        A = free if not contact.states.any() else self._pushed(own, residual, free, forces)
-        motion = self._moved(old, ahead, A, forces, scheme)
-        # A pressed spring's gap from its force keeps the digits that the difference of displacements has not.
-        gap = np.where(contact.states != OPEN, -N / self.model.stiffness, contact.trial.gap)
-        sheared = state.slip, state.reference, state.slid
-        if self.shear == "glued":
-            sheared = self._slipped(state, contact.states, contact.trial, moved + own.C @ forces)
-        ended = state.time + scheme.step, state.base + way, state.given + self._given(state, contact.trial, way)
-        slip, reference, slid = sheared
-        return ContactState(motion, gap, slip, reference, N, T, contact.states, slid, *ended), contact
-
-    def _pushed(self, own: _Matrices, residual: Array, free: Array, forces: Array) -> Array:
-        """Accelerations of the free block and of the forces."""
-        if own.response is not None:
-            return free + own.response @ forces
-        return own.solve(residual + self._weight * (self._B.T @ forces))
-
-    def _way(self, time: float) -> Array:
-        """Way of the base since t = 0, normal to it and along it [m]."""
-        if self.model.motion is None:
-            return np.zeros(2)
-        way: Array = self.model.axes @ self.model.motion(np.array([time]))[0]
-        return way
-
-    def _given(self, state: ContactState, trial: Trial, way: Array) -> float:
-        """Work of the base on the block in a step, from the forces at both its ends [J]."""
-        late = 1.0 if self.rule == "implicit" else self.scheme.delta
-        before, after = (np.array([of.normal.sum(), of.shear.sum()]) for of in (state, trial))
-        return float(way @ ((1 - late) * before + late * after))
-
-    def _moved(self, old: State, ahead: Array, A: Array, forces: Array, scheme: Scheme) -> State:
-        """Motion at the end of a step from the accelerations that D1 = D* + alpha dt^2 A holds."""
-        D = ahead + scheme.alpha * scheme.step**2 * A
-        if self._thrown is None:
-            return State(D, velocity(old, A, scheme), A)
-        thrown = self._thrown(forces)
-        own = A - self._weight * thrown
-        return State(D, velocity(old, own, scheme) + scheme.step * thrown, own)
-
-    def scheme_of(self, length: float) -> Scheme:
-        """The scheme for one length of step [s], with the share of gg that belongs to it."""
-        return self._matrices(length).scheme
-
-    def _contact(self, state: ContactState, own: _Matrices, moved: Array) -> Contact:
         points = len(self.model.share)
-        free = state.gap + moved[:points]
-        if isinstance(own.small, FrictionlessBase):
-            return own.small.contact(free, state.states, self.limit)
-        slip = state.slip - state.reference + moved[points:]
-        return sheared(ShearStep(own.small, free, slip, state.gap, state.closed), state.states, self.limit)
+        consistent = self.scheme.start == "consistent"
+        mass = self._factor(self._M) if consistent else None
+        solve = None if mass is None else (lambda right: mass * right)
+        totals = np.zeros(9)
+        totals[STARTED] = consistent
+        return ContactState(
+            D=np.zeros_like(self._F),
+            V=speed * self._upwards,
+            A=initial_acceleration(self._F, solve),
+            gap=np.full(points, float(gap)),
+            slip=np.zeros(points),
+            reference=np.zeros(points),
+            normal=np.zeros(points),
+            shear=np.zeros(points),
+            states=np.full(points, STICK if gap == 0 else OPEN, dtype=np.int8),
+            slid=np.zeros(points),
+            totals=totals,
+        )
 
-    def _slipped(self, state: ContactState, states: States, trial: Trial, moved: Array) -> tuple[Array, Array, Array]:
-        """Slips, references and sums of sliding at the end of a step; `moved` holds gaps, then slips."""
-        slip = state.slip + moved[len(states) :]
-        T, k_t = trial.shear, self.model.shear_stiffness
-        sheared = slip + np.divide(T, k_t, out=np.zeros_like(T), where=k_t > 0)
-        held = np.where(state.closed, state.reference, sheared)
-        sliding = np.abs(states) == SLIP
-        reference = np.where(states == STICK, held, np.where(sliding, sheared, slip))
-        # it has slid from its reference, or from where it closed
-        depth, above = trial.normal / self.model.stiffness, np.maximum(state.gap, 0.0)
-        way = depth + above
-        crossing = state.slip + (slip - state.slip) * np.divide(above, way, out=np.zeros_like(way), where=way > 0)
-        slid = reference - np.where(state.closed, state.reference, crossing)
-        onward = sliding & (slid * states > 0)
-        return slip, reference, state.slid + np.where(onward, slid, 0.0)
+    def march(
+        self, state: ContactState, table: Array, points: Array = NO_POINTS, length: float | None = None
+    ) -> Marched:
+        """Make as many steps as the table has rows, of a shorter `length` [s] where that is given.
 
-    def _matrices(self, length: float) -> _Matrices:
-        if length not in self._lengths:
-            if len(self._lengths) > KEPT:
-                self._lengths = {self.scheme.step: self._lengths[self.scheme.step]}
-            share = length / self.scheme.step
-            scheme = replace(self.scheme, step=length, gg=self.scheme.gg**share)
-            solve = self.work.factor(effective_matrix(self.model.M, self.model.K, scheme))
-            response, C = self._responses(solve)
-            if response is not None:
-                response *= self._weight
-            C, compliance = self._weight * scheme.alpha * length**2 * (C + C.T) / 2, 1 / self.model.stiffness
-            glued = self.shear == "glued"
-            small = self._sheared(C, compliance) if glued else FrictionlessBase(C, compliance)
-            self._lengths[length] = _Matrices(scheme, solve, response, C, small)
+        The rows of the completed steps are filled.
+        """
+        block, law = self._length(self.scheme.step if length is None else length)
+        base = np.zeros((len(table), 2))
+        if self.model.motion is not None:
+            times = state.totals[TIME] + block.step * np.arange(1, len(table) + 1)
+            base = self.model.motion(times) @ self.model.axes.T
+        numbers = np.array([UNILATERAL_COLUMNS.index(name) for name in self.columns], dtype=np.int64)
+        energies = any(name in kernel.ENERGY_COLUMNS for name in self.columns)
+        losses = any(name in kernel.LOSS_COLUMNS for name in self.columns)
+        march = self.compiled or kernel.march
+        fallback = None if self.compiled else kernel.fall_back
+        arguments = (numbers, energies, losses)
+        done = 0
+        solves = 0
+        outcome = CONVERGED
+        while done < len(table) and outcome == CONVERGED:
+            rest = slice(done, None)
+            state, steps, solves, outcome = march(
+                block, law, state, base[rest], *arguments, table[rest], points[rest], fallback
+            )
+            done += steps
+            if outcome == UNSETTLED:
+                # A fallback is rare, and not compiled.
+                one = slice(done, done + 1)
+                state, steps, solves, outcome = kernel.march(
+                    block, law, state, base[one], *arguments, table[one], points[one], kernel.fall_back
+                )
+                done += steps
+        return Marched(state, done, solves, outcome)
+
+    def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Marched]:
+        """One step; the state at its end, or None where it has no contact."""
+        marched = self.march(state, np.empty((1, len(self.columns))), length=length)
+        return marched.state if marched.steps else None, marched
+
+    def _use_modes(self) -> None:
+        """Turn to the natural modes of the block, in which M is one and K a diagonal."""
+        squares, shapes = eigh(self._K.toarray(), self._M.toarray())
+        # Without the springs of the base the block is free to move, and in the plane to turn.
+        squares[: 1 if self.model.kind == "column" else 3] = 0.0
+        self._upwards = shapes.T @ (self._M @ self._upwards)
+        self._momentum = self._momentum @ shapes
+        self._M = np.ones(len(squares))
+        self._K = squares
+        self._F = shapes.T @ self._F
+        self._B = np.ascontiguousarray(self._B @ shapes)
+        self._rows = np.ascontiguousarray(self._rows @ shapes)
+        self.work.factorisations += 1
+        self.work.nonzeros = shapes.size
+
+    def _factor(self, matrix: Any) -> Any:
+        """Inverse of M or S: of a diagonal, or as an operator."""
+        return 1 / matrix if self.modal else Operator(self.work.factor(matrix))
+
+    def _length(self, length: float) -> tuple[kernel.Block, kernel.Law]:
+        if length in self._lengths:
+            return self._lengths[length]
+        if len(self._lengths) > KEPT:
+            self._lengths = {self.scheme.step: self._lengths[self.scheme.step]}
+        scheme = replace(self.scheme, step=length, gg=self.scheme.gg ** (length / self.scheme.step))
+        implicit = self.rule == "implicit"
+        weight = 1 / (2 * scheme.alpha) if implicit else 1.0
+        inverse = self._factor(effective_matrix(self._M, self._K, scheme))
+        response, C = self._responses(inverse, weight)
+        block = kernel.Block(
+            K=self._K if self.modal else Operator(lambda vector: self._K @ vector),
+            M=self._M if self.modal else Operator(lambda vector: self._M @ vector),
+            inverse=inverse,
+            B=self._B,
+            response=response,
+            impulse=self._impulse if implicit else response,
+            F=self._F,
+            rows=self._rows,
+            momentum=self._momentum,
+            alpha=float(scheme.alpha),
+            delta=float(scheme.delta),
+            gg=float(scheme.gg),
+            step=float(length),
+        )
+        model = self.model
+        friction = self.friction or Friction(0.0)
+        glued = self.shear == "glued"
+        law = kernel.Law(
+            C=scheme.alpha * length**2 * (C + C.T) / 2,
+            compliance=1 / model.stiffness,
+            shear_stiffness=model.shear_stiffness if glued else np.zeros_like(model.share),
+            tangent=math.inf if self.friction is None else friction.tangent,
+            cohesion=friction.cohesion * model.length * model.share,
+            share=model.share,
+            length=float(model.length),
+            limit=self.limit,
+            implicit=implicit,
+        )
+        self._lengths[length] = block, law
         return self._lengths[length]
 
-    def _sheared(self, C: Array, compliance: Array) -> ShearBase:
-        k_t, friction = self.model.shear_stiffness, self.friction
-        if friction is None:
-            return ShearBase(C, compliance, k_t)
-        cohesion = friction.cohesion * self.model.length * self.model.share
-        return ShearBase(C, compliance, k_t, friction.tangent, cohesion)
-
-    def _responses(self, solve: Callable[[Array], Array]) -> tuple[Array | None, Array]:
-        """S^-1 B', where it is kept, and B S^-1 B'."""
-        count = self._B.shape[0]
-        response = np.empty((self._B.shape[1], count)) if count <= DENSE else None
-        C = np.empty((count, count))
+    def _responses(self, inverse: Any, weight: float = 1.0) -> tuple[Any, Array]:
+        """Weighted S^-1 B', an operator where it is not kept, and B times it; of M^-1 likewise."""
+        count, unknowns = self._B.shape
+        transposed = self._B.T
+        if self.modal:
+            response = np.ascontiguousarray(weight * inverse[:, None] * transposed)
+            return response, self._B @ response
+        if count > DENSE:
+            columns = (self._B @ (inverse * self._B[[i]].toarray()[0]) for i in range(count))
+            return Operator(lambda forces: inverse * (weight * (transposed @ forces))), weight * np.array([*columns]).T
+        response = np.empty((unknowns, count))
         for i in range(count):
-            found = solve(self._B[[i]].toarray()[0])
-            C[:, i] = self._B @ found
-            if response is not None:
-                response[:, i] = found
-        return response, C
+            response[:, i] = inverse * self._B[[i]].toarray()[0]
+        response *= weight
+        return response, np.asarray(self._B @ response)

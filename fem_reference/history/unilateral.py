@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from fem_reference.contact import compilation
+from fem_reference.contact.kernel import (
+    CONVERGED,
+    COUNTS,
+    LOSS_COLUMNS,
+    OVERFLOW,
+    POINTWISE,
+    UNILATERAL_COLUMNS,
+    ContactState,
+)
 from fem_reference.contact.points import ContactModel, build
-from fem_reference.contact.shear import Friction
-from fem_reference.contact.stepper import ContactState, ContactStepper
-from fem_reference.history.opening_columns import COUNTS, LOSSES, UNILATERAL_COLUMNS, Observer, observers
-from fem_reference.history.opening_losses import Losses
+from fem_reference.contact.stepper import NO_POINTS, ContactStepper, Friction, Marched
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
-COMPLETED, OVERFLOW = "completed", "overflow"
-POINTWISE = ("normal", "gap", "shear", "states", "slid")
-"""What is kept of every point where it is asked for."""
+OUTCOMES = ("completed", "no consistent contact state", "several consistent contact states", "overflow")
+"""How a history ends, by the numbers of the kernel."""
+MODES = 2500
+"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,7 @@ def solve_unilateral(
     every_point
         Keep forces, gap, state and sliding of every point.
     columns
-        Columns of the history, among `fem_reference.history.opening_columns.UNILATERAL_COLUMNS`.
+        Columns of the history, among `fem_reference.UNILATERAL_COLUMNS`.
 
     Raises
     ------
@@ -115,32 +122,52 @@ def solve_unilateral(
     contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)
-    stepper = ContactStepper(model, scheme, contact.shear, contact.limit, contact.rule, contact.friction)
+    unknowns = len(model.F)
+    modal = not full and unknowns <= MODES and steps >= compilation.LONG
+    compiled, compiled_note = compilation.march(modal, steps)
+    stepper = ContactStepper(
+        model,
+        scheme,
+        contact.shear,
+        contact.limit,
+        contact.rule,
+        contact.friction,
+        columns=_kept_columns(columns),
+        modal=modal,
+        compiled=compiled,
+    )
     state = stepper.start(contact.gap, contact.velocity)
+    points = len(model.share)
+    table = np.zeros((steps, len(stepper.columns)))
+    pointwise = np.zeros((steps if every_point else 0, len(POINTWISE), points))
     ready = time.perf_counter()
-    watched = _Watched(stepper, tuple(dict.fromkeys(columns)), every_point)
-    rows, outcome = _run(stepper, state, steps, contact, watched)
+    rows, outcome = _march(stepper, state, contact, table, pointwise)
     ended = time.perf_counter()
+    modes_note = (f"stepped in its {unknowns} natural modes",) if modal else ()
     return UnilateralResult(
-        time=np.asarray(scheme.step * np.arange(1, len(rows) + 1), dtype=np.float64),
-        columns=watched.table(rows),
+        time=np.asarray(scheme.step * np.arange(1, rows + 1), dtype=np.float64),
+        columns=dict(zip(stepper.columns, table[:rows].T.copy(), strict=True)),
         outcome=outcome,
-        unknowns=len(model.F),
-        points=len(model.share),
+        unknowns=unknowns,
+        points=points,
         **vars(stepper.work),
-        notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem)),
+        notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem), *modes_note, compiled_note),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
-        **_of_points(rows, len(model.share) if every_point else 0),
+        **_of_points(pointwise[:rows] if every_point else None),
     )
 
 
-def _of_points(rows: list[_Row], points: int) -> dict[str, Any]:
+def _of_points(pointwise: Array | None) -> dict[str, Any]:
     """What is kept of every point, shape (rows, points) each."""
-    if not points:
-        return {}
-    kept = [[getattr(row.state, name) for row in rows] for name in POINTWISE]
-    return {name: np.array(values, float).reshape(-1, points) for name, values in zip(POINTWISE, kept, strict=True)}
+    return {} if pointwise is None else {name: pointwise[:, i].copy() for i, name in enumerate(POINTWISE)}
+
+
+def _kept_columns(columns: tuple[str, ...]) -> tuple[str, ...]:
+    """The columns of a history: all losses, where one is asked for, and the counts at the end."""
+    motion = [name for name in dict.fromkeys(columns) if name not in (*LOSS_COLUMNS, *COUNTS)]
+    losses = LOSS_COLUMNS if any(name in LOSS_COLUMNS for name in columns) else ()
+    return (*motion, *losses, *(name for name in COUNTS if name in columns))
 
 
 def _saving(model: ContactModel) -> tuple[str, ...]:
@@ -160,106 +187,63 @@ def _ramp(problem: Problem) -> tuple[str, ...]:
     return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
 
 
-@dataclass(frozen=True)
-class _Row:
-    observed: list[float]
-    state: ContactState | None  # where every point is kept
-
-
-class _Watched:
-    """What is kept of every step."""
-
-    def __init__(self, stepper: ContactStepper, asked: tuple[str, ...], every_point: bool) -> None:
-        self.observers: list[Observer] = observers(stepper.model, asked)
-        self.counted = [name for name in COUNTS if name in asked]
-        lost = any(name in asked for name in LOSSES)
-        self.losses = Losses(stepper.model, stepper.scheme.start == "consistent", stepper.rule) if lost else None
-        seen = [name for name in asked if name not in (*LOSSES, *COUNTS)]
-        self.columns = (*seen, *(LOSSES if lost else ()), *self.counted)
-        self.every_point = every_point
-
-    def table(self, rows: list[_Row]) -> dict[str, Array]:
-        """Return the columns, shape (rows,) each."""
-        observed = np.array([row.observed for row in rows]).reshape(len(rows), len(self.columns)).T
-        return dict(zip(self.columns, observed, strict=True))
-
-    def row(self, step: CutStep, state: ContactState) -> _Row:
-        """Return what is kept of a step that ends in a state."""
-        observed = [watch(state) for watch in self.observers]
-        observed += [] if self.losses is None else self.losses.values.tolist()
-        observed += [float(getattr(step, name)) for name in self.counted]
-        return _Row(observed, state if self.every_point else None)
-
-
-def _run(
-    stepper: ContactStepper, state: ContactState, steps: int, contact: Unilateral, watched: _Watched
-) -> tuple[list[_Row], str]:
-    """Rows of the steps, and the outcome."""
-    rows: list[_Row] = []
-    accepted = None if watched.losses is None else watched.losses.add
+def _march(
+    stepper: ContactStepper, state: ContactState, contact: Unilateral, table: Array, points: Array
+) -> tuple[int, str]:
+    """Fill the rows of the steps; return how many are complete, and the outcome."""
+    done = 0
     # A scheme beyond its limit grows until it overflows; the outcome says so.
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(steps):
-            step = advance_with_cuts(stepper, state, contact, accepted)
-            if step.state is None:
-                return rows, step.failure
-            state = step.state
-            row = watched.row(step, state)
-            if not all(map(math.isfinite, row.observed)):
-                return rows, OVERFLOW
-            rows.append(row)
-    return rows, COMPLETED
+        while done < len(table):
+            marched = stepper.march(state, table[done:], points[done:])
+            done += marched.steps
+            if marched.outcome != CONVERGED:
+                marched = cut_step(stepper, marched, contact, table[done : done + 1], points[done : done + 1])
+                if marched.outcome != CONVERGED:
+                    return done, OUTCOMES[marched.outcome]
+                done += 1
+            state = marched.state
+    return done, OUTCOMES[CONVERGED]
 
 
-Accepted = Callable[[Scheme, ContactState, ContactState], None]
-
-
-@dataclass
-class CutStep:
-    """One step of the scheme, in one piece or in several."""
-
-    state: ContactState | None  # state at the end; None where even the shortest step has no contact
-    solves: int = 0  # solutions of the open-close iteration in all pieces, tried and accepted [-]
-    cuts: int = 0  # pieces that were tried without success [-]; the next step is tried in one piece again
-    pieces: list[float] = field(default_factory=list)  # lengths of the accepted pieces over the step [-]
-    failure: str = ""  # why there is no state, in words
-
-
-def advance_with_cuts(
-    stepper: ContactStepper, state: ContactState, contact: Unilateral, accepted: Accepted | None = None
-) -> CutStep:
-    """One step; a piece without a contact is repeated shorter, from the state at its start, as are those after it.
+def cut_step(
+    stepper: ContactStepper, marched: Marched, contact: Unilateral, row: Array, points: Array = NO_POINTS
+) -> Marched:
+    """Make a step without a contact in shorter pieces; a piece without one is repeated shorter, as are those after it.
 
     Parameters
     ----------
     stepper
         The block and the scheme.
-    state
-        State at the start of the step; it is not changed.
+    marched
+        How the step in one piece has failed, with the state before it.
     contact
         Factor and limit of the cuts.
-    accepted
-        Called with the scheme of each accepted piece and the states before and after it.
+    row, points
+        What is kept of the step (filled), one row each.
+
+    Returns
+    -------
+    Marched
+        State at the end of the step, or before the piece that failed. The next step is tried in one piece again.
     """
-    result = CutStep(state)
-    left = trial = 1.0
-    while left > 0:
-        length = stepper.scheme.step * trial
-        new, found = stepper.advance(state, length)
-        result.solves += found.solves
-        if new is None:
-            result.cuts += 1
+    solves = marched.solves
+    cuts = 0
+    left = 1.0
+    trial = 1.0
+    while left > 0 and marched.outcome != OVERFLOW:
+        if marched.outcome != CONVERGED:
+            cuts += 1
             if trial <= contact.shortest:
-                result.state, result.failure = None, found.failure
-                return result
+                return marched
             trial = max(contact.cut * trial, contact.shortest)
-            continue
-        if accepted is not None:
-            accepted(stepper.scheme_of(length), state, new)
-        state = new
-        result.pieces.append(trial)
-        # What rounding leaves over is no piece.
-        left = left - trial if left - trial > 1e-9 else 0.0
-        trial = min(trial, left)
-    result.state = state
-    return result
+        marched = stepper.march(marched.state, row, points, stepper.scheme.step * trial)
+        solves += marched.solves
+        if marched.outcome == CONVERGED:
+            # What rounding leaves over is no piece.
+            left = left - trial if left - trial > 1e-9 else 0.0
+            trial = min(trial, left)
+    for name, value in (("solves", solves), ("cuts", cuts)):
+        if name in stepper.columns:
+            row[0, stepper.columns.index(name)] = value
+    return marched

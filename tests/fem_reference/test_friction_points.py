@@ -5,14 +5,13 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.contact_points import PointStep
 
-from fem_reference.contact import shear
-from fem_reference.contact.open_close import NONE, SEVERAL
-from fem_reference.contact.shear import ShearBase, ShearStep, sheared
+from fem_reference.contact import kernel
 
 
 def random_step(rng, n, tangent=None):
-    """A base of n points with friction in one step, in unlike units, and the states at the step's start."""
+    """A base of n points with friction in one step, in unlike units."""
     shape = rng.standard_normal((2 * n, 2 * n)) * 10.0 ** rng.uniform(-6, -3, 2 * n)[:, None]
     C = shape @ shape.T
     states = rng.choice([0, 1, 2, -2], n).astype(np.int8)
@@ -23,26 +22,24 @@ def random_step(rng, n, tangent=None):
     tangent = rng.uniform(0, 1.5) if tangent is None else tangent
     before = np.where(states != 0, -1.0, 1.0) * rng.random(n) * 1e-3
     free = rng.standard_normal((2, n)) * 1e-3
-    base = ShearBase(C, compliance, k_t, tangent, cohesion)
-    return ShearStep(base, free[0], free[1], before, states != 0), states
+    return PointStep(C, compliance, k_t, free.ravel(), before, states, tangent, cohesion)
 
 
 def check_law(step, found):
     """The forces are those of the law at the end of the step; returns how many points slide."""
     N, T, states = found.trial.normal, found.trial.shear, found.states
-    base = step.base
-    w, s = np.split(np.concatenate([step.free_gap, step.free_slip]) + base.C @ np.concatenate([N, T]), 2)
+    w, s = np.split(step.free + step.C @ np.concatenate([N, T]), 2)
     closed, slides = states != 0, np.abs(states) == 2
-    size = np.abs(base.C) @ np.concatenate([np.abs(N), np.abs(T)]) + 1e-3
+    size = np.abs(step.C) @ np.concatenate([np.abs(N), np.abs(T)]) + 1e-3
     gaps, slips = np.split(1e-8 * size, 2)
     assert not N[~closed].any() and not T[~closed].any() and np.all(w[~closed] >= -gaps[~closed])
-    assert np.all(N >= 0) and np.all(np.abs(w + N * base.compliance)[closed] <= gaps[closed])
+    assert np.all(N >= 0) and np.all(np.abs(w + N * step.compliance)[closed] <= gaps[closed])
     # where a straight path crosses zero gap, and where the reference was
     closing = closed & ~step.closed
     crossing = np.where(closing, s * step.gap / np.where(closing, step.gap - w, 1.0), 0.0)
-    limit = base.tangent * N + base.cohesion
+    limit = step.tangent * N + step.cohesion
     assert np.all(np.abs(T) <= limit * (1 + 1e-9))
-    moved = s + T / base.shear_stiffness - crossing  # of the reference
+    moved = s + T / step.shear_stiffness - crossing  # of the reference
     stuck = closed & ~slides
     assert np.all(np.abs(moved[stuck]) <= slips[stuck])
     assert np.allclose(T[slides], -np.sign(states[slides]) * limit[slides], rtol=1e-9)
@@ -54,8 +51,8 @@ def check_law(step, found):
 def test_points_obey_their_law(n):
     rng, slid, met = np.random.default_rng(n), 0, 0
     for _ in range(40):
-        step, states = random_step(rng, n)
-        found = sheared(step, states, 6)
+        step = random_step(rng, n)
+        found = step.contact()
         if found.trial is not None:
             slid, met = slid + check_law(step, found), met + 1
     assert slid > 6 and met > 22
@@ -76,8 +73,8 @@ def test_few_points_try_all_states():
     rng = np.random.default_rng(4)
     outcomes = set()
     for _ in range(40):
-        step, states = random_step(rng, 2, 5.0)
-        found, sets = sheared(step, states, 1), holding(step)
+        step = random_step(rng, 2, 5.0)
+        found, sets = step.contact(1), holding(step)
         if found.solves == 1:
             continue
         outcomes.add(found.failure)
@@ -85,16 +82,16 @@ def test_few_points_try_all_states():
         if len(sets) == 1:
             assert np.allclose(np.concatenate([found.trial.normal, found.trial.shear]), sets[0], rtol=1e-12)
         else:
-            assert found.failure == (SEVERAL if sets else NONE)
-    assert outcomes == {"", NONE, SEVERAL}
+            assert found.failure == ("several" if sets else "none")
+    assert outcomes == {"", "none", "several"}
 
 
 def test_a_point_without_forces_is_one_contact_however_its_state_is_called():
     """Beside a point that closes one that touches its base without a force: open, held or sliding, it is the same."""
-    base = ShearBase(np.eye(4) * 1e-9, np.full(2, 1e-9), np.full(2, 1e9), 0.5, np.zeros(2))
-    step = ShearStep(base, np.array([-1e-6, 0.0]), np.zeros(2), np.array([1e-6, 0.0]), np.array([False, True]))
+    free, gap, states = np.array([-1e-6, 0.0, 0.0, 0.0]), np.array([1e-6, 0.0]), np.array([0, 1], dtype=np.int8)
+    step = PointStep(np.eye(4) * 1e-9, np.full(2, 1e-9), np.full(2, 1e9), free, gap, states, 0.5)
     assert len(holding(step)) > 1
-    found = sheared(step, np.array([0, 1], dtype=np.int8), 1)
+    found = step.contact(1)
     assert (found.failure, found.solves) == ("", 2)
     assert found.trial.normal == pytest.approx([500.0, 0.0])
 
@@ -102,11 +99,11 @@ def test_a_point_without_forces_is_one_contact_however_its_state_is_called():
 def test_many_points_set_one_state_after_the_other():
     rng, singly = np.random.default_rng(5), 0
     for _ in range(40):
-        step, states = random_step(rng, 6, 0.4)
-        found = sheared(step, states, 1)
-        assert found.solves <= 1 + shear.SINGLY * 6
+        step = random_step(rng, 6, 0.4)
+        found = step.contact(1)
+        assert found.solves <= 1 + kernel.SINGLY * 6
         if found.trial is None:
-            assert found.failure == NONE
+            assert found.failure == "none"
         elif found.solves > 1:
             check_law(step, found)
             singly += 1
@@ -115,11 +112,13 @@ def test_many_points_set_one_state_after_the_other():
 
 def test_a_sliding_point_that_turns_sticks_first_or_slides_back():
     """One point under one force: the four answers of the return mapping, by hand."""
-    base = ShearBase(np.diag([1e-9, 1e-9]), np.array([1e-9]), np.array([1e9]), 0.5, np.array([100.0]))
+    points = np.diag([1e-9, 1e-9]), np.array([1e-9]), np.array([1e9])
     for slip, state in ((0.0, 1), (4e-7, 1), (1e-5, 2), (-1e-5, -2)):
         for before in (0, 1, 2, -2):
-            step = ShearStep(base, np.array([-2e-6]), np.array([slip]), np.array([-1e-6]), np.array([True]))
-            found = sheared(step, np.array([before], dtype=np.int8), 6)
+            gap, states = np.full(1, -1e-6), np.full(1, before, dtype=np.int8)
+            at_start = gap if before else -gap * 0
+            step = PointStep(*points, np.array([-2e-6, slip]), at_start, states, 0.5, np.full(1, 100.0))
+            found = step.contact()
             # w_f = -2e-6 m on two compliances of 1e-9: N = 1000 N, and half of it and 100 N are the friction
             assert found.trial.normal[0] == pytest.approx(1000.0)
             assert found.states[0] == state
@@ -128,8 +127,8 @@ def test_a_sliding_point_that_turns_sticks_first_or_slides_back():
 
 def test_a_point_that_turns_is_held_first():
     """On a body softer than the shear spring either direction asks for the other one; held, the point is at rest."""
-    base = ShearBase(np.diag([1e-9, 1e-8]), np.array([1e-9]), np.array([1e9]), 0.5, np.zeros(1))
-    step = ShearStep(base, np.array([-2e-6]), np.zeros(1), np.array([-1e-6]), np.array([True]))
     for before in (2, -2):
-        found = sheared(step, np.array([before], dtype=np.int8), 6)
+        states = np.full(1, before, dtype=np.int8)
+        free, gap = np.array([-2e-6, 0.0]), np.full(1, -1e-6)
+        found = PointStep(np.diag([1e-9, 1e-8]), np.full(1, 1e-9), np.full(1, 1e9), free, gap, states, 0.5).contact()
         assert (found.solves, found.states[0], found.trial.shear[0]) == (2, 1, 0.0)

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.contact_points import PointStep, frictionless
 from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import points, stepper
-from fem_reference.contact.open_close import Contact, FrictionlessBase, Trial, complementary, iterate
-from fem_reference.contact.shear import ShearBase, ShearStep, sheared
-from fem_reference.contact.stepper import ContactStepper
+from fem_reference.contact.kernel import NONE
+from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history import unilateral
 
 SCHEME = Scheme(0.5, 1.0, 0.9, 1e-3)
@@ -23,27 +23,27 @@ def random_base(rng, n):
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 12])
-def test_least_squares_solve_the_complementarity_problem(n):
-    rng = np.random.default_rng(n)
+def test_one_state_after_the_other_solves_the_complementarity_problem(n):
+    rng, used = np.random.default_rng(n), 0
     for _ in range(60):
         C, compliance, free = random_base(rng, n)
-        A = C + np.diag(compliance)
-        N = complementary(A, free)
+        found = frictionless(C, compliance, free, (rng.random(n) < 0.5).astype(np.int8)).contact(1)
+        used += found.solves == 2
+        A, N = C + np.diag(compliance), found.trial.normal
         gap = A @ N + free
         size = np.abs(A) @ N + np.abs(free)
-        # the condition of a random A of twelve points, squared as by any least squares' tolerance
+        # the condition of a random A of twelve points
         assert np.all(N >= 0) and np.all(gap >= -1e-6 * size)
         assert np.all(N * np.abs(gap) <= 1e-6 * N * size)
-    assert not complementary(A, np.zeros(n)).any()
+    assert used > 20
 
 
 def test_the_fallback_finds_what_the_iteration_finds():
     rng, used = np.random.default_rng(7), 0
     for _ in range(120):
         C, compliance, free = random_base(rng, 6)
-        closed = (rng.random(6) < 0.5).astype(np.int8)
-        plain = FrictionlessBase(C, compliance).contact(free, closed, 60)
-        forced = FrictionlessBase(C, compliance).contact(free, closed, 1)
+        step = frictionless(C, compliance, free, (rng.random(6) < 0.5).astype(np.int8))
+        plain, forced = step.contact(60), step.contact(1)
         used += forced.solves == 2
         assert np.array_equal(plain.states, forced.states)
         assert np.allclose(plain.trial.normal, forced.trial.normal, rtol=1e-12, atol=0)
@@ -55,16 +55,9 @@ def test_a_problem_on_which_the_iteration_cycles_is_solved():
     C = np.array([[0.255, 0.256, -0.162], [0.256, 0.302, -0.209], [-0.162, -0.209, 0.162]])
     free, closed = np.array([-0.5, -1.02, 0.82]), np.array([1, 0, 0], dtype=np.int8)
     compliance = np.full(len(free), 1e-3)
-    A = C + np.diag(compliance)
-
-    def forces(states):
-        N = np.zeros(len(free))
-        on = states > 0
-        N[on] = np.linalg.solve(A[np.ix_(on, on)], -free[on])
-        return Trial(N, 0 * N, free + C @ N, 0 * N)
-
-    assert iterate(forces, closed, 500).trial is None
-    found = FrictionlessBase(C, compliance).contact(free, closed, 6)
+    step = frictionless(C, compliance, free, closed)
+    assert step.contact(500, fallback=None).failure == "unsettled"
+    found = step.contact(6)
     assert found.solves == 7 and found.trial is not None
     N, gap = found.trial.normal, found.trial.gap
     assert np.all(N >= 0) and np.all(gap[N == 0] >= 0)
@@ -73,12 +66,16 @@ def test_a_problem_on_which_the_iteration_cycles_is_solved():
 
 def test_a_point_without_force_and_gap_keeps_its_state():
     for state in (0, 1):
-        found = FrictionlessBase(np.eye(1), np.ones(1)).contact(np.zeros(1), np.array([state], dtype=np.int8), 6)
+        found = frictionless(np.eye(1), np.ones(1), np.zeros(1), np.array([state], dtype=np.int8)).contact()
         assert (found.solves, found.states[0]) == (1, state)
 
 
-def found_of(base, limit):
-    return sheared(base, base.closed.astype(np.int8), limit)
+def test_a_singular_matrix_is_a_set_of_states_that_nothing_asks_for():
+    free, states = np.array([-1.0, 0.0]), np.array([2], dtype=np.int8)
+    # T = -N on a body that turns it into as much gap: N / k + C_nn N + C_nt T = 0 for every N
+    step = PointStep(np.array([[1.0, 2.0], [2.0, 8.0]]), np.ones(1), np.ones(1), free, np.full(1, -1.0), states, 1.0)
+    assert np.isnan(step.forces(states).normal).all()
+    assert step.contact().trial is None or np.isfinite(step.contact().trial.normal).all()
 
 
 def random_glued(rng, n):
@@ -88,7 +85,7 @@ def random_glued(rng, n):
     compliance = np.diag(C)[:n] * 10.0 ** rng.uniform(-3, 1, n)
     before = np.where(closed, -1.0, 1.0) * rng.random(n) * 1e-3
     free = rng.standard_normal((2, n)) * 1e-3
-    return ShearStep(ShearBase(C, compliance, stiffness), free[0], free[1], before, closed)
+    return PointStep(C, compliance, stiffness, free.ravel(), before, closed.astype(np.int8))
 
 
 @pytest.mark.parametrize("n", [1, 2, 4])
@@ -96,21 +93,21 @@ def test_glued_points_obey_their_law(n):
     rng, closings = np.random.default_rng(n), 0
     for _ in range(50):
         base = random_glued(rng, n)
-        found = found_of(base, 6)
+        found = base.contact(6)
         if found.trial is None:
             continue
         N, T = found.trial.normal, found.trial.shear
-        gap, slip = np.split(np.concatenate([base.free_gap, base.free_slip]) + base.base.C @ np.concatenate([N, T]), 2)
+        gap, slip = np.split(base.free + base.C @ np.concatenate([N, T]), 2)
         closed = found.states > 0
         assert not N[~closed].any() and not T[~closed].any() and np.all(gap[~closed] >= 0)
         assert np.all(N >= 0)
-        scale = np.abs(base.free_gap).max()
-        assert np.abs(gap + N * base.base.compliance)[closed].max(initial=0) <= 1e-9 * scale
+        scale = np.abs(base.free[:n]).max()
+        assert np.abs(gap + N * base.compliance)[closed].max(initial=0) <= 1e-9 * scale
         stuck, closing = closed & base.closed, closed & ~base.closed
-        assert np.allclose(T[stuck], -(base.base.shear_stiffness * slip)[stuck], rtol=1e-6, atol=1e-9 * np.abs(T).max())
+        assert np.allclose(T[stuck], -(base.shear_stiffness * slip)[stuck], rtol=1e-6, atol=1e-9 * np.abs(T).max())
         # the reference is the slip where a straight path crosses zero gap
         crossing = slip * base.gap / (base.gap - gap)
-        expected = -(base.base.shear_stiffness * (slip - crossing))[closing]
+        expected = -(base.shear_stiffness * (slip - crossing))[closing]
         assert np.allclose(T[closing], expected, rtol=1e-6, atol=1e-9 * np.abs(T).max())
         closings += np.count_nonzero(closing)
     assert closings > 10
@@ -118,11 +115,11 @@ def test_glued_points_obey_their_law(n):
 
 def test_glued_bases_without_a_unique_set_of_states_say_so():
     rng = np.random.default_rng(11)
-    none, several = "no consistent contact state", "several consistent contact states"
-    assert {"", none} <= {found_of(random_glued(rng, 2), 6).failure for _ in range(40)}
+    none, several = "none", "several"
+    assert {"", none} <= {random_glued(rng, 2).contact(6).failure for _ in range(40)}
     # an iteration that stops at once leaves the choice to the trial of all states
-    assert {"", none, several} <= {found_of(random_glued(rng, 2), 1).failure for _ in range(60)}
-    many = [found_of(random_glued(rng, 9), 2) for _ in range(10)]
+    assert {"", none, several} <= {random_glued(rng, 2).contact(1).failure for _ in range(60)}
+    many = [random_glued(rng, 9).contact(2) for _ in range(10)]
     assert (none, 2) in {(found.failure, found.solves) for found in many}
 
 
@@ -156,10 +153,15 @@ class Refusing(ContactStepper):
 
     longest = 1.0
 
-    def advance(self, state, length=None):
-        if length > self.longest * self.scheme.step * (1 + 1e-9):
-            return None, Contact(None, state.states, 3, "no consistent contact state")
-        return super().advance(state, length)
+    def __post_init__(self):
+        super().__post_init__()
+        self.lengths = []  # of the accepted pieces over the step
+
+    def march(self, state, table, points=stepper.NO_POINTS, length=None):
+        if (length or self.scheme.step) > self.longest * self.scheme.step * (1 + 1e-9):
+            return Marched(state, 0, 3, NONE)
+        self.lengths.append((length or self.scheme.step) / self.scheme.step)
+        return super().march(state, table, points, length)
 
 
 def refusing(longest, **more):
@@ -169,19 +171,21 @@ def refusing(longest, **more):
 
 
 def test_a_cut_step_starts_from_the_state_as_it_was():
-    one = refusing(0.3)
+    one = refusing(0.3, columns=("solves", "cuts"))
     state = one.advance(one.start(), 0.2e-3)[0]
-    arrays = (state.motion.D, state.motion.V, state.motion.A, state.gap, state.reference)
-    saved = [x.copy() for x in arrays]
-    step = unilateral.advance_with_cuts(one, state, Unilateral())
-    assert all(np.array_equal(a, b) for a, b in zip(saved, arrays, strict=True))
-    assert step.cuts == 1 and step.solves >= 3 + 4
-    assert step.pieces == pytest.approx([0.3, 0.3, 0.3, 0.1])
+    saved = [x.copy() for x in state]
+    one.lengths.clear()
+    row = np.empty((1, 2))
+    step = unilateral.cut_step(one, one.march(state, row), Unilateral(), row)
+    assert all(np.array_equal(a, b) for a, b in zip(saved, state, strict=True))
+    solves, cuts = row[0]
+    assert cuts == 1 and solves >= 3 + 4
+    assert one.lengths == pytest.approx([0.3, 0.3, 0.3, 0.1])
     fresh = refusing(0.3)
     again = fresh.advance(fresh.start(), 0.2e-3)[0]
-    for piece in step.pieces:
+    for piece in one.lengths:
         again = fresh.advance(again, piece * SCHEME.step)[0]
-    assert np.array_equal(step.state.motion.D, again.motion.D) and np.array_equal(step.state.gap, again.gap)
+    assert np.array_equal(step.state.D, again.D) and np.array_equal(step.state.gap, again.gap)
 
 
 def test_kinetic_damping_of_a_cut_step_is_that_of_the_whole():
@@ -191,15 +195,15 @@ def test_kinetic_damping_of_a_cut_step_is_that_of_the_whole():
     for share in (0.3, 0.3, 0.3, 0.1):
         state, _ = stepper.advance(state, share * SCHEME.step)
     # in free flight a step takes gg from the velocity, whatever it is cut into
-    assert np.allclose(state.motion.V, 2.7 * model.upwards, rtol=1e-12)
+    assert np.allclose(state.V, 2.7 * model.upwards, rtol=1e-12)
 
 
 def test_a_base_that_finds_no_contact_ends_with_its_reason(monkeypatch):
-    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a: refusing(0.005))
+    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.005, columns=more["columns"]))
     run = solve_unilateral(make(elements=2), SCHEME, 4)
     assert run.outcome == "no consistent contact state"
     assert len(run.time) == 0 and len(run.columns["displacement"]) == 0
-    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a: refusing(0.01))
+    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.01, columns=more["columns"]))
     run = solve_unilateral(make(elements=2), SCHEME, 1)
     # 1, 0.3, 0.09 and 0.027 are refused
     assert run.outcome == "completed" and run.columns["cuts"][0] == 4

@@ -19,7 +19,7 @@ ENERGIES = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 
 def energy(model, scheme, state):
     """Energies of motion, strain, base springs and loads, and what the scheme counts beside them [J]."""
-    D, V, A = state.motion.D, state.motion.V, state.motion.A
+    D, V, A = state.D, state.V, state.A
     springs = state.normal @ (state.normal / model.stiffness)
     extra = (scheme.alpha - scheme.delta / 2) * scheme.step**2 * (A @ (model.M @ A))
     return (V @ (model.M @ V) + D @ (model.K @ D) + springs + extra) / 2 - model.F @ D
@@ -28,12 +28,12 @@ def energy(model, scheme, state):
 def check_energy(model, scheme, old, new):
     """Rise of the energy of one step, which is that of its contact law and of the scheme's damping."""
     delta, U = scheme.delta, [model.stiffness * np.minimum(s.gap, 0) ** 2 / 2 for s in (old, new)]
-    moved, D, A = new.gap - old.gap, new.motion.D - old.motion.D, new.motion.A - old.motion.A
+    moved, D, A = new.gap - old.gap, new.D - old.D, new.A - old.A
     work = moved @ ((1 - delta) * old.normal + delta * new.normal)
     damped = D @ (model.K @ D) + (scheme.alpha - delta / 2) * scheme.step**2 * (A @ (model.M @ A))
     expected = np.sum(U[1] - U[0]) + work - (delta - 0.5) * damped
     rise = energy(model, scheme, new) - energy(model, scheme, old)
-    scale = new.motion.V @ (model.M @ new.motion.V) + new.motion.D @ (model.K @ new.motion.D)
+    scale = new.V @ (model.M @ new.V) + new.D @ (model.K @ new.D)
     assert abs(rise - expected) <= 1e-12 * scale
     return rise / scale
 
@@ -42,7 +42,7 @@ def check_momentum(model, scheme, old, new):
     """Momentum upwards: that of the weighted forces at both ends of the step."""
     up, dt = model.upwards, scheme.step
     before, after = (up @ (model.F + model.normal.T @ s.normal) for s in (old, new))
-    gained = up @ (model.M @ (new.motion.V - old.motion.V))
+    gained = up @ (model.M @ (new.V - old.V))
     force = (1 - scheme.delta) * before + scheme.delta * after
     assert abs(gained - dt * force) <= 1e-12 * dt * (abs(before) + abs(after) + np.abs(model.F).sum())
 
@@ -71,7 +71,7 @@ def test_each_step_keeps_energy_momentum_and_the_laws_of_contact(scheme, p):
         switches += np.count_nonzero(new.closed != state.closed)
         check_laws(model, new)
         # the gaps follow the forces, the displacement is their sum: it keeps its own rounding
-        assert np.abs(gap + model.normal @ new.motion.D - new.gap).max() <= 1e-12 * np.abs(new.motion.D).max()
+        assert np.abs(gap + model.normal @ new.D - new.gap).max() <= 1e-12 * np.abs(new.D).max()
         # from A0 = 0 the forces at t = 0 are not those of the equations
         if number > 0 or scheme.start == "consistent":
             check_momentum(model, scheme, state, new)
@@ -103,7 +103,7 @@ def test_glued_points_bear_their_stretch_from_where_they_closed():
         new, _ = stepper.advance(state)
         assert new is not None  # every step has its contact at once
         closed, size = new.closed, np.abs(new.slip).max()
-        assert np.abs(model.tangential @ new.motion.D - new.slip).max() <= 1e-11 * size
+        assert np.abs(model.tangential @ new.D - new.slip).max() <= 1e-11 * size
         assert np.abs(new.shear + k_t * (new.slip - new.reference))[closed].max(initial=0) <= 1e-10 * k_t.max() * size
         assert not new.shear[~closed].any() and np.array_equal(new.reference[~closed], new.slip[~closed])
         stuck, closing = closed & state.closed, closed & ~state.closed
@@ -205,5 +205,5 @@ def test_shear_springs_balance_a_traction_in_the_mean():
         state, _ = stepper.advance(state)
         impulse += scheme.step * (4e5 + shear) * 2.0
     sideways = 1 - stepper.model.upwards
-    assert sideways @ (stepper.model.M @ state.motion.V) == pytest.approx(impulse, rel=1e-9)
+    assert sideways @ (stepper.model.M @ state.V) == pytest.approx(impulse, rel=1e-9)
     assert run.columns["base_shear"].min() < -2e5

@@ -68,7 +68,9 @@ def test_each_part_of_the_bench_runs():
         "import bench; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
         "print(bench.grown('n', [1, 2, 4], lambda n: n**2)); "
         "print(bench.opening_elements_line(8, 2e-4, 60, 1)); "
-        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1)))"
+        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1))); "
+        "bench.opening_steps(200); bench.slipping_steps(200); bench.turning_steps(100); bench.fem_steps(300, 200); "
+        "bench.accuracy_lines([0.02])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT / "reports", capture_output=True, text=True, timeout=300
@@ -80,3 +82,22 @@ def test_each_part_of_the_bench_runs():
     assert "| n | 1, 2, 4 | 1, 4, 16 | 2.00 |" in lines
     assert "| numpy loop |" in told.stdout
     assert "| 8 x 8 | 0.0002 | 60 |" in told.stdout
+    for name, steps in (("contact that opens", 200), ("slope under a record", 200), ("rocking with impacts", 100)):
+        assert f"| dda, {name} | {steps} |" in told.stdout
+    assert "| fem, 16 x 16, bonded, opens | 300 |" in told.stdout and "| 0.02 | " in told.stdout
+
+
+def test_the_engines_fall_and_slide_as_a_rigid_box_does(rivals, monkeypatch):
+    from rivals import engines
+
+    there = [engine for engine in engines.ENGINES if not engines.absent(engine)]
+    monkeypatch.setattr(engines.importlib.util, "find_spec", lambda name: None)
+    assert [engines.absent(engine) for engine in engines.ENGINES] == [
+        "NOT RUN: mujoco is not installed",
+        "NOT RUN: pymunk is not installed",
+    ]
+    for engine in there:
+        free = engines.box(engine, 1e-3, np.tile([0.0, -9.81], (100, 1)), gap=1.0)
+        assert free[-1, 1] == pytest.approx(2.0 - 9.81 * 0.1**2 / 2, rel=1e-2)
+        slides = engines.box(engine, 1e-3, np.tile([5.0, -9.81], (500, 1)), friction=0.2)
+        assert slides[-1, 0] == pytest.approx((5.0 - 0.2 * 9.81) * 0.5**2 / 2, rel=3e-2)

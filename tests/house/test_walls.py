@@ -97,8 +97,8 @@ def packages(names: frozenset[str]) -> set[str]:
 @pytest.mark.parametrize(
     ("package", "allowed"),
     [
-        ("dda", {"dda", "numpy", "scipy"}),
-        ("fem_reference", {"fem_reference", "numpy", "scipy", "skfem", "meshio", "flint"}),
+        ("dda", {"dda", "numpy", "scipy", "numba"}),
+        ("fem_reference", {"fem_reference", "numpy", "scipy", "skfem", "meshio", "flint", "numba"}),
     ],
 )
 def test_a_solver_package_imports_only_what_it_may(package: str, allowed: set[str]) -> None:

@@ -211,7 +211,7 @@ class OpeningMesh(Prepared):
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
-        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
+        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         no_fields("fem with unilateral contact", self.scene, fields)
         check_columns(self.scene, UNILATERAL_COLUMNS)
@@ -232,7 +232,7 @@ class OpeningMesh(Prepared):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did, from the same steps with their energies."""
-        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
+        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
         seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
@@ -279,7 +279,7 @@ class FiniteElements(Solver):
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         import fem_reference
-        from fem_reference.history.opening_columns import UNILATERAL_COLUMNS
+        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         own = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*own, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))

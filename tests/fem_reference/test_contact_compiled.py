@@ -1,0 +1,157 @@
+"""Long histories: the block in its natural modes, its contact compiled, against the same steps as they stand."""
+
+import sys
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from oracles import random_contact
+from oracles.elements import make
+
+from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
+from fem_reference.contact import compilation, kernel
+
+ENERGIES = (*kernel.ENERGY_COLUMNS, *kernel.LOSS_COLUMNS)
+LENGTHS = ("displacement", "horizontal_displacement", "rotation", "largest_gap", "largest_penetration", "largest_slide")
+SPEEDS = Scheme(0.5, 1.0, 1.0, 2e-4)
+
+
+def off(found, expected):
+    """Greatest difference of two histories over the size of their columns: of all energies, of all displacements."""
+    assert found.outcome == expected.outcome and len(found.time) == len(expected.time)
+    largest = {name: np.abs(values).max(initial=0.0) for name, values in expected.columns.items()}
+    for group in (ENERGIES, LENGTHS, ("contact_pressure", "base_shear")):
+        largest |= dict.fromkeys(group, max(largest[name] for name in group))
+    pairs = ((largest[name] or 1.0, found.columns[name] - values) for name, values in expected.columns.items())
+    return max(np.abs(difference).max(initial=0.0) / size for size, difference in pairs)
+
+
+@pytest.fixture
+def long(monkeypatch):
+    """Every history is a long one."""
+    monkeypatch.setattr(compilation, "LONG", 1)
+    return monkeypatch
+
+
+def in_modes(monkeypatch, drawn):
+    """The history in natural modes as plain Python, and the same compiled."""
+    problem, scheme, contact = drawn
+    with monkeypatch.context() as patch:
+        patch.setattr(compilation, "compiled", lambda: (None, "plain"))
+        plain = solve_unilateral(problem, scheme, 50, contact, every_point=True)
+    return plain, solve_unilateral(problem, scheme, 50, contact, every_point=True)
+
+
+@pytest.mark.parametrize("draw", [random_contact.opening, random_contact.sliding])
+def test_what_is_compiled_gives_the_same_numbers(long, draw):
+    pytest.importorskip("numba")
+    switched = fallen_back = 0
+    for seed in range(5, 25):  # seed 4 of those that slide makes 1e-11 of one rounding
+        problem, scheme, contact = draw(seed)
+        contact = replace(contact, limit=1 + 5 * (seed % 2))
+        plain, compiled = in_modes(long, (problem, scheme, contact))
+        assert compiled.notes[-1].startswith("contact compiled by numba")
+        if not len(plain.time):
+            assert compiled.outcome == plain.outcome
+            continue
+        assert off(compiled, plain) <= 1e-14
+        assert np.array_equal(compiled.states, plain.states)
+        fallen_back += np.count_nonzero(plain.columns["solves"] > contact.limit)
+        switched += np.count_nonzero(np.diff(plain.states, axis=0))
+    assert switched > 100 and fallen_back > 0
+
+
+def test_one_compilation_serves_every_history(long):
+    pytest.importorskip("numba")
+    for seed in range(4):
+        solve_unilateral(*random_contact.opening(seed)[:2], 5, random_contact.opening(seed)[2])
+        solve_unilateral(*random_contact.sliding(seed)[:2], 5, random_contact.sliding(seed)[2], every_point=True)
+    assert len(compilation.compiled()[0].signatures) == 1
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        Unilateral(gap=1e-3, velocity=-0.2),
+        Unilateral(gap=1e-3, velocity=-0.2, shear="glued"),
+        Unilateral(gap=1e-3, velocity=-0.2, shear="glued", friction=Friction(20.0, 1e4)),
+        Unilateral(gap=1e-3, velocity=-0.2, shear="glued", rule="implicit"),
+    ],
+)
+@pytest.mark.parametrize("young", [1e9, 1e15])
+def test_natural_modes_are_the_same_block(long, contact, young):
+    problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8, p=1e9)
+    problem = replace(problem, young=young)
+    scheme = Scheme(0.25, 0.5, 0.99, 1e-4, "consistent") if contact.rule == "implicit" else Scheme(0.5, 1.0, 0.99, 1e-4)
+    long.setattr(compilation, "compiled", lambda: (None, "plain"))
+    modal = solve_unilateral(problem, scheme, 80, contact)
+    whole = solve_unilateral(problem, scheme, 80, contact, full=True)
+    assert modal.notes[-2] == f"stepped in its {modal.unknowns} natural modes" and modal.solves == 0
+    assert 0 < whole.columns["open_share"].mean() < 1
+    # the highest mode is 1e3 to 1e4 times as stiff as the lowest one, and 60 % of all numbers are rounded by it
+    assert off(modal, whole) <= 1e-9
+
+
+def test_a_short_history_runs_as_it_stands():
+    run = solve_unilateral(make(elements=2), SPEEDS, 3)
+    assert run.notes[-1] == f"contact in plain Python: below {compilation.LONG:,} steps"
+
+
+def test_more_unknowns_than_can_be_turned_to_modes_run_as_they_stand(long):
+    from fem_reference.history import unilateral
+
+    long.setattr(unilateral, "MODES", 10)
+    assert solve_unilateral(make(elements=4), SPEEDS, 3, full=True).notes[-1].endswith("not in natural modes")
+
+
+def test_what_stands_in_the_place_of_a_function_bites_a_long_history_too(long):
+    problem = make(elements=2)
+    sound = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
+    long.setattr(kernel, "corrected", lambda law, trial, gap, states, guess: (guess, -1))
+    welded = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
+    assert welded.notes[-1].endswith("a function of the kernel was replaced")
+    assert sound.columns["open_share"].max() == 1 and welded.columns["open_share"].max() == 1
+    assert welded.columns["contact_pressure"].min() < 0 <= sound.columns["contact_pressure"].min()
+
+
+def refusing(*failures):
+    """A numba whose compilations fail in turn, and the calls that it gets."""
+    calls = []
+
+    def njit(function, cache, error_model):
+        calls.append(cache)
+        failure = failures[len(set(calls)) - 1]
+        if failure is not None:
+            raise failure
+        return function
+
+    return SimpleNamespace(__version__="9.9", njit=njit), calls
+
+
+@pytest.mark.parametrize(
+    ("failures", "note", "caches"),
+    [
+        ((None,), "contact compiled by numba 9.9", [True]),
+        (
+            (RuntimeError("cannot cache function: no locator available"), None),
+            "contact compiled by numba 9.9",
+            [True, False],
+        ),
+        ((OSError("read-only"), NotImplementedError("opcode")), "fails with NotImplementedError", [True, False]),
+    ],
+)
+def test_where_nothing_can_be_written_or_compiled_a_history_runs_all_the_same(long, failures, note, caches):
+    fake, calls = refusing(*failures)
+    long.setitem(sys.modules, "numba", fake)
+    long.setattr(compilation, "compiled", compilation.compiled.__wrapped__)
+    run = solve_unilateral(make(elements=2), SPEEDS, 20)
+    assert run.outcome == "completed" and run.notes[-1].endswith(note)
+    assert sorted(set(calls), reverse=True) == caches
+
+
+def test_without_numba_a_long_history_runs_as_it_stands(long):
+    long.setitem(sys.modules, "numba", None)
+    long.setattr(compilation, "compiled", compilation.compiled.__wrapped__)
+    run = solve_unilateral(make(elements=2), SPEEDS, 20)
+    assert run.outcome == "completed" and run.notes[-1] == "contact in plain Python: numba is not installed"
