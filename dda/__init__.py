@@ -14,22 +14,24 @@ from dda.model.polygon import Section
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.contact_result import ContactResult
 from dda.one_block.response import response
 from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
-from dda.system.opening import OpeningSystem, opening_subdivided
-from dda.system.opening_solution import OpeningResult, solve_opening_system
 from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
 
+try:
+    from dda.system.opening import OpeningSystem, opening_subdivided
+    from dda.system.opening_solution import solve_opening_system
+except ImportError as e: OpeningSystem = opening_subdivided = solve_opening_system = None
 __all__ = [
     "ADAPTIVE_COLUMNS",
     "COLUMNS",
@@ -46,7 +48,6 @@ __all__ = [
     "Material",
     "ModalForm",
     "Mode",
-    "OpeningResult",
     "OpeningSystem",
     "Result",
     "Scheme",
@@ -56,7 +57,6 @@ __all__ = [
     "Unilateral",
     "UnilateralModel",
     "UnilateralOptions",
-    "UnilateralResult",
     "contact_stiffness",
     "diagnostics",
     "highest_frequency",
