@@ -29,7 +29,7 @@ WORTHWHILE = 1.0  # seconds of plain Python from which a loop is compiled, or re
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 PLAIN, COMPILED = "plain Python", "compiled"
 
-_compiled: dict[tuple[Loop, ...], tuple[list[object], Loop | None]] = {}  # by loop: what it was made of, and itself
+_compiled: dict[object, tuple[list[object], Loop | None]] = {}  # by loop and types: what it was made of, and itself
 _jitable: set[FunctionType] = set()
 
 
@@ -59,6 +59,41 @@ def run_loop(
                 return own(*left, *series, *kept), left, COMPILED
         left = tuple(as_lists(part) for part in records)
         return loop(*left, *(as_lists(part) for part in series), *kept), left, PLAIN
+
+
+class Compilable:
+    """A function of records that is called at every step of a loop that is not compiled itself.
+
+    Parameters
+    ----------
+    function
+        The plain function, of named tuples and numbers.
+    seconds
+        About how long all its calls take in plain Python.
+    """
+
+    def __init__(self, function: Loop, seconds: float) -> None:
+        self.function, self.records = function, is_worthwhile(seconds)
+        self.how = PLAIN
+
+    def room(self, value: Any) -> Any:
+        """Return a named tuple in the form in which the function may write it."""
+        return as_record(value) if self.records else as_lists(value)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function, compiled or not."""
+        given = [self._converted(argument) for argument in arguments]
+        if self.records:
+            own = compiled(self.function, tuple(given))
+            if own is not None:
+                self.how = COMPILED
+                return own(*given)
+        return self.function(*given)
+
+    def _converted(self, argument: Any) -> Any:
+        arrays = isinstance(argument, tuple) and any(isinstance(part, np.ndarray) for part in argument)
+        numbers = self.records and isinstance(argument, tuple)
+        return self.room(argument) if arrays or numbers else argument
 
 
 def is_worthwhile(seconds: float) -> bool:
@@ -102,10 +137,10 @@ def _fill(record: Any, value: Any) -> None:
 def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
     """Return the compiled loop for such arguments, or None where the plain one is to run."""
     parts = list(parts_of(loop))
-    if loop not in _compiled:
-        _compiled[loop] = parts, _compile(loop, parts, arguments)
-        return _compiled[loop][1]
-    made_of, own = _compiled[loop]
+    key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
+    if key not in _compiled:
+        _compiled[key] = parts, _compile(loop, parts, arguments)
+    made_of, own = _compiled[key]
     same = len(parts) == len(made_of) and all(map(_same, parts, made_of))
     return own if same else None
 

@@ -20,20 +20,35 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dda.contact.points import Found, FreePoints, Points
-from dda.contact.rubbing_points import find_points
+from dda.contact.kernel import (
+    FOUND,
+    Contacts,
+    Flexibility,
+    Free,
+    at_rest,
+    find_contacts,
+    law_of,
+    set_paired_flexibility,
+    work_for,
+)
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.load import BaseMotion
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
+from dda.stepping.compiled import Compilable
+from dda.stepping.driver import Counts, driver
 from dda.system.joints import FIXED
+from dda.system.opening_energy import SystemLosses
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations
 
 Array = NDArray[np.float64]
+
+LENGTHS = 16  # step lengths whose factors are kept
+PLAIN_POINT = 3e-6  # seconds of a solve in plain Python for each pair of points
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +109,15 @@ def opening_subdivided(
     )
 
 
-class SystemState(NamedTuple):
+@dataclass(eq=False)
+class SystemState:
     """Where the sub-blocks are, in units of the scheme's own step dt."""
 
     D: Array  # unknowns
     P: Array  # dt M V
     f: Array  # dt^2 M A
     mu: Array  # dt^2 times the forces of the glue
-    points: Points
+    contacts: Contacts  # of the points
 
 
 class Length:
@@ -110,7 +126,7 @@ class Length:
     def __init__(self, opening: OpeningSystem, scheme: Scheme, ratio: float) -> None:
         self.ratio = ratio
         self.scheme = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
-        self.law, self.stepper = opening.law, Stepper(opening.equations, self.scheme)
+        self.stepper = Stepper(opening.equations, self.scheme)
         h2 = self.scheme.step**2
         self.F = h2 * opening.equations.F * opening.system.load_size
         self.rows = np.concatenate([opening.normals, opening.tangents]) if opening.law.shear else opening.normals
@@ -119,42 +135,145 @@ class Length:
         responses = [self.stepper.increments(self.scheme.alpha * row, self.still) for row in self.push.T]
         self.moved, self.glued = (np.array([pair[i] for pair in responses]).T for i in (0, 1))
         C = self.rows @ self.moved
-        self.C = (C + C.T) / 2
-
-    def advance(
-        self, state: SystemState, limit: int, carried: Sequence[float] = (0.0, 0.0)
-    ) -> tuple[SystemState | None, Found]:
-        """Return the state one step later, or None where the points have no single state; `state` stays as it is.
-
-        The base moves by `carried` in the step, along its normal and its tangent [m].
-        """
-        s, stepper, r = self.scheme, self.stepper, self.ratio
-        D, P, f, mu, before = state.D, r * state.P, r * r * state.f, r * r * state.mu, state.points
-        held = stepper.k @ D + stepper.Bt @ mu
-        dD, dmu = stepper.increments(predictor(s, P, f) + s.alpha * (self.F - held), self.still)
-        way = self.rows @ dD
-        n = len(before.gap)
-        found = find_points(
-            self.law, before, FreePoints(before.gap + way[:n] - carried[0], way[n:] - carried[1], self.C), limit
-        )
-        if found.points is None:
-            return None, found
-        forces = np.concatenate([found.points.normal, found.points.shear])[: len(way)]
-        D, mu, pressed = D + dD, mu + dmu, np.zeros_like(D)
-        if np.any(forces):
-            D, mu, pressed = D + self.moved @ forces, mu + self.glued @ forces, self.push @ forces
-        f1 = self.F - (stepper.k @ D + stepper.Bt @ mu) + pressed
-        P = velocity_corrector(s, P, f, f1)
-        return SystemState(D, P / r, f1 / (r * r), mu / (r * r), found.points), found
+        C = (C + C.T) / 2
+        self.flexible = Flexibility(C, C.copy())
+        if len(C) == 4 and len(opening.normals) == 2:
+            set_paired_flexibility(C, self.flexible.C_paired)
 
 
-def start_state(opening: OpeningSystem, scheme: Scheme) -> SystemState:
-    """Return the state at t = 0: unstrained, without contact force, the points at the starting gap."""
-    e, dt = opening.equations, scheme.step
-    upwards = np.zeros((len(e.mass), 6))
-    upwards[:, 1] = dt * opening.velocity
-    P = np.einsum("nij,nj->ni", e.mass, upwards).ravel()
-    F = dt * dt * e.F * opening.system.load_size
-    f = F if scheme.start == "consistent" else np.zeros_like(F)
-    points = Points.at_rest(opening.law, len(opening.normals))
-    return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), points)
+class SystemHistory(NamedTuple):
+    """What is kept of every step, a row each."""
+
+    columns: Array  # (steps, columns)
+    momentum: Array  # (steps, 2) dt times the momentum in x and y
+    stored: Array  # (steps, 4) kinetic, strain, spring and load energy [J]; (0, 4) if they are not asked for
+    normal: Array  # (steps, points)
+    shear: Array
+    gap: Array
+    slide: Array
+    slipped: Array
+    state: NDArray[np.int8]
+
+
+class OpeningBody:
+    """The sub-blocks as the loop over steps takes them: `advance`, `account` and `keep` are for `driver`."""
+
+    def __init__(
+        self, opening: OpeningSystem, scheme: Scheme, limit: int, columns: Sequence[str], steps: int, energies: bool
+    ) -> None:
+        self.opening, self.scheme, self.limit = opening, scheme, limit
+        points = len(opening.normals)
+        self.points, self.made = points, 0
+        self.lengths: dict[float, Length] = {}
+        self.observers = opening.equations.rows(columns)[0]
+        pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
+        self.pressure = pressure / opening.system.base_length
+        self.law = law_of(opening.law)
+        self.free, self.work = Free(*np.zeros((3, points))), work_for(points)
+        self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
+        self.losses = SystemLosses(opening, scheme.step) if energies else None
+
+    def length(self, ratio: float) -> Length:
+        """Return what belongs to a length, over the scheme's step; that of the whole step is always kept."""
+        if ratio not in self.lengths:
+            if len(self.lengths) >= LENGTHS:
+                self.lengths = {1.0: self.lengths[1.0]}
+            self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
+            self.made += 1
+        return self.lengths[ratio]
+
+    def start_state(self) -> SystemState:
+        """Return the state at t = 0: unstrained, without contact force, the points at the starting gap."""
+        e, dt = self.opening.equations, self.scheme.step
+        upwards = np.zeros((len(e.mass), 6))
+        upwards[:, 1] = dt * self.opening.velocity
+        P = np.einsum("nij,nj->ni", e.mass, upwards).ravel()
+        F = dt * dt * e.F * self.opening.system.load_size
+        f = F if self.scheme.start == "consistent" else np.zeros_like(F)
+        contacts = at_rest(np.full(self.points, self.opening.law.gap), self.points)
+        return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
+
+    def history(self, steps: int) -> SystemHistory:
+        """Return room for so many steps."""
+        columns, momentum = np.zeros((steps, len(self.observers))), np.zeros((steps, 2))
+        stored = np.zeros((steps if self.losses else 0, 4))
+        points = np.zeros((5, steps, self.points))
+        return SystemHistory(columns, momentum, stored, *points, np.zeros((steps, self.points), dtype=np.int8))
+
+    def base(self, begun: float, ratio: float) -> Array:
+        """Return how far the base moves in a part of a step, along its normal and its tangent [m]."""
+        start, end = self.opening.base([begun * self.scheme.step, (begun + ratio) * self.scheme.step])
+        moved: Array = end - start
+        return moved
+
+
+def advance(
+    body: OpeningBody, state: SystemState, after: SystemState, base: object, begun: float, ratio: float
+) -> tuple[int, int]:
+    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves."""
+    length = body.length(ratio)
+    scheme, stepper = length.scheme, length.stepper
+    P, f, mu = ratio * state.P, ratio * ratio * state.f, ratio * ratio * state.mu
+    held = stepper.k @ state.D + stepper.Bt @ mu
+    dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - held), length.still)
+    moved = length.rows @ dD
+    carried = body.base(begun, ratio)
+    n = body.points
+    free = Free(np.array(state.contacts.gap) + moved[:n] - carried[0], np.zeros(n), np.zeros(n))
+    if len(moved) > n:
+        free.slide[:] = moved[n:] - carried[1]
+        free.paired[:2] = (free.slide[0] + free.slide[-1]) / 2, free.slide[-1] - free.slide[0]
+    outcome, solves = body.find(
+        body.law, state.contacts, free, length.flexible, body.limit, after.contacts, body.work
+    )
+    if outcome != FOUND:
+        return outcome, solves
+    forces = np.array([*after.contacts.normal, *after.contacts.shear])[: len(moved)]
+    after.D = state.D + dD
+    mu = mu + dmu
+    pressed = np.zeros_like(dD)
+    if np.any(forces):
+        after.D = after.D + length.moved @ forces
+        mu = mu + length.glued @ forces
+        pressed = length.push @ forces
+    f1 = length.F - (stepper.k @ after.D + stepper.Bt @ mu) + pressed
+    after.P = velocity_corrector(scheme, P, f, f1) / ratio
+    after.f = f1 / (ratio * ratio)
+    after.mu = mu / (ratio * ratio)
+    return FOUND, solves
+
+
+def account(
+    body: OpeningBody,
+    state: SystemState,
+    after: SystemState,
+    base: object,
+    begun: float,
+    ratio: float,
+    history: SystemHistory,
+    counts: Counts,
+    number: int,
+) -> None:
+    """Add what an accepted part of a step slips and loses."""
+    history.slipped[number] += after.contacts.slipped
+    if body.losses:
+        length = body.length(ratio)
+        counts.losses[number] += body.losses.of_part(length, state, after, body.base(begun, ratio))
+
+
+def keep(body: OpeningBody, state: SystemState, history: SystemHistory, number: int) -> bool:
+    """Write the state at the end of a step; tell whether it is finite."""
+    contacts = state.contacts
+    history.columns[number] = body.observers @ state.D + body.pressure * np.sum(contacts.normal)
+    history.momentum[number] = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
+    history.normal[number] = contacts.normal
+    history.shear[number] = contacts.shear
+    history.gap[number] = contacts.gap
+    history.state[number] = contacts.state
+    history.slide[number] = body.opening.tangents @ state.D - body.base(0.0, number + 1.0)[1]
+    if body.losses:
+        history.stored[number] = body.losses.stored(state)
+    return bool(np.isfinite(state.D).all())
+
+
+make_steps = driver(advance, account, keep)
