@@ -168,9 +168,8 @@ class OpeningBody:
         self.observers = opening.equations.rows(columns)[0]
         pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
         self.pressure = pressure / opening.system.base_length
-        self.law = law_of(opening.law)
-        self.free, self.work = Free(*np.zeros((3, points))), work_for(points)
         self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
+        self.law, self.work = self.find.room(law_of(opening.law)), self.find.room(work_for(points))
         self.losses = SystemLosses(opening, scheme.step) if energies else None
 
     def length(self, ratio: float) -> Length:
@@ -178,7 +177,8 @@ class OpeningBody:
         if ratio not in self.lengths:
             if len(self.lengths) >= LENGTHS:
                 self.lengths = {1.0: self.lengths[1.0]}
-            self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
+            length = self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
+            length.flexible = self.find.room(length.flexible)
             self.made += 1
         return self.lengths[ratio]
 
