@@ -5,16 +5,18 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
+import warnings
+
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
+from dda.one_block.contact_result import ContactResult
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
-from dda.one_block.contact_result import ContactResult
 from dda.one_block.response import response
 from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
 from dda.one_block.textbook import solve_textbook, textbook_applicable
@@ -23,15 +25,13 @@ from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_u
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
+from dda.system.opening import OpeningSystem, opening_subdivided
+from dda.system.opening_solution import solve_opening_system
 from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
 
-try:
-    from dda.system.opening import OpeningSystem, opening_subdivided
-    from dda.system.opening_solution import solve_opening_system
-except ImportError as e: OpeningSystem = opening_subdivided = solve_opening_system = None
 __all__ = [
     "ADAPTIVE_COLUMNS",
     "COLUMNS",
@@ -41,6 +41,7 @@ __all__ = [
     "Block",
     "BlockSystem",
     "Contact",
+    "ContactResult",
     "Diagnostics",
     "GapForm",
     "Joint",
@@ -80,3 +81,11 @@ __all__ = [
     "system_response",
     "textbook_applicable",
 ]
+
+
+def __getattr__(name: str) -> type[ContactResult]:
+    """Return what had another name."""
+    if name in ("UnilateralResult", "OpeningResult"):
+        warnings.warn(f"dda.{name} is dda.ContactResult now", DeprecationWarning, stacklevel=2)
+        return ContactResult
+    raise AttributeError(f"module 'dda' has no attribute {name!r}")

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 
-from dda.contact.kernel import FOUND, NONE, Contacts, Flexibility, Free, Work
+from dda.contact.kernel import FOUND, NONE, Contacts, Flexible, Free, Work
 from dda.contact.unilateral import OPEN, STICK
 
 ROUNDS = 400  # of two contacts, which take about five; a slender block that lands takes more
@@ -27,7 +27,7 @@ SETTLED = 2e-16  # change of a force by which the rounds end
 
 
 def conserving(
-    p: float, before: Contacts, free: Free, flexible: Flexibility, after: Contacts, work: Work
+    p: float, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts at the end of a step, and in `work.mean` their forces over the step.
 
@@ -36,7 +36,7 @@ def conserving(
     C = flexible.C
     w0 = before.gap
     w_f = free.gap
-    if before.count == 1:
+    if before.n == 1:
         after.gap[0], work.mean[0], _ = one_contact(p, C[0][0], w0[0], w_f[0])
         write_springs(p, after)
         return FOUND, 1
@@ -62,7 +62,7 @@ def conserving(
 
 def write_springs(p: float, after: Contacts) -> None:
     """Write what follows from the gaps at the end of the step."""
-    for i in range(after.count):
+    for i in range(after.n):
         after.state[i] = STICK if after.gap[i] < 0 else OPEN
         after.normal[i] = p * max(-after.gap[i], 0.0)
         after.shear[i] = 0.0

@@ -43,6 +43,8 @@ Matrix = Any  # (n, n) array, or a list of lists of floats
 Vector = Any  # (n,) array, or a list of floats
 States = Any  # (n,) array, or a list of ints
 
+Flexible = Any  # `Flexibility`, or what has its fields
+
 FOUND, NONE, SEVERAL = 0, 1, 2
 FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent contact states"}
 
@@ -69,7 +71,7 @@ class Law(NamedTuple):
 class Contacts(NamedTuple):
     """State of n contacts, one entry each."""
 
-    count: int  # n
+    n: int
     state: States  # OPEN, STICK (closed, without friction too), or SLIP in its direction
     gap: Vector  # w [m]
     stretch: Vector  # s - r of the closed ones [m]; 0 where open
@@ -137,6 +139,11 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     )
 
 
+def zeros(*shapes: int | tuple[int, ...], dtype: type = float) -> list[Any]:
+    """Return arrays of zeros."""
+    return [np.zeros(shape, dtype=dtype) for shape in shapes]
+
+
 def at_rest(gap: Array, capacity: int) -> Contacts:
     """Return contacts without force, closed where they touch, in room for `capacity` of them."""
     state = np.zeros(capacity, dtype=np.int64)
@@ -148,11 +155,8 @@ def at_rest(gap: Array, capacity: int) -> Contacts:
 
 def work_for(n: int) -> Work:
     """Return room for the equations of n contacts."""
-    integers = np.zeros((5, n), dtype=np.int64)
-    vectors = np.zeros((4, n))
-    matrices = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, n + 1)), np.zeros(2 * n)
-    newton = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, 1))
-    return Work(*integers, *vectors, *matrices, *newton, np.zeros(2 * n), np.zeros(n))
+    vectors = zeros(n, n, n, n, (2 * n, 2 * n), (2 * n, n + 1), 2 * n, (n, n), (n, n), (n, 1), 2 * n, n)
+    return Work(*(zeros(n, n, n, n, n, dtype=np.int64) + vectors))
 
 
 def set_own_flexibility(paired: Matrix, own: Matrix) -> None:
@@ -193,7 +197,7 @@ def set_paired_flexibility(own: Matrix, paired: Matrix) -> None:
 
 
 def find_contacts(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, limit: int, after: Contacts, work: Work
+    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts at the end of a step; return the outcome and the number of solves.
 
@@ -211,7 +215,7 @@ def find_contacts(
     """
     if law.lagged:
         return lagged(law, before, free, flexible, limit, after, work)
-    n = before.count
+    n = before.n
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = law.cohesion
@@ -226,6 +230,13 @@ def find_contacts(
     if choices**n <= TRIED:
         return every_state(law, before, free, flexible, limit, choices, after, work)
     return one_by_one(law, before, free, flexible, limit, after, work)
+
+
+def spring_energy(law: Law, contacts: Contacts, i: int) -> float:
+    """Return the energy of the springs of a contact [J]."""
+    N = contacts.normal[i]
+    T = contacts.shear[i]
+    return float((N * N * law.compliance + T * T * law.softness) / 2)
 
 
 def stays_closed(law: Law, N: float) -> bool:
@@ -271,7 +282,7 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
 
 def states_agree(law: Law, after: Contacts, tried: States) -> bool:
     """Tell whether the forces of all contacts agree with the states that were tried."""
-    for i in range(after.count):
+    for i in range(after.n):
         if agreed(law, after, i) != tried[i]:
             return False
     return True
@@ -279,7 +290,7 @@ def states_agree(law: Law, after: Contacts, tried: States) -> bool:
 
 def update_states(law: Law, after: Contacts, tried: States, most: int) -> None:
     """Set the states that disagree with their forces, `most` at most."""
-    for i in range(after.count):
+    for i in range(after.n):
         state = agreed(law, after, i)
         if state != tried[i] and most > 0:
             tried[i] = state
@@ -287,10 +298,10 @@ def update_states(law: Law, after: Contacts, tried: States, most: int) -> None:
 
 
 def one_by_one(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, solves: int, after: Contacts, work: Work
+    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
-    n = before.count
+    n = before.n
     for i in range(n):
         work.saved[i] = work.tried[i]
     made, next_save = 0, 1
@@ -318,10 +329,10 @@ def all_equal(tried: States, saved: States, n: int) -> bool:
 
 
 def every_state(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, solves: int, choices: int, after: Contacts, work: Work
+    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, choices: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Try all states; take the only ones that agree with their forces, but for rounding."""
-    n = before.count
+    n = before.n
     consistent = -1
     for number in range(choices**n):
         set_states(work.tried, number, choices, n)
@@ -353,20 +364,20 @@ def set_states(tried: States, number: int, choices: int, n: int) -> None:
 
 def same_forces(after: Contacts, first: Vector) -> bool:
     """Tell whether two answers differ by rounding only, as at the very limit of stick and slip."""
-    n = after.count
+    n = after.n
     size = 0.0
     apart = 0.0
     for i in range(n):
         size = max(size, abs(first[i]), abs(first[n + i]))
         apart = max(apart, abs(first[i] - after.normal[i]), abs(first[n + i] - after.shear[i]))
-    return apart <= ROUNDING * size
+    return bool(apart <= ROUNDING * size)
 
 
 # ---- friction as common programs have it -----------------------------------------------------------------------------
 
 
 def lagged(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, limit: int, after: Contacts, work: Work
+    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts with friction one solve behind and out of the convergence test, as common programs do.
 
@@ -382,7 +393,7 @@ def lagged(
     A contact that slips too late carries too much, one that sticks again has lost its force: a stable block creeps,
     all the more the smaller the step. Dead bands (`Unilateral.band`) are another matter, and make it worse.
     """
-    n = before.count
+    n = before.n
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = shear_limit(law, before.normal[i])
@@ -423,7 +434,9 @@ def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> 
 # ---- one solve -------------------------------------------------------------------------------------------------------
 
 
-def trial(law: Law, before: Contacts, free: Free, flexible: Flexibility, friction: float, after: Contacts, work: Work) -> None:
+def trial(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
+) -> None:
     """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not.
 
     Parameters
@@ -431,7 +444,7 @@ def trial(law: Law, before: Contacts, free: Free, flexible: Flexibility, frictio
     friction
         tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
     """
-    n = before.count
+    n = before.n
     closed = 0
     closing = 0
     for i in range(n):
@@ -470,7 +483,7 @@ def trial(law: Law, before: Contacts, free: Free, flexible: Flexibility, frictio
 
 def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
-    n = after.count
+    n = after.n
     total = 0.0
     for j in range(n):
         total += row[j] * after.normal[j]
@@ -507,7 +520,15 @@ def crossing_rate(law: Law, before: float, N: float) -> float:
 
 
 def find_crossings(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, friction: float, closed: int, closing: int, after: Contacts, work: Work
+    law: Law,
+    before: Contacts,
+    free: Free,
+    flexible: Flexible,
+    friction: float,
+    closed: int,
+    closing: int,
+    after: Contacts,
+    work: Work,
 ) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
     for _ in range(CROSSING_STEPS):
@@ -538,7 +559,15 @@ def find_crossings(
 
 
 def solve_forces(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, friction: float, closed: int, closing: int, after: Contacts, work: Work
+    law: Law,
+    before: Contacts,
+    free: Free,
+    flexible: Flexible,
+    friction: float,
+    closed: int,
+    closing: int,
+    after: Contacts,
+    work: Work,
 ) -> None:
     """Write N and T of the closed contacts for given `work.beta`, and dN/dbeta of those that close."""
     if closed == 1 and not law.shears:
@@ -551,10 +580,10 @@ def solve_forces(
             work.active[active] = place
             active += 1
     size = closed + active
-    paired = active == 2 and before.count == 2 and keeps_pair(law, flexible, work)
+    paired = active == 2 and before.n == 2 and keeps_pair(law, flexible, work)
     assemble(law, before, free, flexible, paired, closed, active, work)
     for place in range(size):
-        work.scale[place] = 1 / math.sqrt(work.A[place][place]) if work.A[place][place] > 0 else math.nan
+        work.scale[place] = scale_of(work.A[place][place])
     if law.slips:
         add_friction(before, flexible, friction, closed, active, work)
     for k in range(closing):  # what a unit of force in the equation of a closing contact does; T makes dN/dbeta of it
@@ -568,7 +597,7 @@ def solve_forces(
             work.slope[j][k] = work.right[work.closing[j]][1 + k] * strength
 
 
-def keeps_pair(law: Law, flexible: Flexibility, work: Work) -> bool:
+def keeps_pair(law: Law, flexible: Flexible, work: Work) -> bool:
     """Tell whether the equations of two sticking contacts are those of H and G.
 
     These keep apart the rigid and the elastic flexibility, but mix unequal softnesses: beyond the rigid flexibility
@@ -576,14 +605,14 @@ def keeps_pair(law: Law, flexible: Flexibility, work: Work) -> bool:
     """
     first = law.softness / work.beta[0]
     second = law.softness / work.beta[1]
-    return first == second or max(first, second) <= flexible.C_paired[2][2]
+    return bool(first == second or max(first, second) <= flexible.C_paired[2][2])
 
 
 def assemble(
-    law: Law, before: Contacts, free: Free, flexible: Flexibility, paired: bool, closed: int, active: int, work: Work
+    law: Law, before: Contacts, free: Free, flexible: Flexible, paired: bool, closed: int, active: int, work: Work
 ) -> None:
     """Write the equations of N of the closed contacts and T of those that stick, without the slipping ones' T."""
-    n = before.count
+    n = before.n
     A = work.A
     C = flexible.C_paired if paired else flexible.C
     for row in range(closed + active):
@@ -618,11 +647,9 @@ def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
     return int(n + work.closed[work.active[row - closed]])
 
 
-def add_friction(
-    before: Contacts, flexible: Flexibility, friction: float, closed: int, active: int, work: Work
-) -> None:
+def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
     """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
-    n = before.count
+    n = before.n
     for place in range(closed):
         i = work.closed[place]
         if abs(work.tried[i]) != SLIP:
@@ -666,6 +693,12 @@ def write_forces(
         return
     for k in range(active):
         after.shear[work.closed[work.active[k]]] = right[closed + k][0]
+
+
+def scale_of(diagonal: float) -> float:
+    """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
+    _, exponent = math.frexp(diagonal)
+    return math.ldexp(1.0, -(exponent // 2))
 
 
 def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:

@@ -37,7 +37,7 @@ from dda.one_block.unilateral_step import (
 )
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
-from dda.stepping.driver import OUTCOMES, base_record, counts_of
+from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
 
 Array = NDArray[np.float64]
 
@@ -162,7 +162,7 @@ def solve_unilateral(
     (reached, outcome), left, how = run_loop(
         make_steps, (block, state, state), (base_record(model.motion),), (history, counts, steps, options.cut), seconds
     )
-    history = BlockHistory(*(part[:reached] for part in history))
+    history = BlockHistory(*reached_rows(history, reached))
     with np.errstate(all="ignore"):
         values = observed(form, history, base_directions(model.block, model.base)[2], columns)
     for name, moved in carried(model.motion, step_times(scheme, reached)).items():

@@ -40,19 +40,23 @@ from dda.contact.kernel import (
     eliminate,
     find_contacts,
     law_of,
+    scale_of,
     set_own_flexibility,
+    spring_energy,
     work_for,
+    zeros,
 )
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
+    StepScheme,
     acceleration_corrector,
     initial_acceleration,
     momentum_balance,
     velocity_corrector,
 )
-from dda.stepping.driver import BaseRecord, Counts, StepScheme, base_at, driver
+from dda.stepping.driver import BaseRecord, Counts, base_at, driver
 
 Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
@@ -166,30 +170,28 @@ def block_equations(
         translation=padded(form.translation, UNKNOWNS, 2),
         carried=padded(form.M @ form.translation, UNKNOWNS, 2),
         moves=moves,
-        inverse_mass=padded(np.linalg.inv(form.M), UNKNOWNS, UNKNOWNS),
+        inverse_mass=padded(np.asarray(np.linalg.inv(form.M), np.float64), UNKNOWNS, UNKNOWNS),
         whole=empty_length(),
         part=empty_length(),
         made=np.zeros(1),
-        room=Room(
-            *np.zeros((4, UNKNOWNS)),
-            np.zeros(2 * CONTACTS),
-            Free(*np.zeros((3, CONTACTS))),
-            np.zeros(CONTACTS),
-            *np.zeros((2, UNKNOWNS, UNKNOWNS)),
-            np.zeros(UNKNOWNS),
-            np.zeros(2),
-            *np.zeros((2, UNKNOWNS)),
-        ),
+        room=empty_room(),
         work=work_for(CONTACTS),
     )
     set_length(block, 1.0, block.whole)
     return block
 
 
+def empty_room() -> Room:
+    """Return room for the vectors of a step."""
+    n, c = UNKNOWNS, CONTACTS
+    free = [Free(*zeros(c, c, c))]
+    return Room(*(zeros(n, n, n, n, 2 * c) + free + zeros(c, (n, n), (n, n), n, 2, n, n)))
+
+
 def empty_length() -> StepLength:
     """Return room for what belongs to a length."""
     n, q = UNKNOWNS, 2 * CONTACTS
-    return StepLength(np.zeros(3), *np.zeros((2, n)), np.zeros((n, n)), np.zeros((n, q)), *np.zeros((2, q, q)))
+    return StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q)))
 
 
 def padded(values: Array, *shape: int) -> Array:
@@ -203,7 +205,7 @@ def history_of(block: BlockEquations, steps: int) -> BlockHistory:
     """Return room for so many steps."""
     n, c = block.unknowns, block.contacts
     shapes = [(steps, n)] * 2 + [(steps, c)] * 4
-    return BlockHistory(*(np.zeros(shape) for shape in shapes), np.zeros((steps, c), dtype=np.int8))
+    return BlockHistory(*(zeros(*shapes) + zeros((steps, c), dtype=np.int8)))
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -239,7 +241,7 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
             A[i][j] = block.M[i][j]
             block.room.right[i][j] = 1.0 if i == j else 0.0
         A[i][i] += block.alpha * length.k[i]
-        block.room.scale[i] = 1 / math.sqrt(A[i][i])
+        block.room.scale[i] = scale_of(A[i][i])
     eliminate(A, block.room.right, block.room.scale, n, n)
     weight = (block.alpha if block.rule == 0 else 0.5) * h2 * block.multiplicity
     for i in range(n):
@@ -433,7 +435,7 @@ def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:
 
 def stays(before: Contacts, after: Contacts, i: int) -> bool:
     """Tell whether a contact is closed before and after the step and does not slip in it."""
-    return before.state[i] != OPEN and after.state[i] != OPEN and after.slipped[i] == 0
+    return bool(before.state[i] != OPEN and after.state[i] != OPEN and after.slipped[i] == 0)
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -504,10 +506,12 @@ def add_losses(
         if block.moves:
             carried = block.translation[i][0] * own.base[0] + block.translation[i][1] * own.base[1]
         pressed = pushed_by(block, i)
-        missing = block.load[i] - block.K[i] * state.D[i] - state.f[i] / dt / dt
-        if block.rule == 0:
-            missing += pressed
-        algorithmic += over * moved * moved * block.K[i] + (1 - block.delta) * (moved + carried) * missing
+        algorithmic += over * moved * moved * block.K[i]
+        if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+            missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
+            if block.rule == 0:
+                missing += h2 * pressed
+            algorithmic += (1 - block.delta) * (moved + carried) * missing / h2
         given += (1 - late) * pressed * carried
     contact_forces(block, after.contacts.normal, after.contacts.shear)
     if block.moves:
@@ -570,14 +574,8 @@ def contact_loss(block: BlockEquations, before: Contacts, after: Contacts, late:
     N = (1 - late) * before.normal[i] + late * after.normal[i]
     T = (1 - late) * before.shear[i] + late * after.shear[i]
     work = N * (after.gap[i] - before.gap[i]) + T * block.room.where[i]
-    return block.multiplicity * (spring_energy(block.law, before, i) - spring_energy(block.law, after, i) - work)
-
-
-def spring_energy(law: Law, contacts: Contacts, i: int) -> float:
-    """Return the energy of the springs of a contact [J]."""
-    N = contacts.normal[i]
-    T = contacts.shear[i]
-    return (N * N * law.compliance + T * T * law.softness) / 2
+    lost = spring_energy(block.law, before, i) - spring_energy(block.law, after, i) - work
+    return float(block.multiplicity * lost)
 
 
 make_steps = driver(advance, account, keep)

@@ -13,6 +13,8 @@ A base that moves gives N dy + T dx, which counts as energy of the loads.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,12 +29,10 @@ def with_start(history: RollingHistory, start: RollingState) -> RollingHistory:
     """Return the states of a history behind that at t = 0."""
     n = history.normal.shape[1]
     own = start.contacts
-    first = RollingHistory(
-        *(np.ravel(part)[None] for part in start[:5]),
-        np.zeros((1, 1)),
-        *(np.asarray(part)[None, :n] for part in (own.normal, own.shear, own.gap, own.slipped, own.state)),
-    )
-    return RollingHistory(*(np.concatenate([row, rows]) for row, rows in zip(first, history, strict=True)))
+    first = [np.ravel(part)[None] for part in start[:5]] + [np.zeros((1, 1))]
+    first += [np.asarray(part)[None, :n] for part in (own.normal, own.shear, own.gap, own.slipped, own.state)]
+    both: list[Any] = [np.concatenate([row, rows]) for row, rows in zip(first, history, strict=True)]
+    return RollingHistory(*both)
 
 
 def outlines(history: RollingHistory, points: Array) -> Array:

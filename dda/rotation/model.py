@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.kernel import at_rest
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
-from dda.contact.kernel import at_rest
 from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, positions, turned
 from dda.rotation.step import RollingState, Setting, room_for
 from dda.scheme.newmark import Scheme

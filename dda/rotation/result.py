@@ -110,7 +110,7 @@ def parts_of(
         "stretch": lambda: 0.0 - history.shear.T * softness,
         "slide": slide,
         "slipped": lambda: history.slipped.T,
-        "states": lambda: history.state.T,
+        "states": lambda: history.state.T.astype(float),
         "velocity": lambda: velocities()[:, 1],
         "horizontal_velocity": lambda: velocities()[:, 0],
     }

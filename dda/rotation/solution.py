@@ -18,7 +18,7 @@ from dda.rotation.result import RollingResult, observed, parts_of
 from dda.rotation.step import RollingHistory, history_of, make_steps, rolling_equations
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
-from dda.stepping.driver import OUTCOMES, base_record, counts_of
+from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def solve_rolling(
         (history, counts, steps, options.cut),
         steps * PLAIN_STEP,
     )
-    history = RollingHistory(*(part[:reached] for part in history))
+    history = RollingHistory(*reached_rows(history, reached))
     values = observed(setting.body, start, history)
     instants = scheme.step * np.arange(reached + 1.0)
     base = np.zeros(reached + 1) if motion is None else motion.at(instants)[:, 0]

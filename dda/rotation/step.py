@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,10 +40,13 @@ from dda.contact.kernel import (
     eliminate,
     find_contacts,
     law_of,
+    scale_of,
     set_paired_flexibility,
+    spring_energy,
     work_for,
+    zeros,
 )
-from dda.contact.unilateral import OPEN, STICK, Unilateral
+from dda.contact.unilateral import OPEN, Unilateral
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
 from dda.stepping.driver import BaseRecord, Counts, base_at, driver
@@ -185,25 +188,12 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     where, dead = np.zeros((2, 2, 2))
     where[:loads], dead[:loads] = setting.where, setting.dead
     pairs = [Touching(at_rest(np.zeros(n), 2), at_rest(np.zeros(n), 2)) for n in (1, 2)]
-    lengths = [StepMatrices(np.zeros(3), np.zeros((6, 6)), np.zeros((3, 3)), *np.zeros((3, 6, 6))) for _ in range(2)]
-    room = Room(
-        *np.zeros((6, 6)),
-        np.zeros(3),
-        np.zeros(2),
-        Turn(*np.zeros((3, 2, 2))),
-        np.zeros((2, 2)),
-        *np.zeros((2, capacity, 2)),
-        np.zeros(capacity),
-        np.zeros(2),
-        np.zeros((4, 6)),
-        np.zeros((6, 4)),
-        np.zeros(4),
-        *np.zeros((4, 6)),
-        np.zeros(2, dtype=np.int64),
-        np.zeros(PAIRS, dtype=np.int64),
-        *np.zeros((2, 6, 6)),
-        np.zeros(6),
-    )
+    lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
+    vector, square = (6,), (6, 6)
+    turning: list[Any] = [Turn(*zeros((2, 2), (2, 2), (2, 2)))]
+    before = zeros(*[vector] * 6, 3, 2) + turning + zeros((2, 2), (capacity, 2), (capacity, 2), capacity, 2)
+    directions_of = zeros((4, 6), (6, 4), 4, *[vector] * 4)
+    room = Room(*(before + directions_of + zeros(2, PAIRS, dtype=np.int64) + zeros(square, square, 6)))
     equations = RollingEquations(
         corners=len(own.xi),
         loads=loads,
@@ -245,8 +235,8 @@ def room_for(corners: int) -> int:
 
 def history_of(corners: int, steps: int) -> RollingHistory:
     """Return room for so many steps."""
-    widths = (2, 4, 1, 3, 6, 1, *[corners] * 4)
-    return RollingHistory(*(np.zeros((steps, width)) for width in widths), np.zeros((steps, corners), dtype=np.int8))
+    shapes = [(steps, width) for width in (2, 4, 1, 3, 6, 1, *[corners] * 4)]
+    return RollingHistory(*(zeros(*shapes) + zeros((steps, corners), dtype=np.int8)))
 
 
 # ---- the step --------------------------------------------------------------------------------------------------------
@@ -259,7 +249,9 @@ def late_share(delta: float) -> float:
 
 def area_growth(body: RollingEquations, Q: Matrix) -> float:
     """Return the area of the unstrained outline over that of the start."""
-    return 1.0 if body.exact else Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0]
+    if body.exact:
+        return 1.0
+    return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
 def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, made: StepMatrices) -> None:
@@ -301,7 +293,7 @@ def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, made: StepMatr
 def invert(own: Room, inverse: Matrix) -> None:
     """Write the inverse of own.A, positive definite."""
     for i in range(6):
-        own.scale[i] = 1 / math.sqrt(own.A[i][i])
+        own.scale[i] = scale_of(own.A[i][i])
         for j in range(6):
             own.right[i][j] = 1.0 if i == j else 0.0
     eliminate(own.A, own.right, own.scale, 6, 6)
@@ -621,7 +613,7 @@ def accept(body: RollingEquations, made: StepMatrices, state: RollingState, afte
     contacts = after.contacts
     for i in range(body.corners):
         contacts.gap[i] = own.after[i][1]
-        contacts.state[i] = STICK if own.after[i][1] <= 0 else OPEN
+        contacts.state[i] = OPEN
         contacts.normal[i] = 0.0
         contacts.shear[i] = 0.0
         contacts.stretch[i] = 0.0
@@ -672,13 +664,6 @@ def account(
             losses[number, 2] -= work + friction
 
 
-def spring_energy(law: Law, contacts: Contacts, i: int) -> float:
-    """Return the energy of the springs of a contact [J]."""
-    N = contacts.normal[i]
-    T = contacts.shear[i]
-    return (N * N * law.compliance + T * T * law.softness) / 2
-
-
 def kinetic(body: RollingEquations, state: RollingState) -> float:
     """Return the kinetic energy [J]."""
     growth = area_growth(body, state.Q)
@@ -690,7 +675,7 @@ def kinetic(body: RollingEquations, state: RollingState) -> float:
                 moving += state.V[i] * body.M[i][j] * state.V[j]
             elif i > 1 and j > 1:
                 turning += state.V[i] * body.M[i][j] * state.V[j]
-    return (growth * moving + growth * growth * turning) / 2
+    return float((growth * moving + growth * growth * turning) / 2)
 
 
 def keep(body: RollingEquations, state: RollingState, history: RollingHistory, number: int) -> bool:

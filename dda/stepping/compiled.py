@@ -137,12 +137,22 @@ def _fill(record: Any, value: Any) -> None:
 def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
     """Return the compiled loop for such arguments, or None where the plain one is to run."""
     parts = list(parts_of(loop))
+    if any(_is_foreign(part, loop) for part in parts):
+        return None
     key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
     if key not in _compiled:
         _compiled[key] = parts, _compile(loop, parts, arguments)
     made_of, own = _compiled[key]
     same = len(parts) == len(made_of) and all(map(_same, parts, made_of))
     return own if same else None
+
+
+def _is_foreign(part: object, loop: Loop) -> bool:
+    """Tell whether a function comes from elsewhere than the package of the loop: nobody knows what it holds."""
+    if not callable(part) or isinstance(part, type):
+        return False
+    package = loop.__module__.partition(".")[0]
+    return not isinstance(part, FunctionType) or part.__module__.partition(".")[0] != package
 
 
 def _same(part: object, other: object) -> bool:
@@ -184,7 +194,8 @@ def _compile(loop: Loop, parts: list[object], arguments: tuple[Any, ...]) -> Loo
         directory = directory / _digest(functions, numba.__version__)
     for place in dict.fromkeys((directory, None)):
         try:
-            return _made(numba, loop, tuple(numba.typeof(argument) for argument in arguments), place)
+            types = tuple(numba.typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
+            return _made(numba, loop, types, place)
         except Exception:  # a broken or locked cache, then a compiler that does not know what plain Python knows
             continue
     return None

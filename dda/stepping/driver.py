@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.kernel import FAILURES, FOUND
+from dda.contact.kernel import FAILURES, FOUND, zeros
 from dda.model.load import BaseMotion
 
 Array = NDArray[np.float64]
@@ -25,15 +25,6 @@ OUTCOMES = {FOUND: COMPLETED, OVERFLOW: "overflow", **FAILURES}
 LOSSES = 5  # by the algorithm, by gg, by switching, by friction, and what the base's motion gives [J]
 
 
-class StepScheme(NamedTuple):
-    """Newmark's numbers for a step of one length."""
-
-    alpha: float
-    delta: float
-    gg: float
-    step: float  # [s]
-
-
 class Counts(NamedTuple):
     """What is kept of every step, whatever makes it; losses are sums from t = 0 on."""
 
@@ -44,8 +35,13 @@ class Counts(NamedTuple):
 
 def counts_of(steps: int, energies: bool) -> Counts:
     """Return room for what is kept of so many steps."""
-    whole = [np.zeros(steps, dtype=np.int64) for _ in range(2)]
-    return Counts(*whole, np.zeros((steps if energies else 0, LOSSES)))
+    solves, cuts = zeros(steps, steps, dtype=np.int64)
+    return Counts(solves, cuts, np.zeros((steps if energies else 0, LOSSES)))
+
+
+def reached_rows(history: tuple[Any, ...], reached: int) -> list[Any]:
+    """Return the arrays of a history without the steps that were not reached."""
+    return [part[:reached] for part in history]
 
 
 class BaseRecord(NamedTuple):
@@ -92,8 +88,8 @@ def driver(
     Parameters
     ----------
     advance
-        Makes a step, or a part of one: (body, state, after, base, begun, ratio) -> outcome and solves, with where it begins
-        and how long it is, in steps. It writes `after` and leaves `state` as it is.
+        Makes a step, or a part of one: (body, state, after, base, begun, ratio) -> outcome and solves, with where it
+        begins and how long it is, in steps. It writes `after` and leaves `state` as it is.
     account
         Adds what an accepted part of step `number` slips and loses: (body, state, after, base, begun, ratio,
         history, counts, number).

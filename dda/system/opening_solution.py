@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -16,7 +17,7 @@ from dda.one_block.unilateral import UnilateralOptions, check_scheme
 from dda.one_block.unilateral_energy import ENERGIES
 from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme
-from dda.stepping.driver import OUTCOMES, counts_of
+from dda.stepping.driver import OUTCOMES, counts_of, reached_rows
 from dda.system.opening import OpeningBody, OpeningSystem, SystemHistory, make_steps
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ def solve_opening_system(
         reached, outcome = make_steps(
             body, body.start_state(), body.start_state(), None, history, counts, steps, options.cut
         )
-    history = SystemHistory(*(part[:reached] for part in history))
+    history = SystemHistory(*reached_rows(history, reached))
     mass = math.fsum(block.material.density * block.section.area for block in opening.system.blocks)
     velocity = history.momentum.T / (mass * scheme.step)
     losses = counts.losses[:reached]
@@ -84,6 +85,6 @@ def solve_opening_system(
         step_solves=counts.solves[:reached],
         step_cuts=counts.cuts[:reached],
         base_contacts=(0, -1),
-        parts={name: lambda values=values: values for name, values in parts.items()},
+        parts={name: partial(np.asarray, values) for name, values in parts.items()},
         balance=balance if options.energies else None,
     )
