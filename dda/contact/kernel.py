@@ -250,7 +250,7 @@ def closes(law: Law, w: float) -> bool:
 
 
 def shear_limit(law: Law, N: float) -> float:
-    """Return the greatest shear force tan(phi) N + c under the normal force N [N]; of a bonded contact there is none."""
+    """Return the greatest shear force tan(phi) N + c under the normal force N [N]; a bonded contact has none."""
     if not law.slips:
         return math.inf
     return law.friction * max(N, 0.0) + law.cohesion
@@ -282,7 +282,7 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
 
 def states_agree(law: Law, after: Contacts, tried: States) -> bool:
     """Tell whether the forces of all contacts agree with the states that were tried."""
-    for i in range(after.n):
+    for i in range(after.n):  # noqa: SIM110  (numba knows no generators)
         if agreed(law, after, i) != tried[i]:
             return False
     return True
@@ -322,7 +322,7 @@ def one_by_one(
 
 def all_equal(tried: States, saved: States, n: int) -> bool:
     """Tell whether two sets of states are the same."""
-    for i in range(n):
+    for i in range(n):  # noqa: SIM110
         if tried[i] != saved[i]:
             return False
     return True

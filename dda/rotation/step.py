@@ -423,7 +423,7 @@ def nearest(body: RollingEquations, heights: Vector, reach: float) -> int:
 
 def another_crossed(body: RollingEquations, after: RollingState) -> bool:
     """Tell whether a corner that is not closed lies below the plane."""
-    for i in range(body.corners):
+    for i in range(body.corners):  # noqa: SIM110  (numba knows no generators)
         if after.contacts.state[i] == OPEN and after.contacts.gap[i] < 0:
             return True
     return False

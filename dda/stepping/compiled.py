@@ -1,7 +1,7 @@
 """Long loops over steps, compiled by numba where it is installed; the same functions run as plain Python otherwise.
 
-A loop and the functions that it calls are written once, in numbers and arrays `a[i][j]` that may be lists as well: plain
-Python is several times faster on these. numba is imported only where a history is long enough to pay for it. Compiled
+A loop and the functions that it calls are written once, in numbers and arrays `a[i][j]` that may be lists as well:
+plain Python is several times faster on these. numba is imported only where a history is long enough to pay for it. Compiled
 code is kept between processes in a directory of the user's cache, by the sources that it was made of; where that cannot
 be written, where numba is missing or does not know this Python, the plain functions run. The numbers are the same:
 nothing is reordered or fused.
@@ -29,7 +29,7 @@ WORTHWHILE = 1.0  # seconds of plain Python from which a loop is compiled, or re
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 PLAIN, COMPILED = "plain Python", "compiled"
 
-_compiled: dict[object, tuple[list[object], Loop | None]] = {}  # by loop and types: what it was made of, and itself
+loops: dict[object, tuple[list[object], Loop | None]] = {}  # by loop and types: what it was made of, and itself
 _jitable: set[FunctionType] = set()
 
 
@@ -140,9 +140,9 @@ def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
     if any(_is_foreign(part, loop) for part in parts):
         return None
     key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
-    if key not in _compiled:
-        _compiled[key] = parts, _compile(loop, parts, arguments)
-    made_of, own = _compiled[key]
+    if key not in loops:
+        loops[key] = parts, _compile(loop, parts, arguments)
+    made_of, own = loops[key]
     same = len(parts) == len(made_of) and all(map(_same, parts, made_of))
     return own if same else None
 
@@ -195,13 +195,14 @@ def _compile(loop: Loop, parts: list[object], arguments: tuple[Any, ...]) -> Loo
     for place in dict.fromkeys((directory, None)):
         try:
             types = tuple(numba.typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
-            return _made(numba, loop, types, place)
+            return compile_loop(numba, loop, types, place)
         except Exception:  # a broken or locked cache, then a compiler that does not know what plain Python knows
             continue
     return None
 
 
-def _made(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
+def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
+    """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
     try:
         if directory is not None:

@@ -1,6 +1,5 @@
 """The loop over steps, compiled: the numbers of plain Python, and plain Python wherever it cannot be."""
 
-import builtins
 import functools
 import os
 import subprocess
@@ -131,7 +130,7 @@ FACTOR = 2.0
 @pytest.fixture
 def fresh(always, monkeypatch, tmp_path):
     """Forget what was compiled; keep code in a directory of this test."""
-    monkeypatch.setattr(compiled, "_compiled", {})
+    monkeypatch.setattr(compiled, "loops", {})
     monkeypatch.setattr(compiled, "cache_directory", lambda: tmp_path)
     return tmp_path
 
@@ -150,7 +149,7 @@ def test_compiled_code_is_kept_and_read_again(fresh, monkeypatch):
     assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
     kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}
     assert len(kept) == 2
-    monkeypatch.setattr(compiled, "_compiled", {})
+    monkeypatch.setattr(compiled, "loops", {})
     assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
     assert {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")} == kept
 
@@ -159,7 +158,7 @@ def test_a_broken_cache_is_made_anew(fresh, monkeypatch):
     ran()
     for path in fresh.rglob("*.nb?"):
         path.write_bytes(b"nothing that numba knows")
-    monkeypatch.setattr(compiled, "_compiled", {})
+    monkeypatch.setattr(compiled, "loops", {})
     assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
 
 
@@ -182,19 +181,12 @@ def test_a_directory_that_cannot_be_written_is_none(monkeypatch, tmp_path, name)
 
 
 def test_without_numba_the_plain_functions_run(fresh, monkeypatch):
-    real = builtins.__import__
-
-    def refused(name, *given):
-        if name.startswith("numba"):
-            raise ImportError(name)
-        return real(name, *given)
-
-    monkeypatch.setattr(builtins, "__import__", refused)
+    monkeypatch.setitem(sys.modules, "numba", None)
     assert ran() == (compiled.PLAIN, [2.5, 3.5, 4.5])
 
 
 def test_what_numba_cannot_compile_runs_plain(fresh, monkeypatch):
-    monkeypatch.setattr(compiled, "_made", lambda *given: 1 / 0)
+    monkeypatch.setattr(compiled, "compile_loop", lambda *given: 1 / 0)
     assert ran() == (compiled.PLAIN, [2.5, 3.5, 4.5])
 
 
