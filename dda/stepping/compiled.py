@@ -1,10 +1,10 @@
 """Long loops over steps, compiled by numba where it is installed; the same functions run as plain Python otherwise.
 
 A loop and the functions that it calls are written once, in numbers and arrays `a[i][j]` that may be lists as well:
-plain Python is several times faster on these. numba is imported only where a history is long enough to pay for it. Compiled
-code is kept between processes in a directory of the user's cache, by the sources that it was made of; where that cannot
-be written, where numba is missing or does not know this Python, the plain functions run. The numbers are the same:
-nothing is reordered or fused.
+plain Python is several times faster on these. numba is imported only where a history is long enough to pay for it.
+Compiled code is kept between processes in a directory of the user's cache, by the sources that it was made of; where
+that cannot be written, where numba is missing or does not know this Python, the plain functions run. The numbers are
+the same: nothing is reordered or fused.
 
 Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
 replaced since, the plain functions run.

@@ -73,8 +73,8 @@ def grown_twice(sound: Callable[..., Any]) -> Callable[..., Any]:
 
 def further(share: float) -> Wrapper:
     """Return a wrapper that makes the base move further by a share."""
-    return lambda sound: lambda model: (motion := sound(model)) and replace(
-        motion, displacement=(1 + share) * motion.displacement
+    return lambda sound: (
+        lambda model: (motion := sound(model)) and replace(motion, displacement=(1 + share) * motion.displacement)
     )
 
 
