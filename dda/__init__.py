@@ -5,12 +5,15 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
+import warnings
+
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
+from dda.one_block.contact_result import ContactResult
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
 from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
 from dda.one_block.natural_modes import ModalForm, modal_form
@@ -19,12 +22,11 @@ from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adapti
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.one_block.unilateral_history import UnilateralResult
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
 from dda.system.opening import OpeningSystem, opening_subdivided
-from dda.system.opening_solution import OpeningResult, solve_opening_system
+from dda.system.opening_solution import solve_opening_system
 from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided
@@ -39,6 +41,7 @@ __all__ = [
     "Block",
     "BlockSystem",
     "Contact",
+    "ContactResult",
     "Diagnostics",
     "GapForm",
     "Joint",
@@ -46,7 +49,6 @@ __all__ = [
     "Material",
     "ModalForm",
     "Mode",
-    "OpeningResult",
     "OpeningSystem",
     "Result",
     "Scheme",
@@ -56,7 +58,6 @@ __all__ = [
     "Unilateral",
     "UnilateralModel",
     "UnilateralOptions",
-    "UnilateralResult",
     "contact_stiffness",
     "diagnostics",
     "highest_frequency",
@@ -80,3 +81,11 @@ __all__ = [
     "system_response",
     "textbook_applicable",
 ]
+
+
+def __getattr__(name: str) -> type[ContactResult]:
+    """Return what had another name."""
+    if name in ("UnilateralResult", "OpeningResult"):
+        warnings.warn(f"dda.{name} is dda.ContactResult now", DeprecationWarning, stacklevel=2)
+        return ContactResult
+    raise AttributeError(f"module 'dda' has no attribute {name!r}")

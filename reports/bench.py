@@ -146,7 +146,7 @@ def opening_model(p: float = 1e9) -> dda.UnilateralModel:
 
 def opening_history(
     steps: int, dt: float, model: dda.UnilateralModel | None = None, singly: bool = False
-) -> dda.UnilateralResult:
+) -> dda.ContactResult:
     """Solve the square block on corners that open; step by step in all six unknowns if `singly`."""
     options = dda.UnilateralOptions(full=singly)
     return dda.solve_unilateral(model or opening_model(), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)

@@ -18,38 +18,56 @@ N_N by Newton's method on the map of one round, whose slope is known and below o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
-from dda.contact.glued import Free
-from dda.contact.iteration import NONE, Iteration
-from dda.contact.unilateral import Corners, Unilateral
+from dda.contact.kernel import FOUND, NONE, Contacts, Flexible, Free, Work
+from dda.contact.unilateral import OPEN, STICK
 
 ROUNDS = 400  # of two contacts, which take about five; a slender block that lands takes more
 SETTLED = 2e-16  # change of a force by which the rounds end
 
 
-def conserving(law: Unilateral, before: Corners, free: Free) -> Iteration:
-    """Return the contacts at the end of a step, and in `mean` their forces over the step.
+def conserving(
+    p: float, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
+) -> tuple[int, int]:
+    """Find the contacts at the end of a step, and in `work.mean` their forces over the step.
 
     A contact is closed if its gap is negative at the end; its normal force there is that of its spring.
     """
-    p, w0, C, w_f = law.stiffness, before.gap, free.C, free.gap
-    if len(w0) == 1:
-        w1, N, _ = one_contact(p, C[0][0], w0[0], w_f[0])
-        return _found(law, (w1,), (N,), 1)
-    forces, residual = [0.0, 0.0], math.inf
+    C = flexible.C
+    w0 = before.gap
+    w_f = free.gap
+    if before.n == 1:
+        after.gap[0], work.mean[0], _ = one_contact(p, C[0][0], w0[0], w_f[0])
+        write_springs(p, after)
+        return FOUND, 1
+    force = 0.0
+    residual = math.inf
     for solves in range(1, ROUNDS + 1):
-        w_M, N_M, s_M = one_contact(p, C[0][0], w0[0], w_f[0] + C[0][1] * forces[1])
+        w_M, N_M, s_M = one_contact(p, C[0][0], w0[0], w_f[0] + C[0][1] * force)
         w_N, N_N, s_N = one_contact(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
-        change = N_N - forces[1]
+        change = N_N - force
         slope = C[0][1] * C[1][0] * s_M * s_N
         if abs(change) <= SETTLED * abs(N_N):
-            return _found(law, (w_M, w_N), (N_M, N_N), solves)
+            after.gap[0] = w_M
+            after.gap[1] = w_N
+            work.mean[0] = N_M
+            work.mean[1] = N_N
+            write_springs(p, after)
+            return FOUND, solves
         # by Newton's method as long as it helps; a round itself always comes nearer
-        newton = abs(change) < residual / 2
-        forces[1] = forces[1] + change / (1 - slope) if newton else N_N
+        force = force + change / (1 - slope) if abs(change) < residual / 2 else N_N
         residual = abs(change)
-    return Iteration(None, ROUNDS, NONE)
+    return NONE, ROUNDS
+
+
+def write_springs(p: float, after: Contacts) -> None:
+    """Write what follows from the gaps at the end of the step."""
+    for i in range(after.n):
+        after.state[i] = STICK if after.gap[i] < 0 else OPEN
+        after.normal[i] = p * max(-after.gap[i], 0.0)
+        after.shear[i] = 0.0
+        after.stretch[i] = 0.0
+        after.slipped[i] = 0.0
 
 
 def one_contact(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:
@@ -75,12 +93,5 @@ def one_contact(p: float, C: float, w0: float, w_f: float) -> tuple[float, float
 
 def _penetration(c: float, w0: float, u_f: float) -> float:
     """Return the positive root u of c u^2 + 2 (w0 - u_f) u = 2 u_f w0."""
-    root = math.sqrt((w0 - u_f) ** 2 + 2 * c * u_f * w0)
+    root = math.sqrt((w0 - u_f) * (w0 - u_f) + 2 * c * u_f * w0)
     return (u_f - w0 + root) / c if u_f > w0 else 2 * u_f * w0 / (w0 - u_f + root)
-
-
-def _found(law: Unilateral, gap: tuple[float, ...], mean: Sequence[float], solves: int) -> Iteration:
-    nothing = (0.0,) * len(gap)
-    normal = tuple(law.stiffness * max(-w, 0.0) for w in gap)
-    corners = Corners(tuple(w < 0 for w in gap), gap, nothing, nothing, normal, nothing)
-    return Iteration(corners, solves, mean=tuple(mean))

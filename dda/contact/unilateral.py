@@ -21,9 +21,7 @@ Cohesion c acts on every closed corner, on one that closes again too; an open on
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 CONSISTENT, LAGGED = "consistent", "lagged"
 OPEN, STICK, SLIP = 0, 1, 2  # of a corner with friction; SLIP towards M to N, -SLIP against it
@@ -81,10 +79,6 @@ class Unilateral:
         if self.band[1] > 0 and self.rules == CONSISTENT:
             raise ValueError(f"band: a corner that pulls rubs under {LAGGED} rules only, got {self.band!r}")
 
-    def limit(self, N: float) -> float:
-        """Greatest shear force tan(phi) N + c under the normal force N [N]; of a glued corner there is none."""
-        return math.inf if self.friction is None else self.friction * max(N, 0.0) + self.cohesion
-
     @property
     def compliance(self) -> float:
         """1/p [m/N]; 0 for a rigid stop."""
@@ -94,63 +88,3 @@ class Unilateral:
     def pull(self) -> float:
         """Greatest tension p band[1] of a closed corner [N]."""
         return self.stiffness * self.band[1] if self.band[1] else 0.0
-
-    def stays_closed(self, N: float) -> bool:
-        """Tell whether a closed corner with the normal force N [N] stays closed."""
-        return -self.pull <= N
-
-    def closes(self, w: float) -> bool:
-        """Tell whether an open corner with the gap w [m] closes."""
-        return w < -self.band[0]
-
-
-# Tangential displacement s of each contact in the coordinates of the block: of one contact its own, of two corners
-# the mean U and the difference d = s_N - s_M. In a long step a rigid motion of 1e9 m may hide a difference that is
-# elastic; so the forces are found in H = T_M + T_N and G = (T_N - T_M)/2, which belong to U and d.
-SLIDES = {1: ((1.0,),), 2: ((1.0, -0.5), (1.0, 0.5))}
-
-
-class Corners(NamedTuple):
-    """State of the contacts, one entry each: two corners, or one that stands for both in a symmetric motion."""
-
-    closed: tuple[bool, ...]
-    gap: tuple[float, ...]  # w [m]
-    stretch: tuple[float, ...]  # s - r of the closed ones [m]; 0 where open
-    reference: tuple[float, ...]  # r [m]; of an open one s itself
-    normal: tuple[float, ...]  # N [N], on the block, away from the base
-    shear: tuple[float, ...]  # T [N], on the block, along the base
-    state: tuple[int, ...] = ()  # with friction: OPEN, STICK, or SLIP in its direction; empty: sticks where closed
-    slipped: tuple[float, ...] = ()  # change of r by slip in the step [m]; empty: none
-
-
-def at_rest(law: Unilateral, contacts: int) -> Corners:
-    """Return the corners at t = 0: without force, closed where they touch."""
-    nothing = (0.0,) * contacts
-    return Corners((law.gap == 0,) * contacts, (law.gap,) * contacts, nothing, nothing, nothing, nothing)
-
-
-def slide_forces(shear: Sequence[float]) -> tuple[float, ...]:
-    """Return the forces that belong to the coordinates of `SLIDES`: T, or (H, G) of T_M and T_N."""
-    return (shear[0],) if len(shear) == 1 else (shear[0] + shear[1], (shear[1] - shear[0]) / 2)
-
-
-def slipped_share(law: Unilateral, before: float, N: float) -> tuple[float, float]:
-    """Return 1 - theta of a corner that closes in a step, and its derivative by N [1/N].
-
-    With w_{n+1} = -N/p the share of the step's tangential displacement behind the crossing is
-
-        1 - theta = (N/p) / (w_n + N/p).
-
-    Parameters
-    ----------
-    before : float
-        The gap w_n before the step [m]; one that is not positive has crossed already.
-    N : float
-        The normal force after the step [N]; a tension has not crossed.
-    """
-    if before <= 0:
-        return 1.0, 0.0
-    if N <= 0:
-        return 0.0, 0.0
-    into = N * law.compliance
-    return into / (before + into), law.compliance * before / (before + into) / (before + into)

@@ -38,11 +38,6 @@ class Result:
     stepping_seconds: float  # the steps [s]
 
 
-def at_corner(name: str, corner: int) -> property:
-    """Return the property of a result that is one corner of another one, which has a row for each."""
-    return property(lambda result: np.asarray(getattr(result, name)[corner]), doc=f"{name} at one corner")
-
-
 def solve(
     model: TwoBlockModel,
     scheme: Scheme,

@@ -8,7 +8,7 @@ follows, so that every interval ends at its own time.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
@@ -16,36 +16,32 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.iteration import Iteration
 from dda.contact.springs import base_directions
-from dda.contact.unilateral import LAGGED, SLIP, Unilateral
+from dda.contact.unilateral import SLIP, Unilateral
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load, pressed_part
+from dda.one_block.contact_result import ContactResult, early_end
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
-from dda.one_block.unilateral_energy import CutStep, Ledger, energies
+from dda.one_block.unilateral_energy import energies
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.unilateral_history import (
-    SHORTEST,
-    History,
-    Step,
-    UnilateralResult,
-    glide,
-    observed,
-    state_of,
-    vector,
+from dda.one_block.unilateral_step import (
+    CONSERVING,
+    NEWMARK,
+    RULES,
+    BlockHistory,
+    block_equations,
+    history_of,
+    make_steps,
+    start_state,
 )
-from dda.one_block.unilateral_phase import Phase, phase_of
-from dda.one_block.unilateral_step import CONSERVING, IMPLICIT, NEWMARK, Jump, State, StepLength, advance, start_state
-from dda.scheme.cutting import Lengths, in_parts
 from dda.scheme.newmark import Scheme
+from dda.stepping.compiled import run_loop
+from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
 
 Array = NDArray[np.float64]
 
-RULES = (NEWMARK, IMPLICIT, CONSERVING)
-COMPLETED = "completed"
-OVERFLOW = "overflow"
-_LENGTHS = 64  # step lengths whose factors are kept
+PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +105,7 @@ class UnilateralOptions:
     solve_limit: int = 6  # solves of the open-close iteration before all states are tried
     cut: float = 0.3  # length of a cut step over that of the failed one
     energies: bool = False  # keep what the energies of every step are made of
-    full: bool = False  # keep all six unknowns and both corners where the motion is symmetric, make every step singly
+    full: bool = False  # keep all six unknowns and both corners where the motion is symmetric
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -127,7 +123,7 @@ def solve_unilateral(
     steps: int,
     columns: Sequence[str] = ("displacement", "contact_pressure"),
     options: UnilateralOptions | None = None,
-) -> UnilateralResult:
+) -> ContactResult:
     """Step a block on corners that open, from rest or from its starting velocity.
 
     Displacements count from t = 0. A numerical failure is an outcome, not an exception: the history then
@@ -153,11 +149,87 @@ def solve_unilateral(
     options = options or UnilateralOptions()
     check_combination(model, scheme, options)
     began = perf_counter()
-    stepping = Stepping(model, scheme, options)
+    law = model.contact
+    if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
+        law = replace(law, shear=0.0)
+        model = replace(model, contact=law)
+    form = model.form(True) if options.full else model.reduced
+    block = block_equations(form, law, scheme, options.rule, options.solve_limit, model.motion is not None)
+    state = start_state(form, law, scheme, model.velocity, options.rule)
+    history, counts = history_of(block, steps), counts_of(steps, options.energies)
+    seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
     ready = perf_counter()
+    (reached, outcome), left, how = run_loop(
+        make_steps, (block, state, state), (base_record(model.motion),), (history, counts, steps, options.cut), seconds
+    )
+    history = BlockHistory(*reached_rows(history, reached))
     with np.errstate(all="ignore"):
-        stepping.run(steps)
-        return _result(stepping, columns, began, ready)
+        values = observed(form, history, base_directions(model.block, model.base)[2], columns)
+    for name, moved in carried(model.motion, step_times(scheme, reached)).items():
+        if name in values:
+            values[name] = values[name] + moved
+    saved = (f"both corners as one, unknowns {', '.join(form.unknowns)}",) if len(form.unknowns) < 6 else ()
+    losses = counts.losses[:reached]
+    mass = model.block.material.density * model.block.section.area
+    return ContactResult(
+        time=step_times(scheme, reached),
+        columns=values,
+        unknowns=len(form.unknowns),
+        nonzeros=int(np.count_nonzero(form.M)),
+        factorisations=int(left[0].made[0]),
+        solves=int(counts.solves[:reached].sum()),
+        notes=(*saved, f"stepped, {how}: contact opens and closes", *early_end(outcome, reached)),
+        setup_seconds=ready - began,
+        stepping_seconds=perf_counter() - ready,
+        outcome=OUTCOMES[outcome],
+        step_solves=counts.solves[:reached],
+        step_cuts=counts.cuts[:reached],
+        base_contacts=(0, 1),
+        parts=_parts(form, law, history, form.translation.T / (mass * scheme.step)),
+        balance=(lambda: energies(form, law, scheme.step, model.motion, history, losses)) if options.energies else None,
+    )
+
+
+def observed(form: UnilateralForm, history: BlockHistory, a: float, names: Sequence[str]) -> dict[str, Array]:
+    """Return the asked columns; `a` is the length of the base [m]."""
+    values = {}
+    for name in names:
+        if name == "contact_pressure":
+            values[name] = history.normal.sum(axis=1) * (2 / form.contacts / a) + 0.0
+        else:
+            row = form.observers[name]
+            values[name] = history.D @ row - row @ form.start + 0.0
+    return values
+
+
+def _parts(
+    form: UnilateralForm, law: Unilateral, history: BlockHistory, momentum: Array
+) -> dict[str, Callable[[], Array]]:
+    """Return what makes the properties of a result; a contact that stands for both corners is N.
+
+    Parameters
+    ----------
+    momentum : (2, n) array
+        Horizontal and vertical velocity of the centroid by P [1/(kg s)].
+    """
+    both, mirror = [0, -1], np.array([[1.0 if form.contacts == 2 else -1.0], [1.0]])
+
+    def states() -> Array:
+        state = history.state.T[both].astype(int)
+        turned = np.array([[form.contacts == 1], [False]]) & (np.abs(state) == SLIP)
+        return np.where(turned, -state, state)
+
+    return {
+        "normal": lambda: history.normal.T[both],
+        "shear": lambda: mirror * history.shear.T[both] + 0.0,
+        "gap": lambda: history.gap.T[both],
+        "stretch": lambda: 0.0 - mirror * history.shear.T[both] / law.shear if law.shear else 0 * history.gap.T[both],
+        "slide": lambda: form.slide @ history.D.T,
+        "slipped": lambda: mirror * history.slipped.T[both] + 0.0,
+        "states": states,
+        "velocity": lambda: history.P @ momentum[1],
+        "horizontal_velocity": lambda: history.P @ momentum[0],
+    }
 
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
@@ -184,153 +256,3 @@ def check_scheme(law: Unilateral, scheme: Scheme) -> None:
     """Raise ValueError where an explicit scheme meets a rigid stop."""
     if math.isinf(law.stiffness) and scheme.alpha == 0:
         raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")
-
-
-class Carry:
-    """What a moving base does to a block whose unknowns count from it."""
-
-    def __init__(self, form: UnilateralForm, motion: BaseMotion, step: float) -> None:
-        self.MR, self.motion, self.step = form.M @ form.translation, motion, step
-
-    def momentum(self, begun: float, ratio: float) -> list[float]:
-        """Return M R (y1 - y) of a part of a step, `begun` in steps [kg m]."""
-        y, y1 = self.motion.at([begun * self.step, (begun + ratio) * self.step])
-        moved: list[float] = (self.MR @ (y1 - y)).tolist()
-        return moved
-
-
-class Stepping:
-    """The history of one block: step by step where contacts switch, many at once between."""
-
-    def __init__(self, model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
-        self.model, self.scheme, self.options = model, scheme, options
-        if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
-            model = replace(model, contact=replace(model.contact, shear=0.0))
-        self.law, self.form = model.contact, model.form(True) if options.full else model.reduced
-        self.outcome = COMPLETED
-        self.length = Lengths(lambda ratio: StepLength.of(self.form, scheme, ratio, options.rule), _LENGTHS)
-        self.phases: dict[tuple[bool, ...], Phase | str] = {}
-        self.history = History(self.form.layout)
-        self.cut_steps: dict[int, CutStep] = {}  # for their energies
-        self.carry = None if model.motion is None else Carry(self.form, model.motion, scheme.step)
-        self.start = start_state(self.form, self.law, scheme, model.velocity, options.rule)
-
-    def run(self, steps: int) -> None:
-        """Make the steps that are reached; `outcome` says how it ended."""
-        state, waiting = self.start, 1  # steps to be made singly: of the first one A0 may be any
-        while self.history.steps < steps:
-            if waiting <= 0:
-                state, waiting = self._ahead(state, steps)
-                continue
-            reached = self._interval(state)
-            if reached is None:
-                return
-            state, made = reached
-            if not math.isfinite(sum(state.D)):
-                self.outcome = OVERFLOW
-                return
-            self.history.add(made)
-            waiting -= 1
-
-    def _ahead(self, state: State, steps: int) -> tuple[State, int]:
-        """Return the state after some steps that are made at once, and how many to make singly then."""
-        if any(abs(now) == SLIP for now in state.corners.state):
-            return state, 1
-        history, v, closed = self.history, np.array(vector(state)), state.corners.closed
-        began = history.steps
-        while history.steps < steps and not isinstance(phase := self.phase_of(closed, steps), str):
-            made = glide(phase, v, closed, history.steps, steps - history.steps)
-            if made:
-                v = made[1]
-                history.add(made[0])
-            if history.steps == steps or self.jump is None:
-                break
-            after, found = self.jump.step(v, closed, self.options.solve_limit)
-            if found.corners is None or not math.isfinite(after.dot(after)):
-                break
-            v, closed = after, found.corners.closed
-            history.add(Step(v, closed, found.solves, 0))
-        if history.steps == began:
-            return state, 1
-        waiting = 1 if history.steps - began >= SHORTEST else SHORTEST
-        return state_of(self.form, self.law, self.scheme.step, state.corners._replace(closed=closed), v), waiting
-
-    @cached_property
-    def jump(self) -> Jump | None:
-        """Single steps of frictionless contacts; None where they are glued."""
-        return None if len(self.form.B) > self.form.contacts else Jump(self.form, self.law, self.length(1.0))
-
-    def phase_of(self, closed: tuple[bool, ...], steps: int) -> Phase | str:
-        """Return the steps of a contact state, or why they are made singly."""
-        if closed not in self.phases:
-            if self.options.full:
-                return "all savings off"
-            if self.options.rule != NEWMARK:
-                return f"the rule {self.options.rule}"
-            if self.model.motion is not None:
-                return "the base moves"
-            if self.law.rules == LAGGED:
-                return f"{LAGGED} friction"
-            self.phases[closed] = phase_of(self.form, self.law, self.scheme, closed, steps.bit_length())
-        return self.phases[closed]
-
-    def _interval(self, state: State) -> tuple[State, Step] | None:
-        """Return the state after one step of the scheme, whole or in parts, and what is kept of it."""
-        begins = self.history.steps
-
-        def attempt(state: State, begun: float, ratio: float) -> tuple[State | None, Iteration]:
-            carried = None if self.carry is None else self.carry.momentum(begins + begun, ratio)
-            return advance(self.law, self.length(ratio), state, self.options.solve_limit, carried)
-
-        made = in_parts(attempt, state, self.options.cut)
-        if made.failure is not None:
-            self.outcome = made.failure
-            return None
-        if made.cuts and self.options.energies:
-            self.cut_steps[begins] = [(self.length(ratio), x, y) for ratio, x, y in made.parts]
-        slipped = made.parts[0][2].corners.slipped
-        for _, _, after in made.parts[1:]:
-            slipped = tuple(map(sum, zip(slipped, after.corners.slipped, strict=True)))
-        state = made.parts[-1][2]
-        corners = state.corners
-        return state, Step(vector(state), corners.closed, made.solves, made.cuts, corners.state, slipped)
-
-
-def _result(stepping: Stepping, columns: Sequence[str], began: float, ready: float) -> UnilateralResult:
-    form, model, history = stepping.form, stepping.model, stepping.history
-    values = observed(form, history, base_directions(model.block, model.base)[2], columns)
-    for name, way in carried(model.motion, step_times(stepping.scheme, history.steps)).items():
-        if name in values:
-            values[name] = values[name] + way
-
-    def balance() -> dict[str, Array]:
-        ledger = Ledger(form, stepping.law, stepping.scheme, stepping.options.rule, model.motion)
-        return energies(ledger, history, stepping.start, stepping.cut_steps)
-
-    ended = perf_counter()
-    return UnilateralResult(
-        time=step_times(stepping.scheme, history.steps),
-        columns=values,
-        unknowns=len(form.unknowns),
-        nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=stepping.length.made + sum(isinstance(p, Phase) for p in stepping.phases.values()),
-        solves=sum(part.solves if isinstance(part, Step) else part.steps for part in history.parts),
-        notes=_notes(stepping),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
-        outcome=stepping.outcome,
-        balance=balance if stepping.options.energies else None,
-        history=history,
-        form=form,
-        law=stepping.law,
-        momentum=form.translation.T / (model.block.material.density * model.block.section.area * stepping.scheme.step),
-    )
-
-
-def _notes(stepping: Stepping) -> tuple[str, ...]:
-    """Say what was saved and how the history ended, if early."""
-    names, history = stepping.form.unknowns, stepping.history
-    saved = (f"both corners as one, unknowns {', '.join(names)}",) if len(names) < 6 else ()
-    ended = () if stepping.outcome == COMPLETED else (f"{stepping.outcome} at step {history.steps + 1}",)
-    made = "blocked between switches" if history.glides else "stepped"
-    return (*saved, f"{made}: contact opens and closes", *ended)

@@ -35,34 +35,6 @@ U_INDEX = UNKNOWNS.index("U")
 _SYMMETRIC = [3, 4, 1]  # ex, e2, w in gap_form.UNKNOWNS
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Places of a step's quantities in one vector v = (D, P, N, T, w)."""
-
-    unknowns: int  # n
-    contacts: int  # c
-
-    @property
-    def size(self) -> int:
-        """Length of v."""
-        return 2 * self.unknowns + 3 * self.contacts
-
-    @property
-    def D(self) -> slice:
-        """Unknowns."""
-        return slice(0, self.unknowns)
-
-    @property
-    def P(self) -> slice:
-        """Momentum dt M V."""
-        return slice(self.unknowns, 2 * self.unknowns)
-
-    def contact(self, kind: int) -> slice:
-        """Normal forces (0), shear forces (1) or gaps (2)."""
-        first = 2 * self.unknowns + kind * self.contacts
-        return slice(first, first + self.contacts)
-
-
 @dataclass(frozen=True, eq=False)
 class UnilateralForm:
     """M x'' + K0 x = F + multiplicity B' lambda in n unknowns, with c contacts: corners M, N or one for both."""
@@ -72,17 +44,12 @@ class UnilateralForm:
     K: Array  # (n,) diagonal of the elastic stiffness
     F: Array  # (n,) constant load
     translation: Array  # (n, 2) x of a rigid translation by 1 m in x and in y
-    B: Array  # (c, n) or, if glued, (2c, n): gaps, then slides in the coordinates of dda.contact.unilateral.SLIDES [m]
+    B: Array  # (c, n) or, if glued, (2c, n): gaps, then slides in the coordinates of dda.contact.kernel.Free [m]
     contacts: int  # c, 1 or 2
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
     observers: dict[str, Array]  # displacement column -> (n,) row over x - start
     slide: Array  # (2, n) displacement of M and N along the base by x
-
-    @property
-    def layout(self) -> Layout:
-        """Places of a step's quantities."""
-        return Layout(len(self.unknowns), self.contacts)
 
 
 def unilateral_form(

@@ -14,249 +14,568 @@ Two other rules keep the contact force out of f, the block's own, and put one fo
 with weight 1/2 for alpha, and into the momentum, with weight 1. With "implicit" it is the force at the end (Kane,
 Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and average acceleration
 of the block itself is then the midpoint rule, with F - K D0 for M A0.
+
+On a moving base unknowns count from it: x = D + R y with K0 R = 0, so that its displacement in the step enters as the
+momentum M R (y1 - y).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.conserving import conserving
-from dda.contact.glued import Free
-from dda.contact.iteration import Iteration, open_close
-from dda.contact.rules import find_states
-from dda.contact.unilateral import SLIDES, Corners, Unilateral, at_rest, slide_forces
+from dda.contact.kernel import (
+    FOUND,
+    Contacts,
+    Free,
+    Law,
+    Matrix,
+    Vector,
+    Work,
+    at_rest,
+    eliminate,
+    find_contacts,
+    law_of,
+    scale_of,
+    set_own_flexibility,
+    spring_energy,
+    work_for,
+    zeros,
+)
+from dda.contact.unilateral import OPEN, Unilateral
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
+    StepScheme,
     acceleration_corrector,
-    effective_matrix,
     initial_acceleration,
     momentum_balance,
     velocity_corrector,
 )
+from dda.stepping.driver import BaseRecord, Counts, base_at, driver
 
 Array = NDArray[np.float64]
-Vector = list[float]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
+RULES = (NEWMARK, IMPLICIT, CONSERVING)
+UNKNOWNS, CONTACTS = 6, 2  # room that there is for them
 
 
-class State(NamedTuple):
-    """Where the block is, in units of the scheme's own step dt."""
-
-    D: Vector  # unknowns of the form
-    P: Vector  # dt M V
-    f: Vector  # dt^2 M A
-    corners: Corners
-
-
-@dataclass(frozen=True, eq=False)
-class Factor:
-    """A positive definite matrix as L d L', the last unknowns (the gaps) eliminated last."""
-
-    L: list[Vector]  # rows below the diagonal
-    d: Vector
-
-    @classmethod
-    def of(cls, matrix: Array) -> Factor:
-        """Factorise a handful of unknowns."""
-        A = matrix.tolist()
-        n = len(A)
-        L: list[Vector] = [[] for _ in range(n)]
-        d: Vector = []
-        for i in range(n):
-            for j in range(i):
-                L[i].append((A[i][j] - sum(L[i][k] * d[k] * L[j][k] for k in range(j))) / d[j])
-            d.append(A[i][i] - sum(L[i][k] * L[i][k] * d[k] for k in range(i)))
-        return cls(L, d)
-
-    def solve(self, b: Vector) -> Vector:
-        """Return the solution for one right-hand side."""
-        x: Vector = []
-        for row, value in zip(self.L, b, strict=True):
-            for entry, known in zip(row, x, strict=False):
-                value -= entry * known
-            x.append(value)
-        x = [value / pivot for value, pivot in zip(x, self.d, strict=True)]
-        for i in range(len(x) - 1, 0, -1):
-            value = x[i]
-            for j, entry in enumerate(self.L[i]):
-                x[j] -= entry * value
-        return x
-
-
-@dataclass(frozen=True, eq=False)
-class StepLength:
+class StepLength(NamedTuple):
     """Everything of a step that depends on its length alone."""
 
-    ratio: float  # length h over the scheme's step
-    scheme: Scheme  # of this length, gg for this length
-    k: Vector  # h^2 K0
-    F: Vector  # h^2 F
-    factor: Factor  # of S0
-    push: list[Vector]  # multiplicity B', rows over the unknowns
-    pushed: list[Vector]  # weight h^2 S0^-1 multiplicity B': displacement of unit forces, rows over the unknowns
-    slides: list[Vector]  # rows of B along the base
-    C: list[Vector]  # flexibility of the contacts [m/N]
-    rule: str
-    gains: dict[tuple[int, ...], list[Vector]] = field(default_factory=dict)  # of contacts that stay closed
-
-    @classmethod
-    def of(cls, form: UnilateralForm, scheme: Scheme, ratio: float, rule: str) -> StepLength:
-        """Factorise S0 and find the flexibility of the contacts.
-
-        A shorter step keeps the share gg^ratio of the velocity, so that the steps of an interval keep gg.
-        """
-        own = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
-        h2 = own.step * own.step
-        k = h2 * form.K
-        factor = Factor.of(effective_matrix(own, form.M, np.diag(k)))
-        push = form.multiplicity * form.B.T
-        weight = (own.alpha if rule == NEWMARK else 0.5) * h2
-        pushed = weight * np.array([factor.solve(column) for column in push.T.tolist()]).T
-        slides = form.B[form.contacts :].tolist()
-        C = (form.B @ pushed).tolist()
-        F = (h2 * form.F).tolist()
-        return cls(ratio, own, k.tolist(), F, factor, push.tolist(), pushed.tolist(), slides, C, rule)
+    numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
+    k: Vector  # (n,) h^2 K0
+    F: Vector  # (n,) h^2 F
+    inverse: Matrix  # (n, n) of S0
+    pushed: Matrix  # (n, q) weight h^2 S0^-1 multiplicity B': displacement of unit forces
+    C: Matrix  # flexibility of the contacts in their own slides [m/N]
+    C_paired: Matrix  # that in mean and difference of two slides [m/N]
 
 
-def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> State:
+class BlockState(NamedTuple):
+    """Where the block is, in units of the scheme's own step dt."""
+
+    D: Vector  # (n,) unknowns of the form
+    P: Vector  # (n,) dt M V
+    f: Vector  # (n,) dt^2 M A
+    contacts: Contacts
+
+
+class Room(NamedTuple):
+    """Room for the vectors of a step."""
+
+    P: Vector  # (n,) P and f in units of this step's length, balance, and increments without contact forces
+    f: Vector
+    balance: Vector
+    x: Vector
+    forces: Vector  # (q,) N, then T in the coordinates of B
+    free: Free  # the contacts in a step without their forces
+    where: Vector  # (c,) slides s at the end of the step
+    A: Matrix  # (n, n)
+    right: Matrix
+    scale: Vector
+    base: Vector  # (2,) displacement of the base in the step [m]
+    first: Vector  # (n,) vectors of the account of energy
+    second: Vector
+
+
+class BlockEquations(NamedTuple):
+    """One block, its law and its scheme, as numbers."""
+
+    unknowns: int  # n
+    contacts: int  # c
+    forces: int  # q
+    law: Law
+    stiffness: float  # p [N/m]
+    rule: int  # place in RULES
+    limit: int  # solves of the open-close iteration before the states are searched
+    alpha: float
+    delta: float
+    gg: float
+    step: float  # [s]
+    M: Matrix  # (n, n)
+    K: Vector  # (n,)
+    load: Vector  # (n,) F
+    B: Matrix  # (q, n) gaps, then slides by the unknowns
+    multiplicity: float
+    translation: Matrix  # (n, 2)
+    carried: Matrix  # (n, 2) M times translation
+    moves: bool  # whether the base does
+    inverse_mass: Matrix  # (n, n)
+    whole: StepLength  # of a whole step
+    part: StepLength  # of the last part of a step
+    made: Vector  # (1,) step lengths made
+    room: Room
+    work: Work
+
+
+class BlockHistory(NamedTuple):
+    """States after every step, a row each."""
+
+    D: Array  # (steps, n)
+    P: Array  # (steps, n)
+    normal: Array  # (steps, c)
+    shear: Array  # (steps, c)
+    gap: Array  # (steps, c)
+    slipped: Array  # (steps, c) summed over the parts of a step
+    state: NDArray[np.int8]  # (steps, c)
+
+
+def block_equations(
+    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int, moves: bool
+) -> BlockEquations:
+    """Return the equations as numbers, with the matrices of a whole step."""
+    n, c, q = len(form.unknowns), form.contacts, len(form.B)
+    block = BlockEquations(
+        unknowns=n,
+        contacts=c,
+        forces=q,
+        law=law_of(law, slides=q > c),
+        stiffness=law.stiffness,
+        rule=RULES.index(rule),
+        limit=limit,
+        alpha=scheme.alpha,
+        delta=scheme.delta,
+        gg=scheme.gg,
+        step=scheme.step,
+        M=padded(form.M, UNKNOWNS, UNKNOWNS),
+        K=padded(form.K, UNKNOWNS),
+        load=padded(form.F, UNKNOWNS),
+        B=padded(form.B, 2 * CONTACTS, UNKNOWNS),
+        multiplicity=form.multiplicity,
+        translation=padded(form.translation, UNKNOWNS, 2),
+        carried=padded(form.M @ form.translation, UNKNOWNS, 2),
+        moves=moves,
+        inverse_mass=padded(np.asarray(np.linalg.inv(form.M), np.float64), UNKNOWNS, UNKNOWNS),
+        whole=empty_length(),
+        part=empty_length(),
+        made=np.zeros(1),
+        room=empty_room(),
+        work=work_for(CONTACTS),
+    )
+    set_length(block, 1.0, block.whole)
+    return block
+
+
+def empty_room() -> Room:
+    """Return room for the vectors of a step."""
+    n, c = UNKNOWNS, CONTACTS
+    free = [Free(*zeros(c, c, c))]
+    return Room(*(zeros(n, n, n, n, 2 * c) + free + zeros(c, (n, n), (n, n), n, 2, n, n)))
+
+
+def empty_length() -> StepLength:
+    """Return room for what belongs to a length."""
+    n, q = UNKNOWNS, 2 * CONTACTS
+    return StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q)))
+
+
+def padded(values: Array, *shape: int) -> Array:
+    """Return an array with zeros behind, so that all blocks are made of the same arrays."""
+    out = np.zeros(shape)
+    out[tuple(slice(0, size) for size in values.shape)] = values
+    return out
+
+
+def history_of(block: BlockEquations, steps: int) -> BlockHistory:
+    """Return room for so many steps."""
+    n, c = block.unknowns, block.contacts
+    shapes = [(steps, n)] * 2 + [(steps, c)] * 4
+    return BlockHistory(*(zeros(*shapes) + zeros((steps, c), dtype=np.int8)))
+
+
+def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap."""
     dt = scheme.step
-    if rule == CONSERVING:
-        scheme = replace(scheme, start="consistent")
     P = (dt * velocity) * (form.M @ form.translation[:, 1])
-    f = initial_acceleration(scheme, dt * dt * form.F)
-    return State(form.start.tolist(), P.tolist(), f.tolist(), at_rest(law, form.contacts))
+    F = dt * dt * form.F
+    f = F if rule == CONSERVING else initial_acceleration(scheme, F)
+    contacts = at_rest(np.full(form.contacts, law.gap), CONTACTS)
+    return BlockState(padded(form.start, UNKNOWNS), padded(P, UNKNOWNS), padded(f, UNKNOWNS), contacts)
+
+
+# ---- the step --------------------------------------------------------------------------------------------------------
+
+
+def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
+    """Write everything that depends on the length of a step: S0^-1, and the flexibility of the contacts.
+
+    A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
+    """
+    n = block.unknowns
+    q = block.forces
+    step = block.step * ratio
+    h2 = step * step
+    length.numbers[0] = ratio
+    length.numbers[1] = block.gg**ratio
+    length.numbers[2] = step
+    A = block.room.A
+    for i in range(n):
+        length.k[i] = h2 * block.K[i]
+        length.F[i] = h2 * block.load[i]
+        for j in range(n):
+            A[i][j] = block.M[i][j]
+            block.room.right[i][j] = 1.0 if i == j else 0.0
+        A[i][i] += block.alpha * length.k[i]
+        block.room.scale[i] = scale_of(A[i][i])
+    eliminate(A, block.room.right, block.room.scale, n, n)
+    weight = (block.alpha if block.rule == 0 else 0.5) * h2 * block.multiplicity
+    for i in range(n):
+        for j in range(n):
+            length.inverse[i][j] = block.room.right[i][j]
+        for j in range(q):
+            total = 0.0
+            for k in range(n):
+                total += block.room.right[i][k] * block.B[j][k]
+            length.pushed[i][j] = weight * total
+    for i in range(q):
+        for j in range(q):
+            total = 0.0
+            for k in range(n):
+                total += block.B[i][k] * length.pushed[k][j]
+            length.C_paired[i][j] = total
+            length.C[i][j] = total
+    if q == 4:
+        set_own_flexibility(length.C_paired, length.C)
+    block.made[0] += 1
+
+
+def length_of(block: BlockEquations, ratio: float) -> StepLength:
+    """Return what belongs to a length, over the scheme's step."""
+    if ratio == 1.0:
+        return block.whole
+    if block.part.numbers[0] != ratio:
+        set_length(block, ratio, block.part)
+    return block.part
 
 
 def advance(
-    law: Unilateral, length: StepLength, state: State, limit: int, carried: Vector | None = None
-) -> tuple[State | None, Iteration]:
-    """Return the state one step later, or None where the contacts have no single state; `state` stays as it is.
+    block: BlockEquations, state: BlockState, after: BlockState, base: BaseRecord, begun: float, ratio: float
+) -> tuple[int, int]:
+    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
 
-    Unknowns count from a moving base: x = D + R y with K0 R = 0, so that its way in the step enters as the momentum
-    M R (y1 - y), `carried`.
+    Parameters
+    ----------
+    begun, ratio
+        Where it begins and how long it is, in steps.
     """
-    D, P, f = state.D, state.P, state.f
-    if length.ratio != 1:
-        P, f = _scaled(P, length.ratio), _scaled(f, length.ratio * length.ratio)
-    scheme, k, F = length.scheme, length.k, length.F
-    b = [momentum_balance(scheme, *given) for given in zip(F, k, D, P, f, strict=True)]
-    x = length.factor.solve(b if carried is None else [own - way for own, way in zip(b, carried, strict=True)])
-    free = _free(length, D, x)
-    found = (
-        conserving(law, state.corners, free)
-        if length.rule == CONSERVING
-        else find_states(law, state.corners, free, limit)
-    )
-    if found.corners is None:
-        return None, found
-    D1, P1, f1 = _accepted(length, (D, P, f), x, found.corners, found.mean or found.corners.normal)
-    after = _referred(length, D1, state.corners, found.corners) if length.slides else found.corners
-    if length.ratio != 1:
-        P1, f1 = _scaled(P1, 1 / length.ratio), _scaled(f1, 1 / (length.ratio * length.ratio))
-    return State(D1, P1, f1, after), found
+    length = length_of(block, ratio)
+    scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
+    free_step(block, length, scheme, state, base, begun, ratio)
+    before = state.contacts
+    free = block.room.free
+    if block.rule == 2:
+        outcome, solves = conserving(block.stiffness, before, free, length, after.contacts, block.work)
+    else:
+        outcome, solves = find_contacts(block.law, before, free, length, block.limit, after.contacts, block.work)
+    if outcome != FOUND:
+        return outcome, solves
+    accept(block, length, scheme, state, after, ratio)
+    if block.law.shears:
+        refer(block, state.contacts, after)
+    return FOUND, solves
 
 
-def _scaled(values: Vector, factor: float) -> Vector:
-    return [factor * value for value in values]
+def free_step(
+    block: BlockEquations,
+    length: StepLength,
+    scheme: StepScheme,
+    state: BlockState,
+    base: BaseRecord,
+    begun: float,
+    ratio: float,
+) -> None:
+    """Write the increments of a step without contact forces, and what it does to the contacts."""
+    own = block.room
+    n = block.unknowns
+    c = block.contacts
+    for i in range(n):
+        own.P[i] = ratio * state.P[i]
+        own.f[i] = ratio * ratio * state.f[i]
+        own.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], own.P[i], own.f[i])
+    if block.moves:
+        base_displacement(block, base, begun, ratio)
+        for i in range(n):
+            own.balance[i] -= block.carried[i][0] * own.base[0] + block.carried[i][1] * own.base[1]
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            total += length.inverse[i][j] * own.balance[j]
+        own.x[i] = total
+    for i in range(c):  # the gaps are the last unknowns
+        own.free.gap[i] = state.D[n - c + i] + own.x[n - c + i]
+    if block.law.shears:
+        for i in range(c):
+            total = 0.0
+            for j in range(n):
+                total += block.B[c + i][j] * own.x[j]
+            own.free.paired[i] = total
+        own_slides(own.free.paired, own.free.slide, c)
 
 
-def _free(length: StepLength, D: Vector, x: Vector) -> Free:
-    """Return what the step does to the contacts without their forces; the gaps are the last unknowns."""
-    gaps = len(length.C) - len(length.slides)
-    slide = [sum(b * xi for b, xi in zip(row, x, strict=True)) for row in length.slides]
-    return Free([d + xi for d, xi in zip(D[-gaps:], x[-gaps:], strict=True)], slide, length.C, length.gains)
+def own_slides(paired: Vector, own: Vector, count: int) -> None:
+    """Write the slides of one contact, or of two from their mean and difference."""
+    own[0] = paired[0]
+    if count == 2:
+        own[0] = paired[0] - paired[1] / 2
+        own[1] = paired[0] + paired[1] / 2
 
 
-def _accepted(
-    length: StepLength, before: tuple[Vector, Vector, Vector], x: Vector, corners: Corners, normal: Sequence[float]
-) -> tuple[Vector, Vector, Vector]:
-    """Return (D, P, f) at the end of the step under the contact forces."""
-    D, P, f = before
-    scheme, h2 = length.scheme, length.scheme.step * length.scheme.step
-    D1 = [d + xi for d, xi in zip(D, x, strict=True)]
-    pressed = [0.0] * len(D)
-    if any(normal) or any(corners.shear):
-        forces = [*normal, *slide_forces(corners.shear)] if length.slides else normal
-        moved = (sum(g * y for g, y in zip(row, forces, strict=True)) for row in length.pushed)
-        D1 = [d + by for d, by in zip(D1, moved, strict=True)]
-        pressed = [h2 * sum(b * y for b, y in zip(row, forces, strict=True)) for row in length.push]
-    D1[-len(corners.gap) :] = corners.gap
-    f1 = [acceleration_corrector(*given) for given in zip(length.F, length.k, D1, strict=True)]
-    if length.rule == NEWMARK:
-        f1 = [own + contact for own, contact in zip(f1, pressed, strict=True)]
-    P1 = [velocity_corrector(scheme, *given) for given in zip(P, f, f1, strict=True)]
-    if length.rule != NEWMARK:
-        P1 = [own + contact for own, contact in zip(P1, pressed, strict=True)]
-    return D1, P1, f1
+def base_displacement(block: BlockEquations, base: BaseRecord, begun: float, ratio: float) -> None:
+    """Write how far the base moves in a part of a step."""
+    for axis in range(2):
+        start = base_at(base, axis, begun * block.step)
+        block.room.base[axis] = base_at(base, axis, (begun + ratio) * block.step) - start
 
 
-def _referred(length: StepLength, D: Vector, before: Corners, after: Corners) -> Corners:
-    """Return the corners with their references; where one stays closed, U in D is set from it.
+def accept(
+    block: BlockEquations, length: StepLength, scheme: StepScheme, state: BlockState, after: BlockState, ratio: float
+) -> None:
+    """Write (D, P, f) at the end of the step under the contact forces."""
+    own = block.room
+    n = block.unknowns
+    c = block.contacts
+    contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
+    h2 = length.numbers[2] * length.numbers[2]
+    for i in range(n):
+        total = 0.0
+        for j in range(block.forces):
+            total += length.pushed[i][j] * own.forces[j]
+        after.D[i] = state.D[i] + own.x[i] + total
+    for i in range(c):
+        after.D[n - c + i] = after.contacts.gap[i]
+    for i in range(n):
+        pressed = h2 * pushed_by(block, i)
+        f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
+        if block.rule == 0:
+            f1 += pressed
+        P1 = velocity_corrector(scheme, own.P[i], own.f[i], f1)
+        if block.rule != 0:
+            P1 += pressed
+        after.P[i] = P1 / ratio
+        after.f[i] = f1 / (ratio * ratio)
+
+
+def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None:
+    """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
+    own = block.room
+    c = block.contacts
+    for i in range(c):
+        own.forces[i] = normal[i]
+    if not block.law.shears:
+        return
+    own.forces[c] = shear[0]
+    if c == 2:
+        own.forces[2] = shear[0] + shear[1]
+        own.forces[3] = (shear[1] - shear[0]) / 2
+
+
+def pushed_by(block: BlockEquations, i: int) -> float:
+    """Return an entry of multiplicity B' lambda, with the forces of `contact_forces` [N]."""
+    total = 0.0
+    for j in range(block.forces):
+        total += block.B[j][i] * block.room.forces[j]
+    return block.multiplicity * total
+
+
+def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:
+    """Write the references; where a corner stays closed and does not slip, U in D is set from its own.
 
     The sum of increments that U was may hold the rounding of a much larger motion without forces.
     """
-    local = [sum(b * d for b, d in zip(row, D, strict=True)) for row in length.slides]
-    stays = [was and now for was, now in zip(before.closed, after.closed, strict=True)]
-    if after.slipped:
-        stays = [kept and not way for kept, way in zip(stays, after.slipped, strict=True)]
-    where = [sum(q * y for q, y in zip(row, local, strict=True)) for row in SLIDES[len(stays)]]
-    if len(stays) == 2 and any(stays):
-        glued = zip(before.reference, after.stretch, where, stays, strict=True)
-        held = [r + stretch - s for r, stretch, s, kept in glued if kept]
-        shift = sum(held) / len(held)
-        D[U_INDEX] += shift
-        where = [s + shift for s in where]
-    given = zip(stays, before.reference, where, after.stretch, strict=True)
-    return after._replace(reference=tuple(r if kept else s - stretch for kept, r, s, stretch in given))
+    own = block.room
+    c = block.contacts
+    contacts = after.contacts
+    for i in range(c):
+        total = 0.0
+        for j in range(block.unknowns):
+            total += block.B[c + i][j] * after.D[j]
+        own.free.paired[i] = total
+    own_slides(own.free.paired, own.where, c)
+    staying = 0
+    apart = 0.0
+    for i in range(c):
+        if stays(before, contacts, i):
+            staying += 1
+            apart += before.reference[i] + contacts.stretch[i] - own.where[i]
+    if c == 2 and staying > 0:
+        after.D[U_INDEX] += apart / staying
+        for i in range(c):
+            own.where[i] += apart / staying
+    for i in range(c):
+        if stays(before, contacts, i):
+            contacts.reference[i] = before.reference[i]
+        else:
+            contacts.reference[i] = own.where[i] - contacts.stretch[i]
 
 
-class Jump:
-    """A whole step of frictionless contacts as matrices over v = (D, P, N, T, w), after any step but the first.
+def stays(before: Contacts, after: Contacts, i: int) -> bool:
+    """Tell whether a contact is closed before and after the step and does not slip in it."""
+    return bool(before.state[i] != OPEN and after.state[i] != OPEN and after.slipped[i] == 0)
 
-    It is `advance` with f = F - k D + multiplicity h^2 B' N put in: for the single steps in which contacts switch.
-    """
 
-    def __init__(self, form: UnilateralForm, law: Unilateral, length: StepLength) -> None:
-        self.law, self.length = law, length
-        place, scheme = form.layout, length.scheme
-        n, c, h2 = place.unknowns, place.contacts, scheme.step * scheme.step
-        k, F = np.diag(length.k), np.array(length.F)
-        push, pushed = h2 * np.array(length.push), np.array(length.pushed)
-        D, P, N = (np.eye(place.size)[part] for part in (place.D, place.P, place.contact(0)))
-        f, own = push @ N - k @ D, -k @ D  # both without F
-        inverse = np.array([length.factor.solve(column) for column in np.eye(n).tolist()]).T
-        ahead = D + inverse @ (scheme.gg * P + (0.5 - scheme.alpha) * f + scheme.alpha * own)
-        fallen = inverse @ ((0.5 - scheme.alpha) * F + scheme.alpha * F)
-        self.rows, self.constant = np.zeros((place.size, place.size)), np.zeros(place.size)
-        self.forced = np.zeros((place.size, c))
-        self.rows[place.D], self.constant[place.D], self.forced[place.D] = ahead, fallen, pushed
-        self.rows[place.P] = scheme.gg * P + (1 - scheme.delta) * f - scheme.delta * (k @ ahead)
-        self.constant[place.P] = F - scheme.delta * (k @ fallen)
-        self.forced[place.P] = scheme.delta * (push - k @ pushed)
-        gaps, w = slice(n - c, n), place.contact(2)
-        self.rows[w], self.constant[w], self.forced[w] = ahead[gaps], fallen[gaps], pushed[gaps]
-        self.forced[place.contact(0)] = np.eye(c)
-        self.forced = self.forced.T.copy()
-        self.gaps, self.unknown_gaps = w.start, n - c
+# ---- what is kept ----------------------------------------------------------------------------------------------------
 
-    def step(self, v: Array, closed: tuple[bool, ...], limit: int) -> tuple[Array, Iteration]:
-        """Return v one step later and the contacts; where there are none v is what it would be without forces."""
-        nothing = (0.0,) * len(closed)
-        after = self.rows @ v + self.constant
-        free = Free(after[self.gaps :].tolist(), (), self.length.C, {})
-        found = open_close(self.law, Corners(closed, nothing, nothing, nothing, nothing, nothing), free, limit)
-        if found.corners is None:
-            return after, found
-        for N, moved in zip(found.corners.normal, self.forced, strict=True):
-            if N:
-                after += N * moved
-        for i, w in enumerate(found.corners.gap):  # of a closed corner -N/p, no sum
-            after[self.gaps + i] = after[self.unknown_gaps + i] = w
-        return after, found
+
+def account(
+    block: BlockEquations,
+    state: BlockState,
+    after: BlockState,
+    base: BaseRecord,
+    begun: float,
+    ratio: float,
+    history: BlockHistory,
+    counts: Counts,
+    number: int,
+) -> None:
+    """Add what an accepted part of a step slips and loses."""
+    for i in range(block.contacts):
+        history.slipped[number, i] += after.contacts.slipped[i]
+    if len(counts.losses) > 0:
+        add_losses(block, state, after, base, begun, ratio, counts.losses, number)
+
+
+def keep(block: BlockEquations, state: BlockState, history: BlockHistory, number: int) -> bool:
+    """Write the state at the end of a step; tell whether it is finite."""
+    total = 0.0
+    for i in range(block.unknowns):
+        history.D[number, i] = state.D[i]
+        history.P[number, i] = state.P[i]
+        total += state.D[i]
+    contacts = state.contacts
+    for i in range(block.contacts):
+        history.normal[number, i] = contacts.normal[i]
+        history.shear[number, i] = contacts.shear[i]
+        history.gap[number, i] = contacts.gap[i]
+        history.state[number, i] = contacts.state[i]
+    return math.isfinite(total)
+
+
+def add_losses(
+    block: BlockEquations,
+    state: BlockState,
+    after: BlockState,
+    base: BaseRecord,
+    begun: float,
+    ratio: float,
+    losses: Array,
+    number: int,
+) -> None:
+    """Add the losses of a part of a step, as `dda.one_block.unilateral_energy` tells [J]."""
+    own = block.room
+    n = block.unknowns
+    c = block.contacts
+    dt = block.step
+    length = length_of(block, ratio)
+    gg = length.numbers[1]
+    h2 = length.numbers[2] * length.numbers[2]
+    late = block.delta if block.rule == 0 else 1.0
+    over = block.delta - 0.5
+    algorithmic = 0.0
+    given = 0.0
+    if block.moves:
+        base_displacement(block, base, begun, ratio)
+    contact_forces(block, state.contacts.normal, state.contacts.shear)
+    for i in range(n):
+        moved = after.D[i] - state.D[i]
+        carried = 0.0
+        if block.moves:
+            carried = block.translation[i][0] * own.base[0] + block.translation[i][1] * own.base[1]
+        pressed = pushed_by(block, i)
+        algorithmic += over * moved * moved * block.K[i]
+        if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+            missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
+            if block.rule == 0:
+                missing += h2 * pressed
+            algorithmic += (1 - block.delta) * (moved + carried) * missing / h2
+        given += (1 - late) * pressed * carried
+    contact_forces(block, after.contacts.normal, after.contacts.shear)
+    if block.moves:
+        for i in range(n):
+            carried = block.translation[i][0] * own.base[0] + block.translation[i][1] * own.base[1]
+            given += late * pushed_by(block, i) * carried
+    share = block.alpha - block.delta / 2
+    if share != 0:
+        for i in range(n):
+            own.first[i] = (after.f[i] - state.f[i]) / dt / dt
+        stored = kinetic(block, after.f) / dt / dt / dt / dt - kinetic(block, state.f) / dt / dt / dt / dt
+        algorithmic += share * h2 * (stored + 2 * over * kinetic(block, own.first))
+    damped = (1 - gg * gg) * kinetic(block, state.P) / dt / dt
+    switching = 0.0
+    friction = 0.0
+    if block.rule != 2:
+        slides_of(block, state, after)
+        for i in range(c):
+            rubbed = 0.0 - block.multiplicity * after.contacts.shear[i] * after.contacts.slipped[i]
+            lost = contact_loss(block, state.contacts, after.contacts, late, i) - rubbed
+            friction += rubbed
+            if (state.contacts.state[i] == OPEN) == (after.contacts.state[i] == OPEN):
+                algorithmic += lost
+            else:
+                switching += lost
+    losses[number, 0] += algorithmic
+    losses[number, 1] += damped
+    losses[number, 2] += switching
+    losses[number, 3] += friction
+    losses[number, 4] += given
+
+
+def kinetic(block: BlockEquations, momentum: Vector) -> float:
+    """Return momentum' M^-1 momentum / 2."""
+    n = block.unknowns
+    total = 0.0
+    for i in range(n):
+        for j in range(n):
+            total += momentum[i] * block.inverse_mass[i][j] * momentum[j]
+    return total / 2
+
+
+def slides_of(block: BlockEquations, state: BlockState, after: BlockState) -> None:
+    """Write how far the contacts slide in a part of a step."""
+    own = block.room
+    c = block.contacts
+    for i in range(c):
+        own.where[i] = 0.0
+        own.free.paired[i] = 0.0
+    if not block.law.shears:
+        return
+    for i in range(c):
+        for j in range(block.unknowns):
+            own.free.paired[i] += block.B[c + i][j] * (after.D[j] - state.D[j])
+    own_slides(own.free.paired, own.where, c)
+
+
+def contact_loss(block: BlockEquations, before: Contacts, after: Contacts, late: float, i: int) -> float:
+    """Return what the springs of a contact lose beside the work that it does on the block [J]."""
+    N = (1 - late) * before.normal[i] + late * after.normal[i]
+    T = (1 - late) * before.shear[i] + late * after.shear[i]
+    work = N * (after.gap[i] - before.gap[i]) + T * block.room.where[i]
+    lost = spring_energy(block.law, before, i) - spring_energy(block.law, after, i) - work
+    return float(block.multiplicity * lost)
+
+
+make_steps = driver(advance, account, keep)

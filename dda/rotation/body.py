@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.kernel import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.block import Block
 
@@ -43,30 +44,67 @@ def turned(angle: float) -> Array:
     return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
 
-def quarter(Q: Array) -> Array:
-    """Return W Q: Q, turned on by a right angle."""
-    return np.array([-Q[1], Q[0]])
-
-
 class Turn(NamedTuple):
     """What a step does to Q."""
 
-    end: Array  # Q1
-    chord: Array  # (Q1 - Q0) / r
-    mean: Array  # (Q1 + Q0) / 2
+    end: Matrix  # Q1
+    chord: Matrix  # (Q1 - Q0) / r
+    mean: Matrix  # (Q1 + Q0) / 2
 
 
-def turn(Q: Array, r: float, rotation: str) -> Turn:
-    """Return the turn of a step by r [rad]."""
-    if rotation == FIRST_ORDER:
-        chord = quarter(Q)
-        return Turn(Q + r * chord, chord, Q + r / 2 * chord)
-    c, s = math.cos(r), math.sin(r)
-    half = math.sin(r / 2) / (r / 2) if r else 1.0
-    middle = half * math.cos(r / 2), -half * math.sin(r / 2)  # (R - I) / r = half W R(r/2)
-    chord = np.array([[middle[1], -middle[0]], [middle[0], middle[1]]])
-    R = np.array([[c, -s], [s, c]])
-    return Turn(R @ Q, chord @ Q, (R @ Q + Q) / 2)
+def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
+    """Write the turn of a step by r [rad], exact or of first order."""
+    if not math.isfinite(r):
+        r = math.nan
+    if not exact:
+        for j in range(2):
+            out.chord[0][j] = -Q[1][j]
+            out.chord[1][j] = Q[0][j]
+            for i in range(2):
+                out.end[i][j] = Q[i][j] + r * out.chord[i][j]
+                out.mean[i][j] = Q[i][j] + r / 2 * out.chord[i][j]
+        return
+    c = math.cos(r)
+    s = math.sin(r)
+    half = math.sin(r / 2) / (r / 2) if r != 0 else 1.0
+    along = -half * math.sin(r / 2)  # (R - I) / r = half W R(r/2)
+    across = half * math.cos(r / 2)
+    for j in range(2):
+        out.end[0][j] = c * Q[0][j] - s * Q[1][j]
+        out.end[1][j] = s * Q[0][j] + c * Q[1][j]
+        out.chord[0][j] = along * Q[0][j] - across * Q[1][j]
+        out.chord[1][j] = across * Q[0][j] + along * Q[1][j]
+        for i in range(2):
+            out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2
+
+
+def place(c: Vector, Q: Matrix, e: Vector, x: float, y: float) -> tuple[float, float]:
+    """Return where a point of the unstrained outline is [m]."""
+    across = x + (x * e[0] + y * e[2] / 2)
+    up = y + (x * e[2] / 2 + y * e[1])
+    return c[0] + (across * Q[0][0] + up * Q[0][1]), c[1] + (across * Q[1][0] + up * Q[1][1])
+
+
+def directions(spin: Matrix, stretch: Matrix, e: Vector, x: float, y: float, across: Vector, up: Vector) -> None:
+    """Write B of a point of the unstrained outline, its rows of x and of y.
+
+    Parameters
+    ----------
+    spin, stretch
+        The matrices that stand for dQ/dr and Q.
+    e
+        Strain with which the point turns.
+    """
+    turning_x = x + (x * e[0] + y * e[2] / 2)
+    turning_y = y + (x * e[2] / 2 + y * e[1])
+    for axis in range(2):
+        row = across if axis == 0 else up
+        row[0] = 1.0 - axis
+        row[1] = 0.0 + axis
+        row[2] = turning_x * spin[axis][0] + turning_y * spin[axis][1]
+        row[3] = stretch[axis][0] * x
+        row[4] = stretch[axis][1] * y
+        row[5] = stretch[axis][0] / 2 * y + stretch[axis][1] / 2 * x
 
 
 def strain_matrix(e: Array) -> Array:
@@ -78,28 +116,6 @@ def positions(c: Array, Q: Array, e: Array, xi: Array) -> Array:
     """Return the points of the block, (n, 2) [m]."""
     placed: Array = c + (xi + xi @ strain_matrix(e)) @ Q.T
     return placed
-
-
-def directions(spin: Array, stretch: Array, e: Array, xi: Array) -> Array:
-    """Return B of n points, (2n, 6), the rows of y before those of x.
-
-    Parameters
-    ----------
-    spin, stretch
-        The matrices that stand for dQ/dr and Q.
-    e
-        Strain with which the points turn.
-    """
-    n = len(xi)
-    B = np.zeros((2 * n, 6))
-    B[:n, 1] = B[n:, 0] = 1.0
-    turning = (xi + xi @ strain_matrix(e)) @ spin.T
-    x, y = xi[:, 0], xi[:, 1]
-    for rows, axis in ((slice(0, n), 1), (slice(n, None), 0)):
-        a, b = stretch[axis].tolist()
-        B[rows, 2] = turning[:, axis]
-        B[rows, 3], B[rows, 4], B[rows, 5] = a * x, b * y, (a / 2) * y + (b / 2) * x
-    return B
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,13 +139,6 @@ class Body:
         """Components along and across the base from those of the block's coordinates, (2, 2)."""
         tx, ty = self.tangent
         return np.array([[tx, ty], [-ty, tx]])
-
-    def grown(self, Q: Array) -> tuple[Array, Array]:
-        """Return M and K of an outline whose area has grown by det Q, of the same density and moduli."""
-        growth = float(Q[0, 0] * Q[1, 1] - Q[0, 1] * Q[1, 0])
-        M = self.M * growth
-        M[2:, 2:] *= growth
-        return M, growth * self.K
 
 
 def body(block: Block, base: int) -> Body:

@@ -13,87 +13,59 @@ A base that moves gives N dy + T dx, which counts as energy of the loads.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.rotation.body import EXACT, positions
-from dda.rotation.step import Part, Setting
+from dda.one_block.unilateral_energy import ENERGIES
+from dda.rotation.body import EXACT
+from dda.rotation.step import RollingHistory, RollingState, Setting
 
 Array = NDArray[np.float64]
-STORED = ("kinetic", "strain", "springs", "load")
-LOST = ("algorithmic", "kinetic damping", "switching", "friction")
-ENERGIES = STORED + LOST
 
 
-class Ledger:
-    """What the parts of a history keep and lose; the first part is the state at t = 0."""
+def with_start(history: RollingHistory, start: RollingState) -> RollingHistory:
+    """Return the states of a history behind that at t = 0."""
+    n = history.normal.shape[1]
+    own = start.contacts
+    first = [np.ravel(part)[None] for part in start[:5]] + [np.zeros((1, 1))]
+    first += [np.asarray(part)[None, :n] for part in (own.normal, own.shear, own.gap, own.slipped, own.state)]
+    both: list[Any] = [np.concatenate([row, rows]) for row, rows in zip(first, history, strict=True)]
+    return RollingHistory(*both)
 
-    def __init__(self, setting: Setting, parts: Sequence[Part]) -> None:
-        self.setting = setting
-        states = [part.state for part in parts]
-        self.delta, self.gg = np.array([(part.scheme.delta, part.scheme.gg) for part in parts[1:]]).reshape(-1, 2).T
-        self.c, self.e, self.V = (np.array([getattr(s, name) for s in states]) for name in ("c", "e", "V"))
-        self.base = np.array([part.base for part in parts])
-        own = setting.body.xi
-        self.corners = np.array([positions(s.c, s.Q, s.e, own) for s in states])
-        self.loaded = np.array([positions(s.c, s.Q, s.e, setting.where) for s in states])
-        names = ("gap", "normal", "shear", "slipped")
-        self.closed = np.array([s.touch.closed for s in states])
-        self.points: dict[str, Array] = {name: np.array([getattr(s.touch, name) for s in states]) for name in names}
-        grown = np.array([1.0 if setting.rotation == EXACT else float(np.linalg.det(s.Q)) for s in states])
-        self.mass, self.growth = setting.body.M[0, 0] * grown, grown
 
-    def energies(self, ends: Sequence[int]) -> dict[str, Array]:
-        """Return the energies [J] at the ends of steps, the losses summed from t = 0 on."""
-        kept = np.column_stack([self._kinetic(), self._strain(), self._springs().sum(axis=1), self._load()])
-        lost = np.cumsum(self._losses(kept.sum(axis=1)), axis=0)
-        at = np.array(ends, dtype=int) - 1
-        return dict(zip(ENERGIES, np.column_stack([kept[1:], lost])[at].T, strict=True))
+def outlines(history: RollingHistory, points: Array) -> Array:
+    """Return points of the block after every step, (steps, points, 2) [m]."""
+    e, Q = history.e, history.Q.reshape(-1, 2, 2)
+    E = np.array([[e[:, 0], e[:, 2] / 2], [e[:, 2] / 2, e[:, 1]]])
+    local = points + np.einsum("mi,ijk->kmj", points, E)
+    placed: Array = history.c[:, None] + np.einsum("kij,kmj->kmi", Q, local)
+    return placed
 
-    def _kinetic(self) -> Array:
-        M, V, g = self.setting.body.M, self.V, self.growth
-        moving = g * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
-        turning = g * g * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
-        return np.asarray((moving + turning) / 2, dtype=np.float64)
 
-    def _strain(self) -> Array:
-        strain: Array = self.growth * np.einsum("ki,ij,kj->k", self.e, self.setting.body.K, self.e) / 2
-        return strain
+def energies(setting: Setting, start: RollingState, history: RollingHistory, losses: Array) -> dict[str, Array]:
+    """Return the energies [J] after every step, the losses summed from t = 0 on.
 
-    def _springs(self) -> Array:
-        """Return the energy of the springs of every corner, (parts + 1, n)."""
-        law, N, T = self.setting.law, self.points["normal"], self.points["shear"]
-        energy: Array = (N**2 * law.compliance + (T**2 / law.shear if law.shear else 0.0)) / 2
-        return energy
-
-    def _load(self) -> Array:
-        """Return the potential of weight and dead loads, less what the base gave."""
-        moved = self.loaded - self.loaded[0]
-        potential: Array = -self.mass * ((self.c - self.c[0]) @ self.setting.weight)
-        potential -= np.einsum("kma,am->k", moved, self.setting.dead[::-1])
-        N, T = (self._during(name).sum(axis=1) for name in ("normal", "shear"))
-        given = T * np.diff(self.base[:, 0]) + N * np.diff(self.base[:, 1])
-        potential[1:] -= np.cumsum(given)
-        return potential
-
-    def _during(self, name: str) -> Array:
-        """Return (1 - delta) times the forces before a part and delta times those after it, (parts, n)."""
-        force: Array = self.points[name]
-        late: Array = self.delta[:, None]
-        during: Array = (1 - late) * force[:-1] + late * force[1:]
-        return during
-
-    def _losses(self, energy: Array) -> Array:
-        """Return what every part loses, in the order of `LOST`."""
-        damped = (1 - self.gg**2) * self._kinetic()[:-1]
-        w = self.points["gap"]
-        s = self.corners[:, :, 0] - self.base[:, :1]
-        U = self._springs()
-        work = self._during("normal") * np.diff(w, axis=0) + self._during("shear") * np.diff(s, axis=0)
-        switched = self.closed[1:] != self.closed[:-1]
-        rubbed = np.abs(self.points["shear"] * self.points["slipped"])[1:]
-        switching = np.sum((U[:-1] - U[1:] - work - rubbed) * switched, axis=1)
-        friction = np.sum(rubbed, axis=1)
-        return np.column_stack([-np.diff(energy) - damped - switching - friction, damped, switching, friction])
+    Parameters
+    ----------
+    losses : (steps, 5) array
+        Those of `dda.stepping.driver.Counts`; the algorithmic ones follow from the balance.
+    """
+    states, law, M = with_start(history, start), setting.law, setting.body.M
+    growth = np.ones(len(states.c)) if setting.rotation == EXACT else np.linalg.det(states.Q.reshape(-1, 2, 2))
+    V = states.V
+    moving = growth * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
+    turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
+    springs = states.normal**2 * law.compliance + (states.shear**2 / law.shear if law.shear else 0.0)
+    load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ setting.weight)
+    loaded = outlines(states, setting.where)
+    load -= np.einsum("kma,ma->k", loaded - loaded[0], setting.dead)
+    load[1:] -= losses[:, 4]
+    strain = growth * np.einsum("ki,ij,kj->k", states.e, setting.body.K, states.e) / 2
+    stored = ((moving + turning) / 2, strain, springs.sum(axis=1) / 2, load)
+    total = np.sum(stored, axis=0)
+    damped, switching, friction = losses[:, 1:4].T
+    algorithmic = total[0] - total[1:] - damped - switching - friction
+    values = (*(part[1:] for part in stored), algorithmic, damped, switching, friction)
+    return dict(zip(ENERGIES, values, strict=True))

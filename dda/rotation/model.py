@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.kernel import at_rest
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
-from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, positions, quarter, turned
-from dda.rotation.step import Setting, State, Touch
+from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, positions, turned
+from dda.rotation.step import RollingState, Setting, room_for
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
@@ -64,17 +65,17 @@ class RollingModel:
         return Setting(self.body, self.contact, weight, where, dead, options.rotation, options.solve_limit)
 
     def _dead(self) -> tuple[Array, Array]:
-        """Return where the resultants of pressure and traction act, and these, y before x as in `directions`."""
+        """Return where the resultants of pressure and traction act, and these, along and across the base."""
         load, (start, end) = self.load, self.block.edge(self.top)
         pressed = pressed_part(start, end, load.eccentricity)
         given = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
-        acting = [(ends, size, way) for ends, size, way in given if size]
+        acting = [(ends, size, direction) for ends, size, direction in given if size]
         local = self.body.to_base
         where = [local @ (np.mean(ends, axis=0) - self.block.section.centroid) for ends, _, _ in acting]
-        forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ way) for ends, size, way in acting]
-        return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2).T[::-1].copy()
+        forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ along) for ends, size, along in acting]
+        return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2)
 
-    def start(self, setting: Setting, scheme: Scheme) -> State:
+    def start(self, setting: Setting, scheme: Scheme) -> RollingState:
         """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
         own, Q, e = self.body, turned(self.tilt), np.zeros(3)
         upright = own.centroid + own.xi[own.base[0 if self.tilt >= 0 else 1]]
@@ -86,10 +87,15 @@ class RollingModel:
         A: Array = np.zeros(6)
         V[:2], V[2] = own.to_base @ self.velocity, self.spin
         if scheme.start == "consistent":
-            push = directions(quarter(Q), Q, e, setting.where).T @ setting.dead.ravel()
-            push[:2] += own.M[0, 0] * setting.weight
+            push = np.zeros(6)
+            push[:2] = own.M[0, 0] * setting.weight
+            spin = np.array([-Q[1], Q[0]])
+            across, up = np.zeros((2, 6))
+            for (x, y), force in zip(setting.where, setting.dead, strict=True):
+                directions(spin, Q, e, x, y, across, up)
+                push += force[0] * across + force[1] * up
             A[:] = np.linalg.solve(own.M, push)
-        return State(c, Q, 0.0, e, V, A, Touch.apart(gap))
+        return RollingState(c, Q, np.zeros(1), e, V, A, at_rest(gap, room_for(len(gap))))
 
 
 @dataclass(frozen=True)

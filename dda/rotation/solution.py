@@ -2,70 +2,35 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.model.load import BaseMotion
+from dda.one_block.contact_result import early_end
 from dda.one_block.solution import check_damping, check_request, step_times
-from dda.one_block.unilateral import COMPLETED, OVERFLOW, check_scheme
+from dda.one_block.unilateral import check_scheme
+from dda.rotation.energy import energies
 from dda.rotation.model import RollingModel, RollingOptions
-from dda.rotation.result import RollingResult, observed
-from dda.rotation.step import Made, Part, advance
-from dda.scheme.cutting import in_parts
+from dda.rotation.result import RollingResult, observed, parts_of
+from dda.rotation.step import RollingHistory, history_of, make_steps, rolling_equations
 from dda.scheme.newmark import Scheme
+from dda.stepping.compiled import run_loop
+from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
 
 Array = NDArray[np.float64]
 
+PLAIN_STEP = 4e-4  # seconds of plain Python for each step
 
-class Rolling:
-    """The steps of one block."""
 
-    def __init__(self, model: RollingModel, scheme: Scheme, options: RollingOptions) -> None:
-        self.model, self.scheme, self.options = model, scheme, options
-        self.setting = model.setting(options)
-        self.parts = [Part(model.start(self.setting, scheme), scheme, self._base(0.0))]  # after that at t = 0
-        self.ends: list[int] = []  # part with which each step ends
-        self.solves: list[int] = []
-        self.cuts: list[int] = []
-        self.outcome = COMPLETED
-
-    def _base(self, time: float) -> Array:
-        """Return the displacement of the base along and away from it [m]."""
-        motion = self.model.load.motion
-        if motion is None:
-            return np.zeros(2)
-        moved: Array = self.model.body.to_base @ motion.at([time])[0]
-        return moved
-
-    def run(self, steps: int) -> None:
-        """Make the steps that are reached; `outcome` says how it ended."""
-        for number in range(steps):
-            made = in_parts(partial(self._attempt, number), self.parts[-1], self.options.cut)
-            if made.failure is not None:
-                self.outcome = made.failure
-                return
-            parts = [after for _, _, after in made.parts]
-            if not math.isfinite(float(np.sum(parts[-1].state.V) + np.sum(parts[-1].state.c))):
-                self.outcome = OVERFLOW
-                return
-            self.parts += parts
-            self.ends.append(len(self.parts) - 1)
-            self.solves.append(made.solves)
-            self.cuts.append(made.cuts)
-
-    def _attempt(self, number: int, last: Part, begun: float, ratio: float) -> tuple[Part | None, Made]:
-        """Return a part of step `number`, where it begins and how long it is in steps; None where it has no state."""
-        own = self.scheme
-        if ratio != 1:
-            own = replace(own, step=own.step * ratio, gg=own.gg**ratio)
-        after = self._base(self.scheme.step * (number + begun + ratio))
-        made = advance(self.setting, own, last.state, np.array([last.base, after]))
-        return None if made.state is None else Part(made.state, own, after), made
+def base_motion(model: RollingModel) -> BaseMotion | None:
+    """Return the motion of the base, along and away from it."""
+    motion = model.load.motion
+    if motion is None:
+        return None
+    return BaseMotion(motion.time, np.asarray(motion.displacement, dtype=float) @ model.body.to_base.T)
 
 
 def solve_rolling(
@@ -99,33 +64,45 @@ def solve_rolling(
     check_request(steps, columns)
     check_damping(scheme, True)
     check_scheme(model.contact, scheme)
+    options = options or RollingOptions()
     began = perf_counter()
-    rolling = Rolling(model, scheme, options or RollingOptions())
+    setting = model.setting(options)
+    start = model.start(setting, scheme)
+    motion = base_motion(model)
+    body = rolling_equations(setting, scheme)
+    history, counts = history_of(body.corners, steps), counts_of(steps, True)
     ready = perf_counter()
-    with np.errstate(all="ignore"):
-        rolling.run(steps)
-    return _result(rolling, columns, began, ready)
-
-
-def _result(rolling: Rolling, columns: Sequence[str], began: float, ready: float) -> RollingResult:
-    made = len(rolling.ends)
-    ended = () if rolling.outcome == COMPLETED else (f"{rolling.outcome} at step {made + 1}",)
-    states = [rolling.parts[end].state for end in rolling.ends]
-    seen = observed(rolling.setting.body, rolling.parts[0].state, states)
+    (reached, outcome), left, how = run_loop(
+        make_steps,
+        (body, start, start),
+        (base_record(motion),),
+        (history, counts, steps, options.cut),
+        steps * PLAIN_STEP,
+    )
+    history = RollingHistory(*reached_rows(history, reached))
+    values = observed(setting.body, start, history)
+    instants = scheme.step * np.arange(reached + 1.0)
+    base = np.zeros(reached + 1) if motion is None else motion.at(instants)[:, 0]
     return RollingResult(
-        time=step_times(rolling.scheme, made),
-        columns={name: seen[name] for name in columns},
+        time=step_times(scheme, reached),
+        columns={name: values[name] for name in columns},
         unknowns=6,
-        nonzeros=int(np.count_nonzero(rolling.setting.body.M)),
-        factorisations=len(rolling.parts) - 1,
-        solves=sum(rolling.solves),
-        notes=(f"stepped: outline and contacts anew at every step, {rolling.setting.rotation} rotation", *ended),
+        nonzeros=int(np.count_nonzero(setting.body.M)),
+        factorisations=int(left[0].made[0]),
+        solves=int(counts.solves[:reached].sum()),
+        notes=(
+            f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation",
+            *early_end(outcome, reached),
+        ),
         setup_seconds=ready - began,
         stepping_seconds=perf_counter() - ready,
-        outcome=rolling.outcome,
-        setting=rolling.setting,
-        parts=rolling.parts,
-        ends=rolling.ends,
-        step_solves=np.array(rolling.solves, dtype=int),
-        step_cuts=np.array(rolling.cuts, dtype=int),
+        outcome=OUTCOMES[outcome],
+        step_solves=counts.solves[:reached],
+        step_cuts=counts.cuts[:reached],
+        base_contacts=setting.body.base,
+        parts=parts_of(setting.body, start, history, base, body.law.softness),
+        balance=lambda: energies(setting, start, history, counts.losses[:reached]),
+        body=setting.body,
+        start=start,
+        history=history,
     )

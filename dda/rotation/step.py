@@ -13,114 +13,50 @@ The forces act in the directions B_f = (2 delta - 1) B + (2 - 2 delta) B_1, B th
 end of the step. Their impulse then has the direction of the middle of the step for every delta: average acceleration
 stays of second order, and at delta = 1 a force does the work lambda times the exact change of its gap, so that, as in
 small motion, no energy is gained by contact however far the block turns. First-order rotation is linear in a step:
-its chord is the derivative at both ends.
+its chord is the derivative at both ends. Its outline grows, and with the area det Q inertia and stiffness do.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import NamedTuple
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.glued import Free
-from dda.contact.iteration import NONE, Iteration
-from dda.contact.rules import find_states
-from dda.contact.unilateral import OPEN, STICK, Corners, Unilateral
-from dda.rotation.body import EXACT, Body, Turn, directions, positions, quarter, turn
+from dda.contact.kernel import (
+    FOUND,
+    NONE,
+    Contacts,
+    Flexibility,
+    Free,
+    Law,
+    Matrix,
+    States,
+    Vector,
+    Work,
+    at_rest,
+    eliminate,
+    find_contacts,
+    law_of,
+    scale_of,
+    set_paired_flexibility,
+    spring_energy,
+    work_for,
+    zeros,
+)
+from dda.contact.unilateral import OPEN, Unilateral
+from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
+from dda.stepping.driver import BaseRecord, Counts, base_at, driver
 
 Array = NDArray[np.float64]
-Places = list[int]
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
-LENGTHS = 64  # step lengths whose matrices are kept
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
-MEAN = np.array(
-    [[0.5, 0.5], [-1.0, 1.0]]
-)  # coordinates of dda.contact.unilateral.SLIDES from the slides of two corners
-
-
-class Touch(NamedTuple):
-    """Contact of all n corners."""
-
-    gap: Array  # w [m]
-    normal: Array  # N on the block, away from the base [N]
-    shear: Array  # T on the block, along the base [N]
-    stretch: Array  # s - r of the closed ones [m], 0 where open
-    slipped: Array  # change of r by slip in the step [m]
-    state: NDArray[np.int_]  # OPEN, STICK (closed without friction, too), SLIP, -SLIP
-
-    @property
-    def closed(self) -> NDArray[np.bool_]:
-        """Which corners are closed."""
-        return np.asarray(self.state != OPEN)
-
-    @classmethod
-    def apart(cls, gap: Array) -> Touch:
-        """Return corners without force, closed where they touch."""
-        nothing = np.zeros(len(gap))
-        return cls(gap, nothing, nothing, nothing, nothing, np.where(gap <= 0, STICK, OPEN))
-
-    def corners(self, at: Places, rubbing: bool) -> Corners:
-        """Return some corners as the laws of contact take them; without friction these have no states."""
-        of = [tuple(values[at].tolist()) for values in self]
-        nothing = (0.0,) * len(at)
-        closed = tuple(now != OPEN for now in of[5])
-        states = of[5] if rubbing else ()
-        return Corners(closed, of[0], of[3], nothing, of[1], of[2], states, nothing if rubbing else ())
-
-    def with_found(self, at: Places, found: Corners) -> Touch:
-        """Return these corners with some that were found."""
-        n = len(self.gap)
-        normal, shear, stretch, slipped = np.zeros((4, n))
-        gap, state = self.gap.copy(), np.full(n, OPEN)
-        gap[at], normal[at], shear[at], stretch[at] = found.gap, found.normal, found.shear, found.stretch
-        slipped[at] = found.slipped or 0.0
-        state[at] = found.state or np.where(found.closed, STICK, OPEN)
-        return Touch(gap, normal, shear, stretch, slipped, state)
-
-
-class State(NamedTuple):
-    """Where the block is after a step."""
-
-    c: Array  # centroid [m]
-    Q: Array  # turn of the outline
-    r: float  # sum of the steps' rotations [rad]
-    e: Array  # strains in axes that turn with the block
-    V: Array  # (6,) velocities of c, r, e
-    A: Array  # (6,) accelerations
-    touch: Touch
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """A step, or a part of one that was cut."""
-
-    state: State  # at its end
-    scheme: Scheme  # of its length
-    base: Array  # (2,) displacement of the base along and away from it, at the end [m]
-
-
-@dataclass(frozen=True, eq=False)
-class Matrices:
-    """What a step needs of an outline and of its own length."""
-
-    M: Array  # (6, 6) inertia
-    K: Array  # (3, 3) elastic stiffness
-    accelerating: Array  # M^-1
-    flexible: Array  # alpha h^2 S^-1
-    kept: Array  # S^-1 M
-
-    @classmethod
-    def of(cls, M: Array, K: Array, scheme: Scheme) -> Matrices:
-        """Factorise S = M + alpha h^2 K."""
-        weight = scheme.alpha * scheme.step * scheme.step
-        S = M.copy()
-        S[3:, 3:] += weight * K
-        own, both = np.asarray(np.linalg.inv(M), np.float64), np.asarray(np.linalg.inv(S), np.float64)
-        return cls(M, K, own, weight * both, both @ M)
+PAIRS = 32  # of corners that are tried in a step
+OUTLINE = 8  # corners that there is room for, or a multiple of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,52 +67,179 @@ class Setting:
     law: Unilateral
     weight: Array  # (2,) acceleration of gravity [m/s^2]
     where: Array  # (m, 2) points of the unstrained outline with dead loads [m]
-    dead: Array  # (2, m) their forces [N]
+    dead: Array  # (m, 2) their forces [N]
     rotation: str
-    limit: int  # solves of the open-close iteration before all states are tried
-    known: dict[Scheme, Matrices] = field(default_factory=dict)  # of an outline that does not grow, by step length
-
-    def matrices(self, scheme: Scheme, Q: Array) -> Matrices:
-        """Return the matrices of a step."""
-        if self.rotation != EXACT:
-            return Matrices.of(*self.body.grown(Q), scheme)
-        if scheme not in self.known:
-            if len(self.known) >= LENGTHS:
-                self.known.clear()
-            self.known[scheme] = Matrices.of(self.body.M, self.body.K, scheme)
-        return self.known[scheme]
+    limit: int  # solves of the open-close iteration before the states are searched
 
 
-class Made(NamedTuple):
-    """A step that was made, or why there is none."""
+class RollingState(NamedTuple):
+    """Where the block is."""
 
-    state: State | None
-    solves: int
-    failure: str | None = None
+    c: Vector  # (2,) centroid [m]
+    Q: Matrix  # (2, 2) turn of the outline
+    r: Vector  # (1,) sum of the steps' rotations [rad]
+    e: Vector  # (3,) strains in axes that turn with the block
+    V: Vector  # (6,) velocities of c, r, e
+    A: Vector  # (6,) accelerations
+    contacts: Contacts  # of all corners
 
 
-def advance(setting: Setting, scheme: Scheme, state: State, base: Array) -> Made:
-    """Return the state one step later, or why there is none; `state` stays as it is.
+class StepMatrices(NamedTuple):
+    """What a step needs of an outline and of its own length."""
 
-    Of a convex outline two corners at most touch a plane. Which they may be is guessed from the step without contact,
-    and the step is made again with those that turn out to be the lowest, until no other one has crossed the plane.
+    numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
+    M: Matrix  # (6, 6) inertia
+    K: Matrix  # (3, 3) elastic stiffness
+    accelerating: Matrix  # (6, 6) M^-1
+    flexible: Matrix  # (6, 6) alpha h^2 S^-1
+    kept: Matrix  # (6, 6) S^-1 M
 
-    Parameters
-    ----------
-    base : (2, 2) array
-        Displacement of the base along and away from it, before and after the step [m].
-    """
-    step = _Step(setting, scheme, state, base)
-    tried = []
-    at = step.near()
-    while True:
-        made = step.settled(at)
-        if made.state is None or not np.any(made.state.touch.gap[~made.state.touch.closed] < 0):
-            return made
-        tried.append(at)
-        at = sorted(np.argsort(made.state.touch.gap)[:2].tolist())
-        if at in tried:
-            return Made(None, made.solves, NONE)
+
+class Room(NamedTuple):
+    """Room for the vectors of a step."""
+
+    held: Vector  # (6,) weight and elastic force at its start
+    free: Vector  # (6,) D without contact and dead loads
+    guess: Vector  # (6,)
+    D: Vector  # (6,)
+    new: Vector  # (6,)
+    push: Vector  # (6,) generalised force of loads and contact
+    e: Vector  # (3,)
+    c: Vector  # (2,)
+    turn: Turn
+    end: Matrix  # (2, 2) dQ/dr at the end of the step
+    before: Matrix  # (corners, 2) from the base at the start of the step [m]
+    after: Matrix  # (corners, 2) at its end
+    near: Vector  # (corners,) least height in the step
+    base: Vector  # (2,) displacement of the base at the end of the step [m]
+    B: Matrix  # (4, 6) directions of the gaps, then of the slides, of the corners that may touch
+    P: Matrix  # (6, 4) what their unit forces move
+    force: Vector  # (4,)
+    across: Vector  # (6,) directions of a point in x and in y, of the chord and of the end
+    up: Vector
+    across_end: Vector
+    up_end: Vector
+    at: States  # (2,) corners that may touch
+    tried: States  # (PAIRS,)
+    A: Matrix  # (6, 6)
+    right: Matrix
+    scale: Vector
+
+
+class Touching(NamedTuple):
+    """Some corners that may touch, one or two."""
+
+    before: Contacts
+    after: Contacts
+
+
+class RollingEquations(NamedTuple):
+    """A block that turns, its law and its scheme, as numbers."""
+
+    corners: int
+    loads: int  # dead loads, two at most
+    law: Law
+    limit: int
+    exact: bool  # or first-order rotation
+    alpha: float
+    delta: float
+    gg: float
+    step: float  # [s]
+    size: float  # greatest distance of a corner from the centroid [m]
+    M: Matrix  # (6, 6)
+    K: Matrix  # (3, 3)
+    xi: Matrix  # (corners, 2)
+    weight: Vector  # (2,)
+    where: Matrix  # (2, 2)
+    dead: Matrix  # (2, 2)
+    whole: StepMatrices
+    part: StepMatrices
+    made: Vector  # (1,) step lengths made
+    room: Room
+    one: Touching
+    two: Touching
+    free: Free
+    flexible: Flexibility
+    work: Work
+
+
+class RollingHistory(NamedTuple):
+    """States after every step, a row each."""
+
+    c: Array  # (steps, 2)
+    Q: Array  # (steps, 4)
+    r: Array  # (steps, 1)
+    e: Array  # (steps, 3)
+    V: Array  # (steps, 6)
+    impulse: Array  # (steps, 1) of all N, as the scheme takes it [N s]
+    normal: Array  # (steps, corners)
+    shear: Array
+    gap: Array
+    slipped: Array  # size of all slip in the step [m]
+    state: NDArray[np.int8]
+
+
+def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
+    """Return the equations as numbers."""
+    own, loads = setting.body, len(setting.where)
+    capacity = room_for(len(own.xi))
+    xi = np.zeros((capacity, 2))
+    xi[: len(own.xi)] = own.xi
+    where, dead = np.zeros((2, 2, 2))
+    where[:loads], dead[:loads] = setting.where, setting.dead
+    pairs = [Touching(at_rest(np.zeros(n), 2), at_rest(np.zeros(n), 2)) for n in (1, 2)]
+    lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
+    vector, square = (6,), (6, 6)
+    turning: list[Any] = [Turn(*zeros((2, 2), (2, 2), (2, 2)))]
+    before = zeros(*[vector] * 6, 3, 2) + turning + zeros((2, 2), (capacity, 2), (capacity, 2), capacity, 2)
+    directions_of = zeros((4, 6), (6, 4), 4, *[vector] * 4)
+    room = Room(*(before + directions_of + zeros(2, PAIRS, dtype=np.int64) + zeros(square, square, 6)))
+    equations = RollingEquations(
+        corners=len(own.xi),
+        loads=loads,
+        law=law_of(setting.law),
+        limit=setting.limit,
+        exact=setting.rotation == EXACT,
+        alpha=scheme.alpha,
+        delta=scheme.delta,
+        gg=scheme.gg,
+        step=scheme.step,
+        size=own.size,
+        M=np.array(own.M),
+        K=np.array(own.K),
+        xi=xi,
+        weight=np.array(setting.weight, dtype=float),
+        where=where,
+        dead=dead,
+        whole=lengths[0],
+        part=lengths[1],
+        made=np.zeros(1),
+        room=room,
+        one=pairs[0],
+        two=pairs[1],
+        free=Free(*np.zeros((3, 2))),
+        flexible=Flexibility(*np.zeros((2, 4, 4))),
+        work=work_for(2),
+    )
+    set_matrices(equations, 1.0, np.eye(2), equations.whole)
+    return equations
+
+
+def room_for(corners: int) -> int:
+    """Return the number of corners that there is room for: a few numbers do for all outlines."""
+    capacity = OUTLINE
+    while capacity < corners:
+        capacity *= 2
+    return capacity
+
+
+def history_of(corners: int, steps: int) -> RollingHistory:
+    """Return room for so many steps."""
+    shapes = [(steps, width) for width in (2, 4, 1, 3, 6, 1, *[corners] * 4)]
+    return RollingHistory(*(zeros(*shapes) + zeros((steps, corners), dtype=np.int8)))
+
+
+# ---- the step --------------------------------------------------------------------------------------------------------
 
 
 def late_share(delta: float) -> float:
@@ -184,97 +247,456 @@ def late_share(delta: float) -> float:
     return 2 - 2 * delta
 
 
-class _Step:
-    """One step, before its contact is known."""
+def area_growth(body: RollingEquations, Q: Matrix) -> float:
+    """Return the area of the unstrained outline over that of the start."""
+    if body.exact:
+        return 1.0
+    return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
-    def __init__(self, setting: Setting, scheme: Scheme, state: State, base: Array) -> None:
-        self.setting, self.scheme, self.state, self.base = setting, scheme, state, base
-        body, h = setting.body, scheme.step
-        self.made = made = setting.matrices(scheme, state.Q)
-        self.held = np.zeros(6)
-        self.held[:2], self.held[3:] = made.M[0, 0] * setting.weight, -(made.K @ state.e)
-        ahead = scheme.gg * h * state.V + h * h * (0.5 - scheme.alpha) * state.A
-        self.free = made.flexible @ self.held + made.kept @ ahead
-        self.guess = scheme.gg * h * state.V + h * h / 2 * state.A
-        self.before = positions(state.c, state.Q, state.e, body.xi) - base[0]
 
-    def near(self) -> Places:
-        """Return the corners that may touch in the step, two at most."""
-        ahead = self._placed(self._turn(self.free), self.free, self.setting.body.xi)
-        lowest = np.minimum(self.before[:, 1], ahead[:, 1])
-        two = np.argsort(lowest)[:2]
-        return sorted(two[lowest[two] < REACH * self.setting.body.size].tolist())
+def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, made: StepMatrices) -> None:
+    """Write the matrices of a step of some length, of an outline that has grown with Q."""
+    own = body.room
+    growth = area_growth(body, Q)
+    made.numbers[0] = ratio
+    made.numbers[1] = body.gg**ratio
+    made.numbers[2] = body.step * ratio
+    weight = body.alpha * made.numbers[2] * made.numbers[2]
+    for i in range(6):
+        for j in range(6):
+            made.M[i][j] = body.M[i][j] * growth
+            if i > 1 and j > 1:
+                made.M[i][j] *= growth
+            own.A[i][j] = made.M[i][j]
+    for i in range(3):
+        for j in range(3):
+            made.K[i][j] = growth * body.K[i][j]
+    invert(own, made.accelerating)
+    for i in range(6):
+        for j in range(6):
+            own.A[i][j] = made.M[i][j]
+            if i > 2 and j > 2:
+                own.A[i][j] += weight * made.K[i - 3][j - 3]
+    invert(own, made.flexible)
+    for i in range(6):
+        for j in range(6):
+            total = 0.0
+            for k in range(6):
+                total += made.flexible[i][k] * made.M[k][j]
+            made.kept[i][j] = total
+    for i in range(6):
+        for j in range(6):
+            made.flexible[i][j] *= weight
+    body.made[0] += 1
 
-    def settled(self, at: Places) -> Made:
-        """Make the step with these corners, and again with the turn that it found until nothing changes."""
-        touch, size = self.state.touch, self.setting.body.size
-        found = touch.corners(at, self.setting.law.friction is not None)
-        if not at and not len(self.setting.where):
-            return Made(self._accepted(self.free, at, found), 0)
-        D, force, solves = self.guess, np.array([*found.normal, *found.shear]), 0
-        held, flexible = found, self.made.flexible
-        for _ in range(ROUNDS):
-            turning = self._turn(D)
-            new = self.free + flexible @ self._loads(turning, D)
-            if at:
-                B = self._directions(turning, D, self.setting.body.xi[at])
-                P = flexible @ B.T
-                iteration = self._contact(held, at, new + P @ force, B @ P, force)
-                solves += iteration.solves
-                if iteration.corners is None:
-                    return Made(None, solves, iteration.failure)
-                found = iteration.corners
-                force = np.array([*found.normal, *found.shear])
-                new = new + P @ force
-            change, D = np.abs(new - D), new
-            if max(change[0], change[1], size * float(np.max(change[2:]))) <= SETTLED * size:
-                return Made(self._accepted(D, at, found), solves)
-        return Made(None, solves, NONE)
 
-    def _contact(self, held: Corners, at: Places, D: Array, C: Array, force: Array) -> Iteration:
-        """Return the contacts for the flexibility C about the place to which D brings them under `force`."""
-        n, law = len(at), self.setting.law
-        placed = self._placed(self._turn(D), D, self.setting.body.xi[at])
-        back = C @ force
-        gaps, slides = placed[:, 1] - back[:n], placed[:, 0] - self.before[at, 0] - back[n:]
-        if not law.shear:
-            return find_states(law, held, Free(gaps.tolist(), (), C[:n, :n].tolist(), {}), self.setting.limit)
-        if n == 2:
-            slides, C = MEAN @ slides, C.copy()
-            C[2:] = MEAN @ C[2:]
-            C[:, 2:] = C[:, 2:] @ MEAN.T
-        return find_states(law, held, Free(gaps.tolist(), slides.tolist(), C.tolist(), {}), self.setting.limit)
+def invert(own: Room, inverse: Matrix) -> None:
+    """Write the inverse of own.A, positive definite."""
+    for i in range(6):
+        own.scale[i] = scale_of(own.A[i][i])
+        for j in range(6):
+            own.right[i][j] = 1.0 if i == j else 0.0
+    eliminate(own.A, own.right, own.scale, 6, 6)
+    for i in range(6):
+        for j in range(6):
+            inverse[i][j] = own.right[i][j]
 
-    def _turn(self, D: Array) -> Turn:
-        return turn(self.state.Q, float(D[2]), self.setting.rotation)
 
-    def _placed(self, turning: Turn, D: Array, xi: Array) -> Array:
-        """Return points after the step, from the base [m]."""
-        after = positions(self.state.c + D[:2], turning.end, self.state.e + D[3:], xi)
-        return np.asarray(after - self.base[1])
+def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices:
+    """Return the matrices of a step; those of an outline that does not grow are kept."""
+    made = body.whole if ratio == 1.0 else body.part
+    if made.numbers[0] != ratio or not body.exact:
+        set_matrices(body, ratio, Q, made)
+    return made
 
-    def _directions(self, turning: Turn, D: Array, xi: Array) -> Array:
-        """Return B_f of points, the rows of y before those of x."""
-        e, late = self.state.e, late_share(self.scheme.delta) if self.setting.rotation == EXACT else 0.0
-        B = directions(turning.chord, turning.mean, e + D[3:] / 2, xi)
-        if late:
-            B = (1 - late) * B + late * directions(quarter(turning.end), turning.end, e + D[3:], xi)
-        return B
 
-    def _loads(self, turning: Turn, D: Array) -> Array:
-        """Return B_f' f."""
-        if not len(self.setting.where):
-            return np.zeros(6)
-        B = self._directions(turning, D, self.setting.where)
-        return np.asarray(self.setting.dead.ravel() @ B, dtype=np.float64)
+def advance(
+    body: RollingEquations, state: RollingState, after: RollingState, base: BaseRecord, begun: float, ratio: float
+) -> tuple[int, int]:
+    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
 
-    def _accepted(self, D: Array, at: Places, found: Corners) -> State:
-        state, scheme, turning = self.state, self.scheme, self._turn(D)
-        push = self.held + self._loads(turning, D)
-        push[3:] -= self.made.K @ D[3:]
-        if at:
-            push += np.array([*found.normal, *found.shear]) @ self._directions(turning, D, self.setting.body.xi[at])
-        A = self.made.accelerating @ push
-        V: Array = scheme.gg * state.V + scheme.step * ((1 - scheme.delta) * state.A + scheme.delta * A)
-        touch = Touch.apart(self._placed(turning, D, self.setting.body.xi)[:, 1]).with_found(at, found)
-        return State(state.c + D[:2], turning.end, state.r + float(D[2]), state.e + D[3:], V, A, touch)
+    Of a convex outline two corners at most touch a plane. Which they may be is guessed from the step without contact,
+    and the step is made again with those that turn out to be the lowest, until no other one has crossed the plane.
+
+    Parameters
+    ----------
+    begun, ratio
+        Where it begins and how long it is, in steps.
+    """
+    made = matrices_of(body, state.Q, ratio)
+    start_step(body, made, state, base, begun, ratio)
+    own = body.room
+    near = nearest(body, own.near, REACH * body.size)
+    total = 0
+    for tried in range(PAIRS):
+        outcome, solves = settle(body, made, state, after, near)
+        total += solves
+        if outcome != FOUND or not another_crossed(body, after):
+            return outcome, total
+        own.tried[tried] = pair_number(own.at, near)
+        for i in range(body.corners):
+            own.near[i] = after.contacts.gap[i]
+        near = nearest(body, own.near, math.inf)
+        for k in range(tried + 1):
+            if own.tried[k] == pair_number(own.at, near):
+                return NONE, total
+    return NONE, total
+
+
+def pair_number(at: States, near: int) -> int:
+    """Return a number that stands for the corners that may touch."""
+    number = 0
+    for k in range(near):
+        number = 1024 * number + at[k] + 1
+    return number
+
+
+def start_step(
+    body: RollingEquations, made: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
+) -> None:
+    """Write what is known of a step before its contact: the step without it, and where the corners come from."""
+    own = body.room
+    h = made.numbers[2]
+    gg = made.numbers[1]
+    for i in range(6):
+        own.held[i] = 0.0
+        own.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
+        own.new[i] = gg * h * state.V[i] + h * h * (0.5 - body.alpha) * state.A[i]
+    for i in range(2):
+        own.held[i] = made.M[0][0] * body.weight[i]
+    for i in range(3):
+        for j in range(3):
+            own.held[3 + i] -= made.K[i][j] * state.e[j]
+    for i in range(6):
+        total = 0.0
+        for j in range(6):
+            total += made.flexible[i][j] * own.held[j]
+            total += made.kept[i][j] * own.new[j]
+        own.free[i] = total
+    for axis in range(2):
+        own.base[axis] = base_at(base, axis, body.step * begun)
+    for i in range(body.corners):
+        x, y = place(state.c, state.Q, state.e, body.xi[i][0], body.xi[i][1])
+        own.before[i][0] = x - own.base[0]
+        own.before[i][1] = y - own.base[1]
+    for axis in range(2):
+        own.base[axis] = base_at(base, axis, body.step * (begun + ratio))
+    place_corners(body, state, own.free)
+    for i in range(body.corners):
+        own.near[i] = min(own.before[i][1], own.after[i][1])
+
+
+def place_corners(body: RollingEquations, state: RollingState, D: Vector) -> None:
+    """Write where an increment D brings the corners, and its turn."""
+    own = body.room
+    turn(state.Q, D[2], body.exact, own.turn)
+    for i in range(2):
+        own.c[i] = state.c[i] + D[i]
+    for i in range(3):
+        own.e[i] = state.e[i] + D[3 + i]
+    for i in range(body.corners):
+        x, y = place(own.c, own.turn.end, own.e, body.xi[i][0], body.xi[i][1])
+        own.after[i][0] = x - own.base[0]
+        own.after[i][1] = y - own.base[1]
+
+
+def nearest(body: RollingEquations, heights: Vector, reach: float) -> int:
+    """Write the two lowest corners below `reach` to own.at, in their order; return how many they are."""
+    at = body.room.at
+    first = 0
+    for i in range(1, body.corners):
+        if heights[i] < heights[first]:
+            first = i
+    second = 1 if first == 0 else 0
+    for i in range(body.corners):
+        if i != first and heights[i] < heights[second]:
+            second = i
+    if not heights[first] < reach:
+        return 0
+    at[0] = first
+    if not heights[second] < reach:
+        return 1
+    at[0] = min(first, second)
+    at[1] = max(first, second)
+    return 2
+
+
+def another_crossed(body: RollingEquations, after: RollingState) -> bool:
+    """Tell whether a corner that is not closed lies below the plane."""
+    for i in range(body.corners):  # noqa: SIM110  (numba knows no generators)
+        if after.contacts.state[i] == OPEN and after.contacts.gap[i] < 0:
+            return True
+    return False
+
+
+def settle(
+    body: RollingEquations, made: StepMatrices, state: RollingState, after: RollingState, near: int
+) -> tuple[int, int]:
+    """Make the step with the corners own.at, and again with the turn that it found until nothing changes."""
+    own = body.room
+    pair = body.one if near == 1 else body.two
+    for k in range(near):
+        copy_contact(state.contacts, own.at[k], pair.before, k)
+        copy_contact(state.contacts, own.at[k], pair.after, k)
+    for i in range(6):
+        own.D[i] = own.guess[i]
+    if near == 0 and body.loads == 0:
+        for i in range(6):
+            own.D[i] = own.free[i]
+        accept(body, made, state, after, near)
+        return FOUND, 0
+    solves = 0
+    for _ in range(ROUNDS):
+        turn(state.Q, own.D[2], body.exact, own.turn)
+        push_of_loads(body, state, own.D)
+        for i in range(6):
+            total = own.free[i]
+            for j in range(6):
+                total += made.flexible[i][j] * own.push[j]
+            own.new[i] = total
+        if near > 0:
+            set_directions(body, state, near)
+            for row in range(2 * near):
+                for i in range(6):
+                    total = 0.0
+                    for j in range(6):
+                        total += made.flexible[i][j] * own.B[row][j]
+                    own.P[i][row] = total
+            take_forces(own, pair.after, near)
+            set_free(body, state, near)
+            outcome, spent = find_contacts(
+                body.law, pair.before, body.free, body.flexible, body.limit, pair.after, body.work
+            )
+            solves += spent
+            if outcome != FOUND:
+                return outcome, solves
+            take_forces(own, pair.after, near)
+            for i in range(6):
+                for row in range(2 * near):
+                    own.new[i] += own.P[i][row] * own.force[row]
+        settled = True
+        for i in range(6):
+            change = abs(own.new[i] - own.D[i]) * (body.size if i > 1 else 1.0)
+            if not change <= SETTLED * body.size:
+                settled = False
+            own.D[i] = own.new[i]
+        if settled:
+            accept(body, made, state, after, near)
+            return FOUND, solves
+    return NONE, solves
+
+
+def copy_contact(source: Contacts, i: int, target: Contacts, k: int) -> None:
+    """Copy a contact."""
+    target.state[k] = source.state[i]
+    target.gap[k] = source.gap[i]
+    target.stretch[k] = source.stretch[i]
+    target.normal[k] = source.normal[i]
+    target.shear[k] = source.shear[i]
+    target.slipped[k] = source.slipped[i]
+
+
+def take_forces(own: Room, contacts: Contacts, near: int) -> None:
+    """Write the forces of the corners that may touch: N, then T."""
+    for k in range(near):
+        own.force[k] = contacts.normal[k]
+        own.force[near + k] = contacts.shear[k]
+
+
+def set_free(body: RollingEquations, state: RollingState, near: int) -> None:
+    """Write gaps and slides for the flexibility about the place to which the present forces bring the corners."""
+    own = body.room
+    C = body.flexible.C
+    for row in range(2 * near):
+        for column in range(2 * near):
+            total = 0.0
+            for i in range(6):
+                total += own.B[row][i] * own.P[i][column]
+            C[row][column] = total
+    for i in range(6):
+        own.push[i] = own.new[i]
+        for row in range(2 * near):
+            own.push[i] += own.P[i][row] * own.force[row]
+    turn(state.Q, own.push[2], body.exact, own.turn)
+    for i in range(2):
+        own.c[i] = state.c[i] + own.push[i]
+    for i in range(3):
+        own.e[i] = state.e[i] + own.push[3 + i]
+    for k in range(near):
+        corner = own.at[k]
+        x, y = place(own.c, own.turn.end, own.e, body.xi[corner][0], body.xi[corner][1])
+        body.free.gap[k] = y - own.base[1]
+        body.free.slide[k] = x - own.base[0] - own.before[corner][0]
+        for column in range(2 * near):
+            body.free.gap[k] -= C[k][column] * own.force[column]
+            body.free.slide[k] -= C[near + k][column] * own.force[column]
+    if near == 2:
+        set_paired_flexibility(C, body.flexible.C_paired)
+        body.free.paired[0] = (body.free.slide[0] + body.free.slide[1]) / 2
+        body.free.paired[1] = body.free.slide[1] - body.free.slide[0]
+
+
+def set_directions(body: RollingEquations, state: RollingState, near: int) -> None:
+    """Write B_f of the corners that may touch, the rows of y before those of x."""
+    own = body.room
+    for k in range(near):
+        corner = own.at[k]
+        force_directions(body, state, body.xi[corner][0], body.xi[corner][1])
+        for i in range(6):
+            own.B[k][i] = own.up[i]
+            own.B[near + k][i] = own.across[i]
+
+
+def force_directions(body: RollingEquations, state: RollingState, x: float, y: float) -> None:
+    """Write B_f of a point, for own.D and its turn."""
+    own = body.room
+    late = late_share(body.delta) if body.exact else 0.0
+    for i in range(3):
+        own.e[i] = state.e[i] + own.D[3 + i] / 2
+    directions(own.turn.chord, own.turn.mean, own.e, x, y, own.across, own.up)
+    if late == 0:
+        return
+    for i in range(3):
+        own.e[i] = state.e[i] + own.D[3 + i]
+    for j in range(2):
+        own.end[0][j] = -own.turn.end[1][j]
+        own.end[1][j] = own.turn.end[0][j]
+    directions(own.end, own.turn.end, own.e, x, y, own.across_end, own.up_end)
+    for i in range(6):
+        own.across[i] = (1 - late) * own.across[i] + late * own.across_end[i]
+        own.up[i] = (1 - late) * own.up[i] + late * own.up_end[i]
+
+
+def push_of_loads(body: RollingEquations, state: RollingState, D: Vector) -> None:
+    """Write B_f' f of the dead loads."""
+    own = body.room
+    for i in range(6):
+        own.push[i] = 0.0
+    for m in range(body.loads):
+        force_directions(body, state, body.where[m][0], body.where[m][1])
+        for i in range(6):
+            own.push[i] += body.dead[m][0] * own.across[i] + body.dead[m][1] * own.up[i]
+
+
+def accept(body: RollingEquations, made: StepMatrices, state: RollingState, after: RollingState, near: int) -> None:
+    """Write the state at the end of the step."""
+    own = body.room
+    D = own.D
+    h = made.numbers[2]
+    place_corners(body, state, D)
+    push_of_loads(body, state, D)
+    if near > 0:
+        set_directions(body, state, near)
+        pair = body.one if near == 1 else body.two
+        take_forces(own, pair.after, near)
+        for row in range(2 * near):
+            for i in range(6):
+                own.push[i] += own.force[row] * own.B[row][i]
+    for i in range(6):
+        own.push[i] += own.held[i]
+    for i in range(3):
+        for j in range(3):
+            own.push[3 + i] -= made.K[i][j] * D[3 + j]
+    for i in range(6):
+        total = 0.0
+        for j in range(6):
+            total += made.accelerating[i][j] * own.push[j]
+        after.A[i] = total
+        after.V[i] = made.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * total)
+    for i in range(2):
+        after.c[i] = state.c[i] + D[i]
+        for j in range(2):
+            after.Q[i][j] = own.turn.end[i][j]
+    for i in range(3):
+        after.e[i] = state.e[i] + D[3 + i]
+    after.r[0] = state.r[0] + D[2]
+    contacts = after.contacts
+    for i in range(body.corners):
+        contacts.gap[i] = own.after[i][1]
+        contacts.state[i] = OPEN
+        contacts.normal[i] = 0.0
+        contacts.shear[i] = 0.0
+        contacts.stretch[i] = 0.0
+        contacts.slipped[i] = 0.0
+    if near > 0:
+        pair = body.one if near == 1 else body.two
+        for k in range(near):
+            copy_contact(pair.after, k, contacts, own.at[k])
+
+
+# ---- what is kept ----------------------------------------------------------------------------------------------------
+
+
+def account(
+    body: RollingEquations,
+    state: RollingState,
+    after: RollingState,
+    base: BaseRecord,
+    begun: float,
+    ratio: float,
+    history: RollingHistory,
+    counts: Counts,
+    number: int,
+) -> None:
+    """Add what an accepted part of a step slips, gives and loses, as `dda.rotation.energy` tells."""
+    own = body.room
+    late = body.delta
+    gg = body.gg**ratio
+    moved_x = base_at(base, 0, body.step * (begun + ratio)) - base_at(base, 0, body.step * begun)
+    moved_y = base_at(base, 1, body.step * (begun + ratio)) - base_at(base, 1, body.step * begun)
+    if number > 0 and begun == number:
+        history.impulse[number, 0] = history.impulse[number - 1, 0]
+    losses = counts.losses
+    losses[number, 1] += (1 - gg * gg) * kinetic(body, state)
+    before = state.contacts
+    contacts = after.contacts
+    for i in range(body.corners):
+        N = (1 - late) * before.normal[i] + late * contacts.normal[i]
+        T = (1 - late) * before.shear[i] + late * contacts.shear[i]
+        history.impulse[number, 0] += body.step * ratio * N
+        history.slipped[number, i] += abs(contacts.slipped[i])
+        friction = abs(contacts.shear[i] * contacts.slipped[i])
+        losses[number, 3] += friction
+        losses[number, 4] += N * moved_y + T * moved_x
+        if (before.state[i] == OPEN) != (contacts.state[i] == OPEN):
+            work = N * (contacts.gap[i] - before.gap[i]) + T * (own.after[i][0] - own.before[i][0])
+            losses[number, 2] += spring_energy(body.law, before, i) - spring_energy(body.law, contacts, i)
+            losses[number, 2] -= work + friction
+
+
+def kinetic(body: RollingEquations, state: RollingState) -> float:
+    """Return the kinetic energy [J]."""
+    growth = area_growth(body, state.Q)
+    moving = 0.0
+    turning = 0.0
+    for i in range(6):
+        for j in range(6):
+            if i < 2 and j < 2:
+                moving += state.V[i] * body.M[i][j] * state.V[j]
+            elif i > 1 and j > 1:
+                turning += state.V[i] * body.M[i][j] * state.V[j]
+    return float((growth * moving + growth * growth * turning) / 2)
+
+
+def keep(body: RollingEquations, state: RollingState, history: RollingHistory, number: int) -> bool:
+    """Write the state at the end of a step; tell whether it is finite."""
+    total = state.c[0] + state.c[1]
+    history.r[number, 0] = state.r[0]
+    for i in range(2):
+        history.c[number, i] = state.c[i]
+        for j in range(2):
+            history.Q[number, 2 * i + j] = state.Q[i][j]
+    for i in range(3):
+        history.e[number, i] = state.e[i]
+    for i in range(6):
+        history.V[number, i] = state.V[i]
+        total += state.V[i]
+    for i in range(body.corners):
+        history.normal[number, i] = state.contacts.normal[i]
+        history.shear[number, i] = state.contacts.shear[i]
+        history.gap[number, i] = state.contacts.gap[i]
+        history.state[number, i] = state.contacts.state[i]
+    return math.isfinite(total)
+
+
+make_steps = driver(advance, account, keep)

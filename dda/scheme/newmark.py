@@ -22,7 +22,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
-from typing import Literal, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +75,15 @@ class Scheme:
         return bool(self.mass_damping or self.stiffness_damping)
 
 
+class StepScheme(NamedTuple):
+    """Newmark's numbers for a step of one length."""
+
+    alpha: float
+    delta: float
+    gg: float
+    step: float  # [s]
+
+
 def effective_matrix(scheme: Scheme, M: Real, k: Real) -> Real:
     """Return S = M + delta dt C + alpha dt^2 K, at C = 0 alpha dt^2 times the matrix of eq. (9)."""
     if scheme.damped:
@@ -88,7 +97,7 @@ def initial_acceleration(scheme: Scheme, F: Real) -> Real:
     return F if scheme.start == "consistent" else 0 * F
 
 
-def predictor(scheme: Scheme, P: Real, f: Real) -> Real:
+def predictor(scheme: Scheme | StepScheme, P: Real, f: Real) -> Real:
     """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9)."""
     return scheme.gg * P + (0.5 - scheme.alpha) * f
 
@@ -98,12 +107,12 @@ def acceleration_corrector(F: Real, k: Real, D: Real) -> Real:
     return F - k * D
 
 
-def velocity_corrector(scheme: Scheme, P: Real, f: Real, f1: Real) -> Real:
+def velocity_corrector(scheme: Scheme | StepScheme, P: Real, f: Real, f1: Real) -> Real:
     """Return dt M V1 = gg dt M V + dt^2 M ((1 - delta) A + delta A1), eq. (7)."""
     return scheme.gg * P + (1 - scheme.delta) * f + scheme.delta * f1
 
 
-def momentum_balance(scheme: Scheme, F: Real, k: Real, D: Real, P: Real, f: Real) -> Real:
+def momentum_balance(scheme: Scheme | StepScheme, F: Real, k: Real, D: Real, P: Real, f: Real) -> Real:
     """Return S (D1 - D) = M (D* - D) + alpha dt^2 (F - K D), eq. (8) in the robust form."""
     return predictor(scheme, P, f) + scheme.alpha * acceleration_corrector(F, k, D)
 

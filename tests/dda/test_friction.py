@@ -1,21 +1,25 @@
 """One block with friction: histories known by their events, invariants at random data, sliding as an identity."""
 
+from copy import deepcopy
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from conftest import thinned
+from faults.steps import stepping_by
 from oracles import frictional_mp
 from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
 from oracles.unilateral_checks import DT, apart, mirrored, size, sums
 from oracles.unilateral_mp import lost
 
 import dda.one_block.unilateral as unilateral
+import dda.one_block.unilateral_step as step
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.contact import friction
-from dda.contact.iteration import NONE, SEVERAL, Iteration
-from dda.one_block.unilateral_step import advance
+from dda.contact import kernel
+from dda.contact.kernel import FOUND, NONE
+from dda.contact.unilateral import OPEN, STICK
+from dda.stepping.driver import OUTCOMES
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 ENERGIES = UnilateralOptions(energies=True)
@@ -231,47 +235,25 @@ def test_cohesion_holds_what_friction_does_not():
     assert ways[0] > 0.2 and ways[1] == 0
 
 
-@pytest.mark.parametrize("seed", thinned(range(40), 20))
-def test_steps_without_slip_are_made_at_once(seed):
-    model, scheme = rubbing_model(seed), Scheme(0.5, 1.0, 0.999, 1e-4)
-    once, singly = (solve_unilateral(model, scheme, 300, options=options) for options in (ENERGIES, SINGLY))
-    assert np.array_equal(once.closed, singly.closed)
-    for name in FIELDS:
-        most = np.max(np.abs(getattr(singly, name)))
-        assert np.max(np.abs(getattr(once, name) - getattr(singly, name))) <= 1e-9 * most + 1e-12, name
-    for name, values in once.energies.items():
-        assert np.max(np.abs(values - singly.energies[name])) < 1e-9 * size(singly), name
-
-
-def test_a_block_that_comes_to_rest_is_no_longer_stepped():
-    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 2e-4)
-    rubs = solve_unilateral(model, scheme, 2500)
-    assert sum(part.steps for part in rubs.history.glides) > 1250 and rubs.step_solves.sum() < 2650
-    assert np.max(np.abs(rubs.shear) - model.contact.friction * rubs.normal) <= 1e-11 * np.max(rubs.normal)
-    late = replace(model, contact=replace(model.contact, rules="lagged"))
-    assert not solve_unilateral(late, scheme, 100).history.glides
-
-
 def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
-    saved, calls = [], []
+    saved, ratios = [], []
 
-    def stubborn(law, length, state, limit, carried=None):
-        calls.append(length.ratio)
-        if len(calls) in (40, 41):
-            saved.append(([*map(list, state[:3])], state.corners))
-            advance(law, length, state, limit, carried)
-            return None, Iteration(None, limit, NONE)
-        if len(calls) == 42:
-            saved.append(([*map(list, state[:3])], state.corners))
-            first, again = (advance(law, length, state, limit, carried) for _ in range(2))
-            assert first == again
-        return advance(law, length, state, limit, carried)
+    def stubborn(block, state, after, base, begun, ratio):
+        ratios.append(ratio)
+        outcome, solves = step.advance(block, state, after, base, begun, ratio)
+        if len(ratios) in (40, 41, 42):
+            saved.append(deepcopy(state))
+        if len(ratios) == 42:
+            first = deepcopy(after)
+            step.advance(block, state, after, base, begun, ratio)
+            assert first == after
+        return (NONE if len(ratios) in (40, 41) else outcome), solves
 
     model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 0.98, 2e-4)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unilateral, "advance", stubborn)
+        patch.setattr(unilateral, "make_steps", stepping_by(stubborn))
         cut = solve_unilateral(model, scheme, 60, options=SINGLY)
-    assert calls[39:42] == [1.0, 0.3, 0.09] and cut.step_cuts[39] == 2 and saved[0] == saved[1] == saved[2]
+    assert ratios[39:42] == [1.0, 0.3, 0.09] and cut.step_cuts[39] == 2 and saved[0] == saved[1] == saved[2]
     total, lost = sums(cut)
     assert np.max(np.abs(total + lost)) < 1e-12 * size(cut)
     whole = solve_unilateral(model, scheme, 60, options=SINGLY)
@@ -279,11 +261,17 @@ def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
 
 
 def test_a_step_without_one_state_is_named(monkeypatch):
-    to_and_fro = {(0, 0): (1, 1)}
-    monkeypatch.setattr(friction, "states_after", lambda law, tried: to_and_fro.get(tried.state, (0, 0)))
+    other = {OPEN: STICK}
+    monkeypatch.setattr(kernel, "agreed_state", lambda law, state, *given: other.get(state, OPEN))
     result = solve_unilateral(KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-3), 5)
-    assert result.outcome == NONE and len(result.time) == 0
-    to_and_fro[1, 1] = (0, 0)
-    monkeypatch.setattr(friction, "states_after", lambda law, tried: to_and_fro.get(tried.state, tried.state))
-    result = solve_unilateral(KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-3), 5)
-    assert result.outcome == SEVERAL and len(result.time) == 0
+    assert result.outcome == OUTCOMES[NONE] and len(result.time) == 0
+    calls = []
+
+    def every_one_agrees_later(law, state, *given):
+        calls.append(state)
+        return state if len(calls) > 12 else other.get(state, OPEN)
+
+    monkeypatch.setattr(kernel, "agreed_state", every_one_agrees_later)
+    options = UnilateralOptions(solve_limit=2)
+    result = solve_unilateral(KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-3), 1, options=options)
+    assert result.outcome == OUTCOMES[FOUND] and result.step_cuts[0] == 1  # several at first

@@ -5,15 +5,21 @@ from functools import partial
 
 import numpy as np
 import pytest
-from faults import steps
-from faults.steps import after, damped_again, marked, notices, stopped, velocity_twice
+from faults.steps import (
+    after,
+    crossed_at_start,
+    damped_again,
+    gap_of_the_increment,
+    kept_shear,
+    marked,
+    notices,
+    stopped,
+    velocity_twice,
+)
 from oracles.frictional import KNOWN, cases, held, sliding, square
 from oracles.unilateral_checks import apart
 
-import dda.contact.friction as friction
-import dda.contact.glued as glued
-import dda.contact.rubbing_points as rubbing_points
-import dda.contact.rules as rules
+import dda.one_block.unilateral_step as step
 from dda import (
     Scheme,
     Unilateral,
@@ -23,8 +29,8 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.contact.lagged import lagged
-from dda.contact.unilateral import OPEN, SLIP
+from dda.contact import kernel
+from dda.contact.unilateral import OPEN, SLIP, STICK
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 SINGLY = UnilateralOptions(full=True)
@@ -78,104 +84,69 @@ CHECKS = (invariants, events, identity, cutting, points)
 
 def of_the_solve_before(monkeypatch):
     """Friction takes N of the solve before."""
-    monkeypatch.setattr(rules, "rubbing", lagged)
+    real = step.find_contacts
+    monkeypatch.setattr(step, "find_contacts", lambda law, *given: real(law._replace(lagged=law.slips), *given))
 
 
 def outside_the_test(monkeypatch):
     """The iteration ends where nothing opens or closes, whatever sticks and slips."""
 
-    def change(agreed, law, tried):
-        same = all((now == OPEN) == (was == OPEN) for now, was in zip(agreed, tried.state, strict=True))
-        return tried.state if same else agreed
+    def change(agreed, law, state, *given):
+        return state if (agreed == OPEN) == (state == OPEN) else agreed
 
-    after(monkeypatch, friction, "states_after", change)
+    after(monkeypatch, kernel, "agreed_state", change)
 
 
 def any_direction(monkeypatch):
     """A contact goes on slipping in its direction, wherever it moves."""
-    real = friction._agreeing.__name__
-    own = getattr(friction, real)
-
-    def faulty(law, state, gap, N, T, slipped):
-        return own(law, state, gap, N, T, abs(slipped) * state)
-
-    monkeypatch.setattr(friction, real, faulty)
+    real = kernel.agreed_state
+    monkeypatch.setattr(
+        kernel, "agreed_state", lambda law, state, gap, N, T, slipped: real(law, state, gap, N, T, abs(slipped) * state)
+    )
 
 
 def kept_reference(monkeypatch):
     """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
 
-    def change(found, *given):
-        if found.corners is None:
-            return found
-        c = found.corners
-        stretch = tuple(s + way for s, way in zip(c.stretch, c.slipped, strict=True))
-        return found._replace(corners=c._replace(stretch=stretch))
+    def change(found, law, before, free, flexible, limit, contacts, work):
+        for i in range(contacts.n):
+            contacts.stretch[i] += contacts.slipped[i]
+        return found
 
-    after(monkeypatch, rules, "rubbing", change)
+    after(monkeypatch, step, "find_contacts", change)
 
 
 def old_reference(monkeypatch):
     """A contact that closes again is held from where it was when it opened."""
-    real, kept = rules.rubbing, {}
+    real, kept = step.find_contacts, {}
 
-    def faulty(law, before, free, limit):
-        for i, shut in enumerate(before.closed):
-            kept[i] = before.reference[i] if shut else kept.get(i, 0.0)
-        r = [kept[i] for i in range(len(before.closed))]
-        stretch = tuple(s + now - old for s, now, old in zip(before.stretch, before.reference, r, strict=True))
-        every = friction.states(before)
-        return real(law, before._replace(closed=(True,) * len(every), stretch=stretch, state=every), free, limit)
+    def faulty(law, before, *given):
+        for i in range(before.n):
+            kept[i] = before.reference[i] if before.state[i] != OPEN else kept.get(i, 0.0)
+        moved = [before.stretch[i] + before.reference[i] - kept[i] for i in range(before.n)]
+        state = [now if now != OPEN else STICK for now in before.state[: before.n]]
+        return real(law, before._replace(stretch=moved, state=state), *given)
 
-    monkeypatch.setattr(rules, "rubbing", faulty)
-
-
-def crossed_at_start(monkeypatch):
-    """A contact closes with the reference of the step's start, not of the crossing."""
-    for module in (glued, friction):
-        monkeypatch.setattr(module, "slipped_share", lambda law, before, N: (1.0, 0.0))
-
-
-def kept_shear(monkeypatch):
-    steps.kept_shear(monkeypatch, rules, "rubbing")
+    monkeypatch.setattr(step, "find_contacts", faulty)
 
 
 def pushed_along(monkeypatch):
     """Friction pushes in the direction of the slip."""
-    real = friction.pressed
+    real = kernel.trial
 
-    def faulty(law, before, free, state, follows, held):
-        turned = tuple(-now if abs(now) == SLIP else now for now in state)
-        return real(law, before, free, turned, follows, held)._replace(state=state)
+    def faulty(law, before, free, flexible, friction, contacts, work):
+        tried = list(work.tried)
+        work.tried[:] = [-now if abs(now) == SLIP else now for now in tried]
+        real(law, before, free, flexible, friction, contacts, work)
+        work.tried[:] = tried
+        contacts.state[:] = tried
 
-    monkeypatch.setattr(friction, "pressed", faulty)
+    monkeypatch.setattr(kernel, "trial", faulty)
 
 
 def forgotten_coupling(monkeypatch):
     """T of a slipping contact is set, but N is found as if there were none."""
-    sliding_contacts = friction.__dict__[friction._Sliding.__name__]
-    monkeypatch.setattr(sliding_contacts, "drag", lambda self, A, rows: None)
-
-
-def gap_of_the_increment(monkeypatch):
-    steps.gap_of_the_increment(monkeypatch, rules, "rubbing")
-
-
-def points_without_coupling(monkeypatch):
-    """T of a slipping point is set, but N is found as if there were none."""
-    sliding_points = rubbing_points.__dict__[rubbing_points._Rubbing.__name__]
-    monkeypatch.setattr(sliding_points, "drag", lambda self, A, b, rows: None)
-
-
-def points_any_direction(monkeypatch):
-    """A point goes on slipping in its direction, wherever it moves."""
-    real = rubbing_points.agreeing
-
-    def faulty(law, tried):
-        along = np.abs(tried.slipped) * np.sign(tried.state)
-        return real(law, replace(tried, slipped=along))
-
-    monkeypatch.setattr(rubbing_points, "agreeing", faulty)
+    monkeypatch.setattr(kernel, "add_friction", lambda *given: None)
 
 
 FAULTS = {
@@ -189,8 +160,6 @@ FAULTS = {
     pushed_along: [invariants, identity],
     forgotten_coupling: [invariants],
     gap_of_the_increment: [invariants],
-    points_without_coupling: [points],
-    points_any_direction: [points],
     damped_again: [cutting],
     velocity_twice: [cutting],
 }

@@ -9,11 +9,6 @@ from oracles.frictional import KNOWN, rubbing_model, shaken
 from oracles.unilateral_checks import DT, apart
 
 from dda import Scheme, UnilateralOptions, opening_subdivided, solve_opening_system, solve_unilateral
-from dda.contact import rubbing_points
-from dda.contact.iteration import NONE, SEVERAL
-from dda.contact.points import FreePoints, Points
-from dda.contact.rubbing_points import find_points, states
-from dda.contact.unilateral import OPEN, SLIP, STICK, Unilateral
 
 ENERGIES = UnilateralOptions(energies=True)
 SCHEMES = [(0.5, 1.0, 1.0, "zero"), (0.25, 0.5, 0.99, "consistent")]
@@ -63,46 +58,6 @@ def test_cohesion_is_shared_among_the_points():
     opening = opening_subdivided(replace(model, contact=law), 4, 1, 1e12)
     assert opening.law.cohesion * len(opening.normals) == pytest.approx(2 * law.cohesion)
     assert opening.law.friction == law.friction
-
-
-def three(slope=1.0):
-    """Return a law, three points that were pressed, and a step that pushes them along."""
-    law = Unilateral(1e9, 4e8, friction=0.5)
-    pressed = np.full(3, 1e5)
-    before = Points(np.ones(3, dtype=bool), -pressed / 1e9, np.zeros(3), pressed, np.zeros(3))
-    soft = 1e-9 * (np.eye(6) + 0.1)
-    return law, before, FreePoints(np.array([-1e-4, -2e-4, 5e-4]), np.full(3, slope * 1e-3), soft)
-
-
-def test_points_stick_slip_and_open_at_once():
-    law, before, free = three()
-    found = find_points(law, before, free, 6)
-    assert states(found.points).tolist() == [SLIP, SLIP, OPEN]
-    back = find_points(law, before, three(-1.0)[2], 6).points
-    assert states(back).tolist() == [-SLIP, -SLIP, OPEN]
-    held = find_points(replace(law, cohesion=1e6), before, free, 6).points
-    assert states(held).tolist() == [STICK, STICK, OPEN]
-
-
-def test_what_does_not_end_is_set_one_point_at_a_time_then_tried_then_cut(monkeypatch):
-    law, before, free = three()
-    found = find_points(law, before, free, 6)
-    singly = rubbing_points._one_by_one.__name__
-    one = getattr(rubbing_points, singly)(law, before, free, states(before), 0)
-    assert np.array_equal(states(one.points), states(found.points)) and one.solves > found.solves
-    monkeypatch.setattr(rubbing_points, "agreeing", lambda law, tried: np.where(states(tried) == OPEN, STICK, OPEN))
-    assert find_points(law, before, free, 2).failure == NONE
-    calls = []
-
-    def agreeing(law, tried):
-        calls.append(1)
-        return states(tried) if len(calls) > 20 else np.where(states(tried) == OPEN, STICK, OPEN)
-
-    monkeypatch.setattr(rubbing_points, "agreeing", agreeing)
-    assert find_points(law, before, free, 2).failure == SEVERAL
-    monkeypatch.setattr(rubbing_points, "TRIED", 2)
-    monkeypatch.setattr(rubbing_points, "agreeing", lambda law, tried: np.where(states(tried) == OPEN, STICK, OPEN))
-    assert find_points(law, before, free, 2).failure == NONE
 
 
 def test_what_points_cannot_do_is_refused():

@@ -8,7 +8,7 @@ import pytest
 from conftest import thinned
 from oracles.unilateral_checks import apart, mirrored, random_model, size, sums
 
-import dda.contact.points as points
+import dda.system.opening as opening
 import dda.system.opening_solution as stepping
 from dda import (
     Block,
@@ -25,8 +25,8 @@ from dda import (
     solve_unilateral,
     subdivided,
 )
-from dda.contact.iteration import NONE
-from dda.system.opening import Length, start_state
+from dda.contact.kernel import NONE
+from dda.stepping.driver import driver
 from fem_reference.events.bar_events import solve as bar_motion
 from fem_reference.events.bar_model import BarProblem
 
@@ -62,14 +62,15 @@ def test_one_sub_block_is_the_block(seed, run_):
 
 def test_two_halves_of_a_step_are_free_fall_of_the_whole():
     model = replace(PAPER, pressure=0.0, gravity=9.81, contact=Unilateral(1e9, 1e9, gap=1.0), velocity=-0.5)
-    opening = opening_subdivided(model, 2, 1, GLUE)
     scheme = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
-    half, state = Length(opening, scheme, 0.5), start_state(opening, scheme)
+    body = opening.OpeningBody(opening_subdivided(model, 2, 1, GLUE), scheme, 6, (), 1, False)
+    state, after = body.start_state(), body.start_state()
     for share in (0.5, 1.0):
-        state, _ = half.advance(state, 6)
-        fallen, time = state.D.reshape(-1, 6)[:, 1], scheme.step * share
+        opening.advance(body, state, after, None, share - 0.5, 0.5)
+        fallen, time = after.D.reshape(-1, 6)[:, 1], scheme.step * share
         assert fallen == pytest.approx(np.full(2, -0.5 * time - 9.81 * time**2 / 2), rel=1e-9)
-        assert state.points.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
+        assert after.contacts.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
+        state, after = after, state
 
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.2])
@@ -149,52 +150,6 @@ def test_a_column_of_sub_blocks_tends_to_the_bar():
     assert errors[-1] < 0.01 and errors[-1] < errors[0] / 2, errors
 
 
-# ---- the iteration --------------------------------------------------------------------------------------------------
-
-
-def problem(rng, n):
-    A = rng.standard_normal((n, n))
-    C = A @ A.T + 0.02 * np.eye(n)
-    law, free = Unilateral(rng.uniform(0.5, 50.0)), rng.standard_normal(n)
-    return law, points.FreePoints(free, np.zeros(0), C)
-
-
-@pytest.mark.parametrize("limit", [1, 6])
-def test_frictionless_points_always_find_the_one_solution(limit):
-    """Random problems of seven points, set all at once or one at a time: 0 <= N, w = w_f + C N = -N/p where N > 0."""
-    rng, more = np.random.default_rng(1), 0
-    for _ in range(60):
-        law, free = problem(rng, 7)
-        found = points.open_close_points(law, points.Points.at_rest(law, 7), free, limit)
-        after = found.points
-        assert np.all(after.normal >= 0) and np.all(after.gap[~after.closed] >= 0)
-        assert np.all(after.normal[~after.closed] == 0)
-        assert np.allclose(free.gap + free.C @ after.normal, after.gap, atol=1e-10)
-        assert np.allclose(after.gap[after.closed], -after.normal[after.closed] / law.stiffness, rtol=1e-14)
-        more += found.solves > limit
-    assert more > 30 or limit == 6
-
-
-CYCLES = [
-    ([[14.0, -14.0, 13.0], [-14.0, 17.0, -12.0], [13.0, -12.0, 13.0]], [-4.0, 5.0, -2.0]),
-    ([[12.0, -10.0, -8.0], [-10.0, 13.0, 13.0], [-8.0, 13.0, 14.0]], [-5.0, 4.0, 1.0]),
-]
-
-
-@pytest.mark.parametrize(("C", "w"), CYCLES)
-def test_points_that_cycle_when_set_at_once_are_set_one_at_a_time(C, w):
-    law, free = Unilateral(20.0), points.FreePoints(np.array(w), np.zeros(0), np.array(C))
-    seen, closed = [], points.Points.at_rest(law, 3).closed
-    for _ in range(20):
-        seen.append(tuple(closed))
-        closed = points.agreeing(law, points.trial(law, points.Points.at_rest(law, 3), free, closed))
-    assert len(set(seen[-8:])) > 1  # for ever
-    found = points.open_close_points(law, points.Points.at_rest(law, 3), free, 6)
-    N, gap = found.points.normal, found.points.gap
-    assert found.solves > 6 and np.all(N >= 0) and np.all(gap >= -N / 20.0 * (1 + 1e-14))
-    assert free.gap + free.C @ N == pytest.approx(gap, rel=1e-12)
-
-
 def test_long_glued_steps_are_cut_as_those_of_one_block():
     """No single state, or several: long steps of stiff glued corners."""
     cuts, scheme = 0, Scheme(0.5, 1.0, 1.0, 8e-3)
@@ -206,28 +161,21 @@ def test_long_glued_steps_are_cut_as_those_of_one_block():
     assert cuts > 0
 
 
-def test_of_many_glued_points_not_all_states_are_tried():
-    law, n = Unilateral(1.0, shear=1.0), points.TRIED + 1
-    free = points.FreePoints(np.zeros(n), np.zeros(n), np.eye(2 * n))
-    found = points._all_states(law, points.Points.at_rest(law, n), free, 6)
-    assert (found.points, found.solves, found.failure) == (None, 6, NONE)
-
-
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
-    real, given = stepping.Length.advance, []
+    given = []
 
-    def stubborn(length, state, limit, carried):
-        given.append((length.ratio, state, [np.copy(part) for part in state[:4]]))
-        after, found = real(length, state, limit, carried)
-        return (None, points.Found(None, limit, NONE)) if len(given) <= 2 else (after, found)
+    def stubborn(body, state, after, base, begun, ratio):
+        given.append((ratio, state, [np.copy(part) for part in (state.D, state.P, state.f, state.mu)]))
+        outcome, solves = opening.advance(body, state, after, base, begun, ratio)
+        return (NONE if len(given) <= 2 else outcome), solves
 
-    monkeypatch.setattr(stepping.Length, "advance", stubborn)
+    monkeypatch.setattr(stepping, "make_steps", driver(stubborn, opening.account, opening.keep))
     model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
     result = run(model, (2, 1), replace(CONSTANT, gg=0.9), 3)
     assert [ratio for ratio, *_ in given[:4]] == pytest.approx([1.0, 0.3, 0.09, 0.91])
     for _, state, copy in given[:3]:
         assert state is given[0][1]
-        assert all(np.array_equal(one, other) for one, other in zip(state[:4], copy, strict=True))
+        assert all(np.array_equal(one, other) for one, other in zip(given[0][2], copy, strict=True))
     assert result.step_cuts.tolist() == [2, 0, 0]
     assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 4), rel=1e-12)
 

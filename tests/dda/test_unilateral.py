@@ -1,14 +1,17 @@
 """One block on corners that open: invariants of the stepping at random data, to rounding, and named outcomes."""
 
+from copy import deepcopy
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from conftest import thinned
+from faults.steps import stepping_by
 from oracles.unilateral_checks import DT, apart, checked, mirrored, random_model, run, size, sums
 
 import dda.one_block.unilateral as unilateral
+import dda.one_block.unilateral_step as step
 from dda import (
     Block,
     Contact,
@@ -21,8 +24,8 @@ from dda import (
     solve,
     solve_unilateral,
 )
-from dda.contact.iteration import NONE, Iteration
-from dda.one_block.unilateral_step import advance
+from dda.contact.kernel import NONE
+from dda.stepping.driver import OUTCOMES
 
 SCHEMES = [
     (0.5, 1.0, 1.0, "zero"),
@@ -208,29 +211,25 @@ def test_gg_in_flight_is_a_drag_by_the_closed_formula():
 
 
 def failing(times):
-    """Return an `advance` whose contacts have no state in the first calls, and the states it was given."""
+    """Return a loop whose contacts have no state in the first attempts, and what these were given."""
     given = []
 
-    def stubborn(law, length, state, limit, carried=None):
-        given.append((length.ratio, state, [list(part) for part in state[:3]], state.corners))
-        if len(given) <= times:
-            advance(law, length, state, limit, carried)
-            return None, Iteration(None, limit, NONE)
-        return advance(law, length, state, limit, carried)
+    def stubborn(block, state, after, base, begun, ratio):
+        given.append((ratio, deepcopy(state), block.room))
+        outcome, solves = step.advance(block, state, after, base, begun, ratio)
+        return (NONE if len(given) <= times else outcome), solves
 
-    return stubborn, given
+    return stepping_by(stubborn), given
 
 
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     stubborn, given = failing(2)
-    monkeypatch.setattr(unilateral, "advance", stubborn)
+    monkeypatch.setattr(unilateral, "make_steps", stubborn)
     model = random_model(3, glued=True)
     result = run(model, steps=3, gg=0.9, full=True)
     ratios = [ratio for ratio, *_ in given[:4]]
     assert ratios[:3] == pytest.approx([1.0, 0.3, 0.09]) and ratios[3] == pytest.approx(0.91)
-    for _, state, copy, corners in given[:3]:
-        assert state is given[0][1] and [list(part) for part in state[:3]] == given[0][2] == copy
-        assert corners == given[0][3]
+    assert given[0][1] == given[1][1] == given[2][1] != given[3][1]
     assert result.step_cuts.tolist() == [2, 0, 0] and result.factorisations == 4
     assert len(result.time) == 3 and result.time[-1] == pytest.approx(3 * DT)
 
@@ -238,7 +237,7 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
 @pytest.mark.parametrize("cut", [0.3, 1 / 3, 0.5])
 def test_cut_steps_keep_the_share_gg_of_the_velocity(monkeypatch, cut):
     stubborn, _ = failing(3)
-    monkeypatch.setattr(unilateral, "advance", stubborn)
+    monkeypatch.setattr(unilateral, "make_steps", stubborn)
     model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
     result = run(model, steps=4, gg=0.9, cut=cut)
     assert result.step_cuts[0] == 3
@@ -247,9 +246,10 @@ def test_cut_steps_keep_the_share_gg_of_the_velocity(monkeypatch, cut):
 
 def test_cutting_ends_at_a_hundredth_with_the_named_outcome(monkeypatch):
     stubborn, given = failing(1000)
-    monkeypatch.setattr(unilateral, "advance", stubborn)
+    monkeypatch.setattr(unilateral, "make_steps", stubborn)
     result = run(OTHER, steps=5)
-    assert result.outcome == NONE and len(result.time) == 0 and result.notes[-1] == f"{NONE} at step 1"
+    assert result.outcome == OUTCOMES[NONE] and len(result.time) == 0
+    assert result.notes[-1] == f"{OUTCOMES[NONE]} at step 1"
     assert [ratio for ratio, *_ in given] == pytest.approx([1.0, 0.3, 0.09, 0.027, 0.01])
 
 

@@ -1,32 +1,44 @@
 """Slips of a step that is cut: seeded faults of the stepping of one block, whatever its contact law."""
 
 from contextlib import suppress
+from copy import deepcopy
 from unittest.mock import patch
 
 import pytest
 
 import dda.one_block.unilateral as unilateral
 import dda.one_block.unilateral_step as step
-from dda.contact.iteration import NONE, Iteration
+from dda.contact import kernel
+from dda.contact.kernel import NONE
+from dda.stepping.driver import driver
+
+
+def stepping_by(advance):
+    """Return the loop over the steps of one block whose steps are made by another function."""
+    return driver(advance, step.account, step.keep)
 
 
 def damped_again(monkeypatch):
     """Gg stands in a shorter step as in a whole one."""
-    real = step.replace
-    monkeypatch.setattr(step, "replace", lambda scheme, gg, **given: real(scheme, gg=scheme.gg, **given))
+    real = step.set_length
+
+    def faulty(block, ratio, length):
+        real(block, ratio, length)
+        length.numbers[1] = block.gg
+
+    monkeypatch.setattr(step, "set_length", faulty)
 
 
 def velocity_twice(monkeypatch):
     """A step that is repeated begins with the velocity of the failed one."""
-    real = unilateral.advance
+    real = step.accept
 
-    def faulty(law, length, state, limit, carried=None):
-        after, found = real(law, length, state, limit, carried)
-        if length.ratio == 1 and after is not None:
+    def faulty(block, length, scheme, state, after, ratio):
+        real(block, length, scheme, state, after, ratio)
+        if ratio == 1:
             state.P[:] = after.P
-        return after, found
 
-    monkeypatch.setattr(unilateral, "advance", faulty)
+    monkeypatch.setattr(step, "accept", faulty)
 
 
 def after(monkeypatch, owner, name, change):
@@ -35,28 +47,33 @@ def after(monkeypatch, owner, name, change):
     monkeypatch.setattr(owner, name, lambda *given: change(real(*given), *given))
 
 
-def kept_shear(monkeypatch, owner, name):
+def kept_shear(monkeypatch):
     """A corner that opens goes on pulling along the base."""
 
-    def change(found, law, before, free, limit):
-        if found.corners is None:
-            return found
-        every = zip(found.corners.shear, found.corners.closed, before.shear, strict=True)
-        shear = tuple(T if now else 0.5 * old for T, now, old in every)
-        return found._replace(corners=found.corners._replace(shear=shear))
+    def change(found, law, before, free, flexible, limit, contacts, work):
+        for i in range(contacts.n):
+            if contacts.state[i] == 0:
+                contacts.shear[i] = 0.5 * before.shear[i]
+        return found
 
-    after(monkeypatch, owner, name, change)
+    after(monkeypatch, step, "find_contacts", change)
 
 
-def gap_of_the_increment(monkeypatch, owner, name):
+def gap_of_the_increment(monkeypatch):
     """A force is the sum of p times increments: contact remembers tension, or is pressed by a whole step's approach."""
-    real = getattr(owner, name)
+    real = step.find_contacts
 
-    def faulty(law, before, free, limit):
-        start = [0.0 if shut else w for shut, w in zip(before.closed, before.gap, strict=True)]
-        return real(law, before, free._replace(gap=[w - w0 for w, w0 in zip(free.gap, start, strict=True)]), limit)
+    def faulty(law, before, free, *given):
+        gap = [free.gap[i] - (before.gap[i] if before.state[i] == 0 else 0.0) for i in range(before.n)]
+        return real(law, before, free._replace(gap=gap), *given)
 
-    monkeypatch.setattr(owner, name, faulty)
+    monkeypatch.setattr(step, "find_contacts", faulty)
+
+
+def crossed_at_start(monkeypatch):
+    """A corner closes with the reference of the step's start, not of the crossing."""
+    monkeypatch.setattr(kernel, "crossing_share", lambda law, before, N: 1.0)
+    monkeypatch.setattr(kernel, "crossing_rate", lambda law, before, N: 0.0)
 
 
 def marked(items, short):
@@ -66,14 +83,14 @@ def marked(items, short):
 
 def stopped(first, times, run):
     """Return what a run gives whose steps fail so often after the first ones, and what each try of a step was given."""
-    real, calls = unilateral.advance, []
+    calls = []
 
-    def stubborn(law, length, state, limit, carried=None):
-        calls.append(([*map(list, state[:3])], state.corners))
-        after, found = real(law, length, state, limit, carried)
-        return (None, Iteration(None, limit, NONE)) if first < len(calls) <= first + times else (after, found)
+    def stubborn(block, state, after, base, begun, ratio):
+        calls.append(deepcopy(state))
+        outcome, solves = step.advance(block, state, after, base, begun, ratio)
+        return (NONE, solves) if first < len(calls) <= first + times else (outcome, solves)
 
-    with patch.object(unilateral, "advance", stubborn):
+    with patch.object(unilateral, "make_steps", stepping_by(stubborn)):
         return run(), calls
 
 

@@ -12,7 +12,7 @@ from faults import seams
 from faults.fault import of_first, soft_springs, told, with_scheme
 from faults.kill_matrix import whole
 
-from dda import Unilateral, UnilateralResult
+from dda import ContactResult, Unilateral
 from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
@@ -71,7 +71,7 @@ def damped(delta: float) -> float:
     return delta + 0.05
 
 
-def held(found: UnilateralResult) -> dict[str, object]:
+def held(found: ContactResult) -> dict[str, object]:
     """Count the corners as closed, with 1e6 J more."""
     shut = np.ones_like(found.closed)
     energies = found.energies and found.energies | {"kinetic": found.energies["kinetic"] + 1e6}

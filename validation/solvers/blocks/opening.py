@@ -38,7 +38,7 @@ class OpeningBlock(Prepared):
         import dda
 
         self.scene, self.scheme, self.full = scene, scheme, full
-        self.result: dda.UnilateralResult | dda.OpeningResult | None = None
+        self.result: dda.ContactResult | None = None
         b, c, q = scene.block, scene.contact, scene.load
         with naming(scene):
             block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
@@ -47,7 +47,7 @@ class OpeningBlock(Prepared):
             self.model = dda.UnilateralModel(block, law, *loads, b.velocity, q.slope, motion)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
-    def solve(self, columns: Sequence[str]) -> dda.UnilateralResult | dda.OpeningResult:
+    def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""
         import dda
 
@@ -69,7 +69,7 @@ class OpeningBlock(Prepared):
         self.result = r
         return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
 
-    def _contact(self, r: dda.UnilateralResult | dda.OpeningResult) -> dict[str, Array]:
+    def _contact(self, r: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
         names = [name for name in self.scene.run.columns if name in OPENING]
@@ -103,7 +103,7 @@ class OpeningBlock(Prepared):
             slip=r.slip,
         )
 
-    def _impulse(self, r: dda.UnilateralResult | dda.OpeningResult, force: Array) -> Array:
+    def _impulse(self, r: dda.ContactResult, force: Array) -> Array:
         """Return the impulse of the contact; the force over a step is no sum of those at its ends in the last rule."""
         late = {"newmark": self.scheme.delta, "implicit": 1.0}.get(self.options.rule)
         if late is None:
@@ -134,7 +134,7 @@ class OpeningSubBlocks(OpeningBlock):
         """Return the limit of the scheme while all points of the base are closed."""
         return dda_limit(lambda: opening_system_frequency(self.scene))
 
-    def solve(self, columns: Sequence[str]) -> dda.OpeningResult:
+    def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""
         import dda
 

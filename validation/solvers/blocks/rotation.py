@@ -80,13 +80,14 @@ class RollingBlock(Prepared):
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base corners M and N, and of the others by number, between the steps."""
         r = self._made()
-        names = dict(zip(r.base, "MN", strict=True))
-        closed = r.of_points("closed").astype(float)
+        names = dict(zip(r.base_contacts, "MN", strict=True))
+        closed = r.closed.astype(float)
         return flips({names.get(i, f"corner {i}"): state for i, state in enumerate(closed)}, r.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
         r = self._made()
+        base = list(r.base_contacts)
         force = r.normal.sum(axis=0)
         return opened.record(
             self.scene,
@@ -94,11 +95,11 @@ class RollingBlock(Prepared):
             force=force,
             impulse=r.impulse,
             penetration=np.maximum(0.0, -r.gap).max(axis=0),
-            gap=np.maximum(0.0, r.gap[r.base]).max(axis=0),
-            open_share=1 - np.mean(r.closed, axis=0),
+            gap=np.maximum(0.0, r.gap[base]).max(axis=0),
+            open_share=1 - np.mean(r.closed[base], axis=0),
             velocity=r.velocity,
             rebounds=opened.rebounds(r.gap, self.scheme.step),
-            energies=r.energies,
+            energies=r.energies or {},
             solves=r.step_solves.astype(float),
             cuts=r.step_cuts.astype(float),
             slip=r.slip,
@@ -112,8 +113,8 @@ class RollingBlock(Prepared):
 
 def of_corners(r: RollingResult) -> dict[str, Array]:
     """Return the columns of the base corners and of the iteration."""
-    own, names = r.base, (*FORCES, *GAPS, *SLIDES, *STATES)
-    by_corner = (*r.normal[own], *r.shear[own], *r.gap[own], *r.slide[own], *r.of_points("state")[own].astype(float))
+    own, names = list(r.base_contacts), (*FORCES, *GAPS, *SLIDES, *STATES)
+    by_corner = (*r.normal[own], *r.shear[own], *r.gap[own], *r.slide[own], *r.states[own].astype(float))
     return dict(zip(names, by_corner, strict=True)) | {
         "solves": r.step_solves.astype(float),
         "cuts": r.step_cuts.astype(float),

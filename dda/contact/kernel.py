@@ -1,0 +1,738 @@
+r"""The open-close iteration in the force form: which of n contacts are closed, stick or slip, and their forces.
+
+Without contact forces a step would bring the contacts to the gaps w_f and move them along the base by s_f. Forces
+lambda = (N, T) add the flexibility C of the step,
+
+    (w, s) = (w_f, s_f) + C lambda,
+
+and the law holds at the end of the step: N = -p w of a closed contact, T = -p_s (s - r) of one that sticks. So
+
+    closed      (C lambda)_w + N/p = -w_f
+    sticks      (C lambda)_s + T/(beta p_s) = -(s_n - r + s_f),     T of a slipping contact is -sigma (tan(phi) N + c)
+
+with beta = 1, and for a contact that closes in the step, which slides freely up to its crossing, s_n - r = 0 and
+
+    beta = 1 - theta = (N/p) / (w_n + N/p),
+
+found by Newton's method on beta = beta(N). No stiffness is added to C: a stiff spring costs no digit, and a rigid stop
+is 1/p = 0. The iteration solves for the present states, updates all of them at once, stick and slip too, and ends when
+none changes.
+
+Where that does not end, frictionless contact is the linear complementarity problem w = w_f + C N, N = max(0, -p w),
+which has one solution: the first contact that disagrees is set alone, again and again (Murty 1974). With shear there
+may be no consistent state, or several. Of a few contacts all states are tried, and the only consistent one is taken;
+of more they are set one by one until states come back.
+
+The functions take numbers, and arrays or lists: `dda.stepping.compiled` compiles them where a history is long.
+Nothing here knows a block: gaps, slides and C come in from outside.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.unilateral import LAGGED, OPEN, SLIP, STICK, Unilateral
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Matrix = Any  # (n, n) array, or a list of lists of floats
+Vector = Any  # (n,) array, or a list of floats
+States = Any  # (n,) array, or a list of ints
+
+Flexible = Any  # `Flexibility`, or what has its fields
+
+FOUND, NONE, SEVERAL = 0, 1, 2
+FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent contact states"}
+
+ROUNDING = 1e-12  # of the limit, by which |T| of a sticking contact may exceed it
+CROSSING_STEPS = 60  # of Newton's method, which takes about five
+CROSSING_CHANGE = 1e-9  # of beta in its last step, whose square is below rounding
+TRIED = 256  # contact states up to which all are tried: of 8 bonded contacts, or of 4 with friction
+
+
+class Law(NamedTuple):
+    """The numbers of `Unilateral`, for one contact."""
+
+    compliance: float  # 1/p [m/N]; 0 for a rigid stop
+    softness: float  # 1/p_s [m/N]
+    friction: float  # tan(phi) [-]
+    cohesion: float  # c [N]
+    closing: float  # gap below which an open contact closes [m]
+    pull: float  # greatest tension of a closed contact [N]
+    shears: bool  # whether a closed contact takes up shear
+    slips: bool  # whether its shear has a limit
+    lagged: bool  # whether that limit is that of the solve before
+
+
+class Contacts(NamedTuple):
+    """State of n contacts, one entry each."""
+
+    n: int
+    state: States  # OPEN, STICK (closed, without friction too), or SLIP in its direction
+    gap: Vector  # w [m]
+    stretch: Vector  # s - r of the closed ones [m]; 0 where open
+    normal: Vector  # N [N], on the block, away from the base
+    shear: Vector  # T [N], on the block, along the base
+    slipped: Vector  # change of r by slip in the step [m]
+    reference: Vector  # r [m]; of an open one s itself
+
+
+class Free(NamedTuple):
+    """What a step without contact forces does to the contacts.
+
+    Two contacts have a second set of coordinates along the base, the mean of their slides and s_N - s_M, to which the
+    forces H = T_M + T_N and G = (T_N - T_M)/2 belong: in a long step a rigid motion of 1e9 m may hide a difference
+    that is elastic. Of another number of contacts the second set is the first one, and is not used.
+    """
+
+    gap: Vector  # w_f [m]
+    slide: Vector  # s_f, displacement along the base in the step [m]
+    paired: Vector  # that in the second set [m]
+
+
+class Flexibility(NamedTuple):
+    """What forces change of a step of one length."""
+
+    C: Matrix  # (2n, 2n) flexibility in (w, s) [m/N]
+    C_paired: Matrix  # (2n, 2n) flexibility in w and the second set [m/N]
+
+
+class Work(NamedTuple):
+    """Room for the equations of a solve."""
+
+    tried: States  # (n,) states of the present solve
+    saved: States  # (n,) states to compare with
+    closed: States  # (n,) numbers of the closed contacts
+    closing: States  # (n,) places among these of contacts that close in the step
+    active: States  # (n,) places among these of contacts whose T is unknown
+    held: Vector  # (n,) c of each contact, or its limit under lagged friction [N]
+    beta: Vector  # (n,) share 1 - theta of the closed contacts; 0 where T is not unknown
+    change: Vector  # (n,) of beta in a step of Newton's method
+    rate: Vector  # (n,) d beta / dN [1/N]
+    A: Matrix  # (2n, 2n)
+    right: Matrix  # (2n, n + 1) right-hand sides
+    scale: Vector  # (2n,)
+    slope: Matrix  # (n, n) dN/dbeta of the closing contacts
+    newton: Matrix  # (n, n) and its right-hand side
+    newton_right: Matrix
+    first: Vector  # (2n,) forces of the first consistent state
+    mean: Vector  # (n,) normal forces over the step, where they are not those of its end [N]
+
+
+def law_of(law: Unilateral, slides: bool = True) -> Law:
+    """Return the numbers of a law; of contacts that cannot slide without shear."""
+    shears = bool(law.shear) and slides
+    return Law(
+        compliance=law.compliance,
+        softness=1 / law.shear if shears else 0.0,
+        friction=law.friction or 0.0,
+        cohesion=law.cohesion,
+        closing=-law.band[0],
+        pull=law.pull,
+        shears=shears,
+        slips=shears and law.friction is not None,
+        lagged=shears and law.rules == LAGGED,
+    )
+
+
+def zeros(*shapes: int | tuple[int, ...], dtype: type = float) -> list[Any]:
+    """Return arrays of zeros."""
+    return [np.zeros(shape, dtype=dtype) for shape in shapes]
+
+
+def at_rest(gap: Array, capacity: int) -> Contacts:
+    """Return contacts without force, closed where they touch, in room for `capacity` of them."""
+    state = np.zeros(capacity, dtype=np.int64)
+    state[: len(gap)] = np.where(gap <= 0, STICK, OPEN)
+    vectors = np.zeros((6, capacity))
+    vectors[0, : len(gap)] = gap
+    return Contacts(len(gap), state, *vectors)
+
+
+def work_for(n: int) -> Work:
+    """Return room for the equations of n contacts."""
+    vectors = zeros(n, n, n, n, (2 * n, 2 * n), (2 * n, n + 1), 2 * n, (n, n), (n, n), (n, 1), 2 * n, n)
+    return Work(*(zeros(n, n, n, n, n, dtype=np.int64) + vectors))
+
+
+def set_own_flexibility(paired: Matrix, own: Matrix) -> None:
+    """Write C of two contacts in their own slides from that in their mean and difference, s = mean -+ difference/2."""
+    for row in range(4):
+        for column in range(4):
+            own[row][column] = paired[row][column]
+    for row in range(4):
+        mean = own[row][2]
+        half = own[row][3] / 2
+        own[row][2] = mean - half
+        own[row][3] = mean + half
+    for column in range(4):
+        mean = own[2][column]
+        half = own[3][column] / 2
+        own[2][column] = mean - half
+        own[3][column] = mean + half
+
+
+def set_paired_flexibility(own: Matrix, paired: Matrix) -> None:
+    """Write C of two contacts in mean and difference of their slides from that in their own."""
+    for row in range(4):
+        for column in range(4):
+            paired[row][column] = own[row][column]
+    for row in range(4):
+        first = paired[row][2]
+        second = paired[row][3]
+        paired[row][2] = (first + second) / 2
+        paired[row][3] = second - first
+    for column in range(4):
+        first = paired[2][column]
+        second = paired[3][column]
+        paired[2][column] = (first + second) / 2
+        paired[3][column] = second - first
+
+
+# ---- the iteration ---------------------------------------------------------------------------------------------------
+
+
+def find_contacts(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
+) -> tuple[int, int]:
+    """Find the contacts at the end of a step; return the outcome and the number of solves.
+
+    Parameters
+    ----------
+    law, before, free, flexible
+        Law of the contacts, the contacts at the start of the step, the step without contact forces, and what forces
+        change of it.
+    limit
+        Greatest number of solves before the states are searched.
+    after
+        Where the contacts at the end of the step are written.
+    work
+        Room for the equations.
+    """
+    if law.lagged:
+        return lagged(law, before, free, flexible, limit, after, work)
+    n = before.n
+    for i in range(n):
+        work.tried[i] = before.state[i]
+        work.held[i] = law.cohesion
+    for solve in range(1, limit + 1):
+        trial(law, before, free, flexible, law.friction, after, work)
+        if states_agree(law, after, work.tried):
+            return FOUND, solve
+        update_states(law, after, work.tried, n)
+    if not law.shears:
+        return one_by_one(law, before, free, flexible, limit, after, work)
+    choices = 4 if law.slips else 2
+    if choices**n <= TRIED:
+        return every_state(law, before, free, flexible, limit, choices, after, work)
+    return one_by_one(law, before, free, flexible, limit, after, work)
+
+
+def spring_energy(law: Law, contacts: Contacts, i: int) -> float:
+    """Return the energy of the springs of a contact [J]."""
+    N = contacts.normal[i]
+    T = contacts.shear[i]
+    return float((N * N * law.compliance + T * T * law.softness) / 2)
+
+
+def stays_closed(law: Law, N: float) -> bool:
+    """Tell whether a closed contact with the normal force N [N] stays closed."""
+    return -law.pull <= N
+
+
+def closes(law: Law, w: float) -> bool:
+    """Tell whether an open contact with the gap w [m] closes."""
+    return w < law.closing
+
+
+def shear_limit(law: Law, N: float) -> float:
+    """Return the greatest shear force tan(phi) N + c under the normal force N [N]; a bonded contact has none."""
+    if not law.slips:
+        return math.inf
+    return law.friction * max(N, 0.0) + law.cohesion
+
+
+def agreed_state(law: Law, state: int, gap: float, N: float, T: float, slipped: float) -> int:
+    """Return the state that the law makes of a tried contact; with NaN another one than was tried.
+
+    Parameters
+    ----------
+    slipped
+        How far the contact slipped: against its direction, it sticks [m].
+    """
+    if state == OPEN:
+        return STICK if closes(law, gap) else OPEN
+    if not stays_closed(law, N):
+        return OPEN
+    if state == STICK:
+        if abs(T) <= shear_limit(law, N) * (1 + ROUNDING):
+            return STICK
+        return -SLIP if T > 0 else SLIP
+    return state if state * slipped >= 0 else STICK
+
+
+def agreed(law: Law, after: Contacts, i: int) -> int:
+    """Return the state that the law makes of one of the tried contacts."""
+    return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i])
+
+
+def states_agree(law: Law, after: Contacts, tried: States) -> bool:
+    """Tell whether the forces of all contacts agree with the states that were tried."""
+    for i in range(after.n):  # noqa: SIM110  (numba knows no generators)
+        if agreed(law, after, i) != tried[i]:
+            return False
+    return True
+
+
+def update_states(law: Law, after: Contacts, tried: States, most: int) -> None:
+    """Set the states that disagree with their forces, `most` at most."""
+    for i in range(after.n):
+        state = agreed(law, after, i)
+        if state != tried[i] and most > 0:
+            tried[i] = state
+            most -= 1
+
+
+def one_by_one(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, after: Contacts, work: Work
+) -> tuple[int, int]:
+    """Set the first contact that disagrees, alone, until all agree or states come back."""
+    n = before.n
+    for i in range(n):
+        work.saved[i] = work.tried[i]
+    made, next_save = 0, 1
+    while True:
+        trial(law, before, free, flexible, law.friction, after, work)
+        solves += 1
+        if states_agree(law, after, work.tried):
+            return FOUND, solves
+        update_states(law, after, work.tried, 1)
+        made += 1
+        if all_equal(work.tried, work.saved, n):
+            return NONE, solves
+        if made == next_save:  # Brent: of any circle the states of some power of two are met again
+            next_save *= 2
+            for i in range(n):
+                work.saved[i] = work.tried[i]
+
+
+def all_equal(tried: States, saved: States, n: int) -> bool:
+    """Tell whether two sets of states are the same."""
+    for i in range(n):  # noqa: SIM110
+        if tried[i] != saved[i]:
+            return False
+    return True
+
+
+def every_state(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, choices: int, after: Contacts, work: Work
+) -> tuple[int, int]:
+    """Try all states; take the only ones that agree with their forces, but for rounding."""
+    n = before.n
+    consistent = -1
+    for number in range(choices**n):
+        set_states(work.tried, number, choices, n)
+        trial(law, before, free, flexible, law.friction, after, work)
+        solves += 1
+        if not states_agree(law, after, work.tried):
+            continue
+        if consistent < 0:
+            consistent = number
+            for i in range(n):
+                work.first[i] = after.normal[i]
+                work.first[n + i] = after.shear[i]
+        elif not same_forces(after, work.first):
+            return SEVERAL, solves + choices**n - 1 - number
+    if consistent < 0:
+        return NONE, solves
+    set_states(work.tried, consistent, choices, n)
+    trial(law, before, free, flexible, law.friction, after, work)
+    return FOUND, solves
+
+
+def set_states(tried: States, number: int, choices: int, n: int) -> None:
+    """Set the states by the digits of a number, the last contact's first."""
+    for i in range(n - 1, -1, -1):
+        digit = number % choices
+        tried[i] = -SLIP if digit == 3 else digit
+        number //= choices
+
+
+def same_forces(after: Contacts, first: Vector) -> bool:
+    """Tell whether two answers differ by rounding only, as at the very limit of stick and slip."""
+    n = after.n
+    size = 0.0
+    apart = 0.0
+    for i in range(n):
+        size = max(size, abs(first[i]), abs(first[n + i]))
+        apart = max(apart, abs(first[i] - after.normal[i]), abs(first[n + i] - after.shear[i]))
+    return bool(apart <= ROUNDING * size)
+
+
+# ---- friction as common programs have it -----------------------------------------------------------------------------
+
+
+def lagged(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
+) -> tuple[int, int]:
+    """Find the contacts with friction one solve behind and out of the convergence test, as common programs do.
+
+    It is here to be recognised and explained, not to be used. What such programs do (Shi's and those that descend
+    from it):
+
+    - the iteration ends when no contact opens or closes any more; stick and slip are not looked at;
+    - a slipping contact carries T = -sigma (tan(phi) N + c) with N of the solve before, of the last step in the first;
+    - after a solve a sticking contact slips from then on if |T| > tan(phi) N + c, a slipping one sticks if it moved
+      against its slip within the step;
+    - r of a slipping contact is s at the beginning of each step, so that it sticks again from (almost) no shear force.
+
+    A contact that slips too late carries too much, one that sticks again has lost its force: a stable block creeps,
+    all the more the smaller the step. Dead bands (`Unilateral.band`) are another matter, and make it worse.
+    """
+    n = before.n
+    for i in range(n):
+        work.tried[i] = before.state[i]
+        work.held[i] = shear_limit(law, before.normal[i])
+    for solve in range(1, limit + 1):
+        trial(law, before, free, flexible, 0.0, after, work)
+        same = True
+        for i in range(n):
+            state = lagged_state(law, before, after, i)
+            if (state == OPEN) != (work.tried[i] == OPEN):
+                same = False
+            work.tried[i] = state
+            work.held[i] = shear_limit(law, after.normal[i])
+        if same:
+            for i in range(n):
+                restart_reference(before, after, i, work.tried[i])
+            return FOUND, solve
+    return NONE, limit
+
+
+def lagged_state(law: Law, before: Contacts, after: Contacts, i: int) -> int:
+    """Return the state of a contact after a solve; its own movement within the step decides whether it slips on."""
+    moved = after.slipped[i] + after.stretch[i] - before.stretch[i]
+    return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], moved)
+
+
+def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> None:
+    """Set state and reference with which the next step begins."""
+    moved = after.slipped[i] + after.stretch[i]  # s - r with the old reference
+    if abs(after.state[i]) == SLIP:
+        after.stretch[i] = moved - before.stretch[i] if state == STICK else 0.0
+        after.slipped[i] = moved - after.stretch[i]
+    elif abs(state) == SLIP:
+        after.slipped[i] = after.stretch[i]
+        after.stretch[i] = 0.0
+    after.state[i] = state
+
+
+# ---- one solve -------------------------------------------------------------------------------------------------------
+
+
+def trial(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
+) -> None:
+    """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not.
+
+    Parameters
+    ----------
+    friction
+        tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
+    """
+    n = before.n
+    closed = 0
+    closing = 0
+    for i in range(n):
+        state = work.tried[i]
+        after.state[i] = state
+        after.normal[i] = 0.0
+        after.shear[i] = 0.0
+        after.slipped[i] = 0.0
+        after.reference[i] = before.reference[i]
+        if state != OPEN:
+            sticks = law.shears and state == STICK
+            work.closed[closed] = i
+            work.beta[closed] = 1.0 if sticks else 0.0
+            if sticks and before.state[i] == OPEN:
+                work.closing[closing] = closed
+                closing += 1
+            closed += 1
+    if closed > 0:
+        solve_forces(law, before, free, flexible, friction, closed, closing, after, work)
+        if closing > 0:
+            find_crossings(law, before, free, flexible, friction, closed, closing, after, work)
+    for i in range(n):
+        after.stretch[i] = 0.0 - after.shear[i] * law.softness
+        if after.state[i] != OPEN:
+            after.gap[i] = 0.0 - after.normal[i] * law.compliance  # no sum: a closed contact keeps its digits
+        else:
+            after.gap[i] = free.gap[i]
+            if closed > 0:
+                after.gap[i] += moved_by_forces(law, flexible.C[i], after)
+        if abs(after.state[i]) == SLIP:
+            moved = free.slide[i] + moved_by_forces(law, flexible.C[n + i], after)
+            if before.state[i] == OPEN:
+                moved *= crossing_share(law, before.gap[i], after.normal[i])
+            after.slipped[i] = before.stretch[i] + moved - after.stretch[i]
+
+
+def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
+    """Return a row of C times the forces [m]."""
+    n = after.n
+    total = 0.0
+    for j in range(n):
+        total += row[j] * after.normal[j]
+    if law.shears:
+        for j in range(n):
+            total += row[n + j] * after.shear[j]
+    return total
+
+
+def crossing_share(law: Law, before: float, N: float) -> float:
+    """Return beta = 1 - theta = (N/p) / (w_n + N/p), the share of the step's slide behind the crossing.
+
+    Parameters
+    ----------
+    before : float
+        The gap w_n before the step [m]; one that is not positive has crossed already.
+    N : float
+        The normal force after the step [N]; a tension has not crossed.
+    """
+    if before <= 0:
+        return 1.0
+    if N <= 0:
+        return 0.0
+    penetration = N * law.compliance
+    return penetration / (before + penetration)
+
+
+def crossing_rate(law: Law, before: float, N: float) -> float:
+    """Return the derivative of `crossing_share` by N [1/N]."""
+    if before <= 0 or N <= 0:
+        return 0.0
+    reach = before + N * law.compliance
+    return law.compliance * before / reach / reach
+
+
+def find_crossings(
+    law: Law,
+    before: Contacts,
+    free: Free,
+    flexible: Flexible,
+    friction: float,
+    closed: int,
+    closing: int,
+    after: Contacts,
+    work: Work,
+) -> None:
+    """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
+    for _ in range(CROSSING_STEPS):
+        for k in range(closing):
+            place = work.closing[k]
+            i = work.closed[place]
+            work.rate[k] = crossing_rate(law, before.gap[i], after.normal[i])
+            work.newton_right[k][0] = crossing_share(law, before.gap[i], after.normal[i]) - work.beta[place]
+        for k in range(closing):
+            for j in range(closing):
+                own = 1.0 if j == k else 0.0
+                work.newton[k][j] = own - work.rate[k] * work.slope[k][j]
+            work.scale[k] = 1.0
+        eliminate(work.newton, work.newton_right, work.scale, closing, 1)
+        done = True
+        for k in range(closing):
+            place = work.closing[k]
+            change = work.newton_right[k][0]
+            work.beta[place] = min(max(work.beta[place] + change, 0.0), 1.0)
+            if not abs(change) <= CROSSING_CHANGE * work.beta[place]:
+                done = False
+        solve_forces(law, before, free, flexible, friction, closed, closing, after, work)
+        if done:
+            return
+    for place in range(closed):
+        after.normal[work.closed[place]] = math.nan
+        after.shear[work.closed[place]] = math.nan
+
+
+def solve_forces(
+    law: Law,
+    before: Contacts,
+    free: Free,
+    flexible: Flexible,
+    friction: float,
+    closed: int,
+    closing: int,
+    after: Contacts,
+    work: Work,
+) -> None:
+    """Write N and T of the closed contacts for given `work.beta`, and dN/dbeta of those that close."""
+    if closed == 1 and not law.shears:
+        i = work.closed[0]
+        after.normal[i] = (0.0 - free.gap[i]) / (flexible.C[i][i] + law.compliance)
+        return
+    active = 0
+    for place in range(closed):
+        if work.beta[place] > 0:
+            work.active[active] = place
+            active += 1
+    size = closed + active
+    paired = active == 2 and before.n == 2 and keeps_pair(law, flexible, work)
+    assemble(law, before, free, flexible, paired, closed, active, work)
+    for place in range(size):
+        work.scale[place] = scale_of(work.A[place][place])
+    if law.slips:
+        add_friction(before, flexible, friction, closed, active, work)
+    for k in range(closing):  # what a unit of force in the equation of a closing contact does; T makes dN/dbeta of it
+        unit_push(k, paired, closed, active, work)
+    eliminate(work.A, work.right, work.scale, size, 1 + closing)
+    write_forces(law, friction, paired, closed, active, after, work)
+    for k in range(closing):
+        beta = work.beta[work.closing[k]]
+        strength = after.shear[work.closed[work.closing[k]]] * law.softness / (beta * beta) if beta > 0 else 0.0
+        for j in range(closing):
+            work.slope[j][k] = work.right[work.closing[j]][1 + k] * strength
+
+
+def keeps_pair(law: Law, flexible: Flexible, work: Work) -> bool:
+    """Tell whether the equations of two sticking contacts are those of H and G.
+
+    These keep apart the rigid and the elastic flexibility, but mix unequal softnesses: beyond the rigid flexibility
+    softness decides, and the contacts' own forces keep the digits.
+    """
+    first = law.softness / work.beta[0]
+    second = law.softness / work.beta[1]
+    return bool(first == second or max(first, second) <= flexible.C_paired[2][2])
+
+
+def assemble(
+    law: Law, before: Contacts, free: Free, flexible: Flexible, paired: bool, closed: int, active: int, work: Work
+) -> None:
+    """Write the equations of N of the closed contacts and T of those that stick, without the slipping ones' T."""
+    n = before.n
+    A = work.A
+    C = flexible.C_paired if paired else flexible.C
+    for row in range(closed + active):
+        a = row_of(row, paired, n, closed, work)
+        for column in range(closed + active):
+            A[row][column] = C[a][row_of(column, paired, n, closed, work)]
+    for place in range(closed):
+        A[place][place] += law.compliance
+        work.right[place][0] = 0.0 - free.gap[work.closed[place]]
+    if paired:
+        first = law.softness / work.beta[0]
+        second = law.softness / work.beta[1]
+        A[2][2] += (first + second) / 4
+        A[2][3] += (second - first) / 2
+        A[3][2] += (second - first) / 2
+        A[3][3] += first + second
+        work.right[2][0] = 0.0 - free.paired[0] - (before.stretch[0] + before.stretch[1]) / 2
+        work.right[3][0] = 0.0 - free.paired[1] - (before.stretch[1] - before.stretch[0])
+        return
+    for k in range(active):
+        i = work.closed[work.active[k]]
+        A[closed + k][closed + k] += law.softness / work.beta[work.active[k]]
+        work.right[closed + k][0] = 0.0 - (before.stretch[i] + free.slide[i])
+
+
+def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
+    """Return the row of C that belongs to an equation."""
+    if row < closed:
+        return int(work.closed[row])
+    if paired:
+        return n + row - closed
+    return int(n + work.closed[work.active[row - closed]])
+
+
+def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
+    """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
+    n = before.n
+    for place in range(closed):
+        i = work.closed[place]
+        if abs(work.tried[i]) != SLIP:
+            continue
+        direction = -1.0 if work.tried[i] > 0 else 1.0
+        for row in range(closed + active):
+            flexibility = direction * flexible.C[row_of(row, False, n, closed, work)][n + i]
+            work.A[row][place] += friction * flexibility
+            work.right[row][0] -= work.held[i] * flexibility
+
+
+def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> None:
+    """Write the right-hand side of a unit of force in the shear equation of a closing contact."""
+    place = work.closing[k]
+    for row in range(closed + active):
+        work.right[row][1 + k] = 0.0
+    if paired:
+        work.right[2][1 + k] = 0.5
+        work.right[3][1 + k] = -1.0 if place == 0 else 1.0
+        return
+    for j in range(active):
+        if work.active[j] == place:
+            work.right[closed + j][1 + k] = 1.0
+
+
+def write_forces(
+    law: Law, friction: float, paired: bool, closed: int, active: int, after: Contacts, work: Work
+) -> None:
+    """Write N and T of the closed contacts from the solution of their equations."""
+    right = work.right
+    for place in range(closed):
+        i = work.closed[place]
+        after.normal[i] = right[place][0]
+        after.shear[i] = 0.0
+        if law.slips and abs(work.tried[i]) == SLIP:
+            limit = friction * right[place][0] + work.held[i]
+            after.shear[i] = 0.0 - limit if work.tried[i] > 0 else limit
+    if paired:
+        after.shear[0] = right[2][0] / 2 - right[3][0]
+        after.shear[1] = right[2][0] / 2 + right[3][0]
+        return
+    for k in range(active):
+        after.shear[work.closed[work.active[k]]] = right[closed + k][0]
+
+
+def scale_of(diagonal: float) -> float:
+    """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
+    _, exponent = math.frexp(diagonal)
+    return math.ldexp(1.0, -(exponent // 2))
+
+
+def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:
+    """Solve A X = right in place of `right`, by elimination with pivots, rows and columns scaled by `scale`."""
+    for i in range(size):
+        for j in range(size):
+            A[i][j] = A[i][j] * scale[j] * scale[i]
+        for j in range(columns):
+            right[i][j] = right[i][j] * scale[i]
+    for i in range(size):
+        best = i
+        for k in range(i + 1, size):
+            if abs(A[k][i]) > abs(A[best][i]):
+                best = k
+        if best != i:
+            for j in range(size):
+                A[i][j], A[best][j] = A[best][j], A[i][j]
+            for j in range(columns):
+                right[i][j], right[best][j] = right[best][j], right[i][j]
+        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        for k in range(i + 1, size):
+            factor = A[k][i] / pivot
+            if factor != 0:
+                for j in range(i + 1, size):
+                    A[k][j] -= factor * A[i][j]
+                for j in range(columns):
+                    right[k][j] -= factor * right[i][j]
+    for i in range(size - 1, -1, -1):
+        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        for j in range(columns):
+            total = right[i][j]
+            for k in range(i + 1, size):
+                total -= A[i][k] * right[k][j]
+            right[i][j] = total / pivot
+    for i in range(size):
+        for j in range(columns):
+            right[i][j] = right[i][j] * scale[i]

@@ -1,0 +1,95 @@
+"""What can be read from a history on contact that opens: of one block, of its sub-blocks, of a block that turns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.kernel import FOUND
+from dda.contact.unilateral import OPEN
+from dda.one_block.solution import Result
+from dda.stepping.driver import OUTCOMES
+
+Array = NDArray[np.float64]
+
+
+def lazily(name: str, meaning: str) -> cached_property[Array]:
+    """Return the property of a result that is made when it is first asked for."""
+
+    def read(result: ContactResult) -> Array:
+        return result.parts[name]()
+
+    read.__doc__ = meaning
+    return cached_property(read)
+
+
+def at_corner(name: str, end: int) -> property:
+    """Return the property of a result that is one corner of another one, which has a row for each contact."""
+    return property(lambda r: np.asarray(getattr(r, name)[r.base_contacts[end]]), doc=f"{name} at one corner")
+
+
+@dataclass(frozen=True, eq=False)
+class ContactResult(Result):
+    """Histories of the steps that were reached; element 0 is step 1. Forces act on the block.
+
+    The contacts are, of one block, the corners M and N of its base; of sub-blocks the points of the base in their order
+    from M to N, two for each sub-block on it; of a block that turns all corners of its outline. What is no field is
+    made when it is first asked for. `solves` counts the small systems of the open-close iteration, the confirming one
+    of each step included.
+    """
+
+    outcome: str  # "completed", or why the history ends early, in words
+    step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
+    step_cuts: NDArray[np.int_]  # times that a step was cut
+    base_contacts: tuple[int, int]  # rows of M and N
+    parts: Mapping[str, Callable[[], Array]]  # makes what is asked for
+    balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
+
+    normal = lazily("normal", "N, away from the base, (contacts, steps) [N].")
+    shear = lazily("shear", "T, along the base from M to N, (contacts, steps) [N].")
+    gap = lazily("gap", "w, negative when pressed, (contacts, steps) [m].")
+    stretch = lazily("stretch", "Stretch s - r of the shear springs, 0 where open, (contacts, steps) [m].")
+    slide = lazily("slide", "Displacement s along the base, less that of the base, (contacts, steps) [m].")
+    slipped = lazily("slipped", "Change of the shear reference by slip in each step, (contacts, steps) [m].")
+    velocity = lazily("velocity", "Of the centroid, upwards, (steps,) [m/s].")
+    horizontal_velocity = lazily("horizontal_velocity", "Of the centroid, (steps,) [m/s].")
+
+    @cached_property
+    def states(self) -> NDArray[np.int_]:
+        """0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M, (contacts, steps)."""
+        return np.asarray(self.parts["states"](), dtype=int)
+
+    @cached_property
+    def closed(self) -> NDArray[np.bool_]:
+        """Whether the contacts are closed, (contacts, steps)."""
+        return np.asarray(self.states != OPEN)
+
+    @cached_property
+    def slip(self) -> Array:
+        """Largest sum of what the reference of a contact moved while it was pressed, (steps,) [m]."""
+        return np.asarray(np.abs(np.cumsum(self.slipped, axis=1)).max(axis=0))
+
+    @cached_property
+    def energies(self) -> dict[str, Array] | None:
+        """By `ENERGIES` [J], losses summed from t = 0 on; None if not asked for."""
+        if self.balance is None:
+            return None
+        with np.errstate(all="ignore"):
+            return self.balance()
+
+    normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", 1)  # N, away from the base [N]
+    shear_force_m, shear_force_n = at_corner("shear", 0), at_corner("shear", 1)  # T, from M to N [N]
+    gap_m, gap_n = at_corner("gap", 0), at_corner("gap", 1)  # w, negative when pressed [m]
+    slide_m, slide_n = at_corner("slide", 0), at_corner("slide", 1)  # s [m]
+    shear_m, shear_n = at_corner("stretch", 0), at_corner("stretch", 1)  # s - r [m]
+    closed_m, closed_n = at_corner("closed", 0), at_corner("closed", 1)
+    state_m, state_n = at_corner("states", 0), at_corner("states", 1)
+
+
+def early_end(outcome: int, steps: int) -> Sequence[str]:
+    """Return the note of a history that ends before its last step."""
+    return () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {steps + 1}",)

@@ -1,0 +1,244 @@
+"""Long loops over steps, compiled by numba where it is installed; the same functions run as plain Python otherwise.
+
+A loop and the functions that it calls are written once, in numbers and arrays `a[i][j]` that may be lists as well:
+plain Python is several times faster on these. numba is imported only where a history is long enough to pay for it.
+Compiled code is kept between processes in a directory of the user's cache, by the sources that it was made of; where
+that cannot be written, where numba is missing or does not know this Python, the plain functions run. The numbers are
+the same: nothing is reordered or fused.
+
+Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
+replaced since, the plain functions run.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+Loop = Callable[..., Any]
+
+WORTHWHILE = 1.0  # seconds of plain Python from which a loop is compiled, or read from the cache
+WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
+PLAIN, COMPILED = "plain Python", "compiled"
+
+loops: dict[object, tuple[list[object], Loop | None]] = {}  # by loop and types: what it was made of, and itself
+_jitable: set[FunctionType] = set()
+
+
+def run_loop(
+    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], kept: tuple[Any, ...], seconds: float
+) -> tuple[Any, tuple[Any, ...], str]:
+    """Run a loop over steps; return what it returns, the records that it left, and whether it was compiled, in words.
+
+    Parameters
+    ----------
+    loop
+        The plain function. It takes all that follows, in this order.
+    records
+        Named tuples of numbers and of arrays of always the same sizes; it works on copies.
+    series
+        Named tuples of arrays of any length, which it reads.
+    kept
+        Arrays that it fills, and numbers.
+    seconds
+        About how long the plain function takes.
+    """
+    with np.errstate(all="ignore"):
+        if is_worthwhile(seconds):
+            left = tuple(as_record(part) for part in records)
+            own = compiled(loop, (*left, *series, *kept))
+            if own is not None:
+                return own(*left, *series, *kept), left, COMPILED
+        left = tuple(as_lists(part) for part in records)
+        return loop(*left, *(as_lists(part) for part in series), *kept), left, PLAIN
+
+
+class Compilable:
+    """A function of records that is called at every step of a loop that is not compiled itself.
+
+    Parameters
+    ----------
+    function
+        The plain function, of named tuples and numbers.
+    seconds
+        About how long all its calls take in plain Python.
+    """
+
+    def __init__(self, function: Loop, seconds: float) -> None:
+        self.function, self.records = function, is_worthwhile(seconds)
+        self.how = PLAIN
+
+    def room(self, value: Any) -> Any:
+        """Return a named tuple in the form in which the function may write it."""
+        return as_record(value) if self.records else as_lists(value)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function, compiled or not."""
+        given = [self._converted(argument) for argument in arguments]
+        if self.records:
+            own = compiled(self.function, tuple(given))
+            if own is not None:
+                self.how = COMPILED
+                return own(*given)
+        return self.function(*given)
+
+    def _converted(self, argument: Any) -> Any:
+        arrays = isinstance(argument, tuple) and any(isinstance(part, np.ndarray) for part in argument)
+        numbers = self.records and isinstance(argument, tuple)
+        return self.room(argument) if arrays or numbers else argument
+
+
+def is_worthwhile(seconds: float) -> bool:
+    """Tell whether plain Python takes so long that compiled code pays, where it can be kept and where it cannot."""
+    return seconds >= (WORTHWHILE if cache_directory() else WORTHWHILE_ANEW)
+
+
+def as_lists(value: Any) -> Any:
+    """Return arrays as lists, also within named tuples."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, tuple):
+        return type(value)(*(as_lists(part) for part in value))  # a named tuple
+    return value
+
+
+def as_record(value: Any) -> Any:
+    """Return a named tuple as a record of NumPy: one block of memory, however many arrays there are."""
+    record = np.recarray(1, dtype=_type_of(value))
+    _fill(record[0], value)
+    return record[0]
+
+
+def _type_of(value: Any) -> Any:
+    """Return the type of NumPy for a named tuple, an array or a number."""
+    if isinstance(value, tuple):
+        fields = zip(value._fields, value, strict=True)  # type: ignore[attr-defined]
+        return np.dtype((np.record, [(name, _type_of(part)) for name, part in fields]))
+    own = np.asarray(value)
+    return np.dtype((np.int64 if own.dtype.kind in "bi" else np.float64, own.shape))
+
+
+def _fill(record: Any, value: Any) -> None:
+    for name, part in zip(value._fields, value, strict=True):
+        if isinstance(part, tuple):
+            _fill(record[name], part)
+        else:
+            record[name] = part
+
+
+def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
+    """Return the compiled loop for such arguments, or None where the plain one is to run."""
+    parts = list(parts_of(loop))
+    if any(_is_foreign(part, loop) for part in parts):
+        return None
+    key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
+    if key not in loops:
+        loops[key] = parts, _compile(loop, parts, arguments)
+    made_of, own = loops[key]
+    same = len(parts) == len(made_of) and all(map(_same, parts, made_of))
+    return own if same else None
+
+
+def _is_foreign(part: object, loop: Loop) -> bool:
+    """Tell whether a function comes from elsewhere than the package of the loop: nobody knows what it holds."""
+    if not callable(part) or isinstance(part, type):
+        return False
+    package = loop.__module__.partition(".")[0]
+    return not isinstance(part, FunctionType) or part.__module__.partition(".")[0] != package
+
+
+def _same(part: object, other: object) -> bool:
+    return part is other or (type(part) is type(other) and not callable(part) and part == other)
+
+
+def parts_of(loop: Loop) -> Iterator[object]:
+    """Yield a function of this package, all that it calls, and the constants that these read."""
+    seen: set[int] = set()
+    waiting: list[object] = [loop]
+    while waiting:
+        part = waiting.pop()
+        if id(part) in seen and isinstance(part, FunctionType):
+            continue
+        seen.add(id(part))
+        yield part
+        if not isinstance(part, FunctionType):
+            continue
+        names = [name for name in part.__code__.co_names if name in part.__globals__]
+        cells = [cell.cell_contents for cell in part.__closure__ or ()]
+        values = [part.__globals__[name] for name in names] + cells
+        waiting += [value for value in values if callable(value) or isinstance(value, int | float | tuple)]
+
+
+def _compile(loop: Loop, parts: list[object], arguments: tuple[Any, ...]) -> Loop | None:
+    """Return the compiled loop, or None where numba, this Python or this machine cannot make it."""
+    try:
+        import numba
+        from numba.extending import register_jitable
+    except Exception:  # not installed, or not for this Python
+        return None
+    functions = [part for part in parts if isinstance(part, FunctionType)]
+    for function in functions:
+        if function is not loop and function not in _jitable:
+            register_jitable(function)
+            _jitable.add(function)
+    directory = cache_directory()
+    if directory is not None:
+        directory = directory / _digest(functions, numba.__version__)
+    for place in dict.fromkeys((directory, None)):
+        try:
+            types = tuple(numba.typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
+            return compile_loop(numba, loop, types, place)
+        except Exception:  # a broken or locked cache, then a compiler that does not know what plain Python knows
+            continue
+    return None
+
+
+def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
+    """Return the compiled loop; raise whatever numba raises."""
+    before = numba.config.CACHE_DIR
+    try:
+        if directory is not None:
+            numba.config.CACHE_DIR = str(directory)
+        # nothing is allocated in a loop: without the counting of references a call costs what it does
+        own: Any = numba.njit(cache=directory is not None, error_model="numpy", _nrt=False)(loop)
+    finally:
+        numba.config.CACHE_DIR = before
+    own.compile(types)
+    made: Loop = own
+    return made
+
+
+def _digest(functions: list[FunctionType], version: str) -> str:
+    """Return what changes with the sources of functions, with numba and with Python."""
+    digest = hashlib.sha256(f"{version} {sys.version}".encode())
+    for name in sorted({function.__code__.co_filename for function in functions}):
+        digest.update(Path(name).read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@functools.cache
+def cache_directory() -> Path | None:
+    """Return the directory of the user's cache for compiled code, or None where it cannot be written."""
+    try:
+        directory = user_cache() / "dda-validation"
+        directory.mkdir(parents=True, exist_ok=True)
+        return directory if os.access(directory, os.W_OK) else None
+    except (OSError, RuntimeError):  # no home, or a full disk
+        return None
+
+
+def user_cache() -> Path:
+    """Return the directory in which this system's programs keep what they can make again."""
+    if own := os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME"):
+        return Path(own)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")

@@ -1,0 +1,207 @@
+"""The loop over steps, compiled: the numbers of plain Python, and plain Python wherever it cannot be."""
+
+import functools
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.frictional import rubbing_model, shaken
+from oracles.rolling import random_rolling
+from oracles.unilateral_checks import DT, random_model
+
+from dda import Scheme, Unilateral, UnilateralOptions, opening_subdivided, solve_opening_system, solve_unilateral
+from dda.contact import kernel
+from dda.one_block import unilateral_step
+from dda.rotation.solution import solve_rolling
+from dda.stepping import compiled
+
+FIELDS = (
+    "normal",
+    "shear",
+    "gap",
+    "slide",
+    "slip",
+    "states",
+    "velocity",
+    "horizontal_velocity",
+    "step_solves",
+    "step_cuts",
+)
+SCHEMES = [Scheme(0.5, 1.0, 0.99, DT), Scheme(0.25, 0.5, 1.0, DT, "consistent"), Scheme(0.3025, 0.6, 0.97, DT)]
+
+
+@pytest.fixture
+def always(monkeypatch):
+    """Compile, however short a history is."""
+    pytest.importorskip("numba")
+    monkeypatch.setattr(compiled, "WORTHWHILE", 0.0)
+    monkeypatch.setattr(compiled, "WORTHWHILE_ANEW", 0.0)
+
+
+def pair(solve, monkeypatch):
+    """Return the result of compiled code and that of plain Python."""
+    fast = solve()
+    with monkeypatch.context() as patch:
+        patch.setattr(compiled, "is_worthwhile", lambda seconds: False)
+        plain = solve()
+    assert any(compiled.COMPILED in note for note in fast.notes) and any(compiled.PLAIN in note for note in plain.notes)
+    return fast, plain
+
+
+def check_same(fast, plain):
+    for name in FIELDS:
+        one, other = getattr(fast, name), getattr(plain, name)
+        assert one.shape == other.shape
+        assert np.max(np.abs(one - other), initial=0.0) <= 1e-14 * np.max(np.abs(other), initial=0.0), name
+    for name, values in plain.energies.items():
+        assert np.max(np.abs(values - fast.energies[name])) <= 1e-14 * max(
+            map(np.max, map(np.abs, plain.energies.values()))
+        )
+    assert fast.outcome == plain.outcome and fast.factorisations == plain.factorisations
+
+
+def models():
+    """Return random blocks of every kind of contact and rule, each with a scheme and options."""
+    for seed in range(12):
+        model, options = rubbing_model(seed) if seed % 2 else random_model(seed), {}
+        law = model.contact
+        if seed in (4, 5):
+            law = replace(law, stiffness=np.inf)
+        if seed in (6, 7):
+            law = replace(law, band=(1e-5, 0.0 if seed == 7 else 1e-6))
+        if seed in (9, 11):
+            law = replace(law, rules="lagged")
+        motion = shaken(np.random.default_rng(seed)) if seed in (3, 8) else None
+        yield replace(model, contact=law, motion=motion), SCHEMES[seed % 3], options
+    yield random_model(5, glued=True), Scheme(0.5, 1.0, 0.99, 8e-3), {}  # some steps are cut
+    yield random_model(2, glued=False), replace(SCHEMES[1], start="zero"), {"rule": "energy-conserving"}
+    yield rubbing_model(1), SCHEMES[1], {"rule": "implicit"}
+
+
+@pytest.mark.long
+def test_one_block_is_the_same_compiled_and_plain(always, monkeypatch):
+    for model, scheme, options in models():
+        own = UnilateralOptions(energies=True, **options)
+        check_same(*pair(functools.partial(solve_unilateral, model, scheme, 150, options=own), monkeypatch))
+
+
+@pytest.mark.long
+def test_sub_blocks_are_the_same_compiled_and_plain(always, monkeypatch):
+    for seed in (1, 3):
+        opening = opening_subdivided(rubbing_model(seed), 2, 1, 1e13)
+        own = UnilateralOptions(energies=True)
+        check_same(*pair(functools.partial(solve_opening_system, opening, SCHEMES[0], 40, options=own), monkeypatch))
+
+
+@pytest.mark.long
+def test_a_block_that_turns_is_the_same_compiled_and_plain(always, monkeypatch):
+    for seed in (2, 3, 5, 9, 11):
+        model, dt = random_rolling(seed)
+        check_same(*pair(functools.partial(solve_rolling, model, Scheme(0.5, 1.0, 0.99, dt), 80), monkeypatch))
+
+
+def test_a_short_history_does_not_import_numba():
+    code = (
+        "import sys; from dda import *; "
+        "b = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)); "
+        "r = solve_unilateral(UnilateralModel(b, Unilateral(1e9), 5e6), Scheme(0.5, 1.0, 1.0, 1e-4), 100); "
+        "assert 'plain Python' in r.notes[-1]; print('numba' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def loop(numbers, kept):
+    """A loop that is quickly compiled."""
+    for i in range(len(kept)):
+        kept[i] = halved(numbers.size) + i
+
+
+def halved(size):
+    return size / FACTOR
+
+
+FACTOR = 2.0
+
+
+@pytest.fixture
+def fresh(always, monkeypatch, tmp_path):
+    """Forget what was compiled; keep code in a directory of this test."""
+    monkeypatch.setattr(compiled, "loops", {})
+    monkeypatch.setattr(compiled, "cache_directory", lambda: tmp_path)
+    return tmp_path
+
+
+class Numbers(kernel.NamedTuple):
+    size: float
+
+
+def ran(seconds=1.0):
+    kept = np.zeros(3)
+    how = compiled.run_loop(loop, (Numbers(5.0),), (), (kept,), seconds)[2]
+    return how, kept.tolist()
+
+
+def test_compiled_code_is_kept_and_read_again(fresh, monkeypatch):
+    assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
+    kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}
+    assert len(kept) == 2
+    monkeypatch.setattr(compiled, "loops", {})
+    assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
+    assert {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")} == kept
+
+
+def test_a_broken_cache_is_made_anew(fresh, monkeypatch):
+    ran()
+    for path in fresh.rglob("*.nb?"):
+        path.write_bytes(b"nothing that numba knows")
+    monkeypatch.setattr(compiled, "loops", {})
+    assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
+
+
+def test_without_a_place_for_the_cache_it_is_compiled_for_longer_histories(fresh, monkeypatch):
+    monkeypatch.setattr(compiled, "cache_directory", lambda: None)
+    monkeypatch.setattr(compiled, "WORTHWHILE_ANEW", 30.0)
+    assert ran(1.0)[0] == compiled.PLAIN
+    assert ran(40.0) == (compiled.COMPILED, [2.5, 3.5, 4.5])
+
+
+@pytest.mark.parametrize("name", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME"])
+def test_a_directory_that_cannot_be_written_is_none(monkeypatch, tmp_path, name):
+    (tmp_path / "file").write_text("")
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv(name, str(tmp_path / "file" / "below"))
+    assert compiled.cache_directory.__wrapped__() is None
+    monkeypatch.setenv(name, str(tmp_path / "new"))
+    assert compiled.cache_directory.__wrapped__() == tmp_path / "new" / "dda-validation"
+    assert os.listdir(tmp_path) and not (tmp_path / "numba").exists()
+
+
+def test_without_numba_the_plain_functions_run(fresh, monkeypatch):
+    monkeypatch.setitem(sys.modules, "numba", None)
+    assert ran() == (compiled.PLAIN, [2.5, 3.5, 4.5])
+
+
+def test_what_numba_cannot_compile_runs_plain(fresh, monkeypatch):
+    monkeypatch.setattr(compiled, "compile_loop", lambda *given: 1 / 0)
+    assert ran() == (compiled.PLAIN, [2.5, 3.5, 4.5])
+
+
+def test_a_function_or_a_number_that_was_replaced_counts(fresh, monkeypatch):
+    assert ran()[0] == compiled.COMPILED
+    with monkeypatch.context() as patch:
+        patch.setattr(sys.modules[__name__], "FACTOR", 5.0)
+        assert ran() == (compiled.PLAIN, [1.0, 2.0, 3.0])
+    with monkeypatch.context() as patch:
+        patch.setattr(sys.modules[__name__], "halved", abs)
+        assert ran() == (compiled.PLAIN, [5.0, 6.0, 7.0])
+    assert ran()[0] == compiled.COMPILED
+
+
+def test_a_seeded_fault_is_never_compiled_away(always, monkeypatch):
+    monkeypatch.setattr(unilateral_step, "velocity_corrector", lambda scheme, P, f, f1: scheme.gg * P)
+    model = replace(random_model(1), contact=Unilateral(1e9))
+    assert compiled.PLAIN in solve_unilateral(model, SCHEMES[0], 3).notes[-1]
