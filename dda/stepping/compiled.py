@@ -25,7 +25,7 @@ import numpy as np
 
 Loop = Callable[..., Any]
 
-WORTHWHILE = 1.0  # seconds of plain Python from which a loop is compiled, or read from the cache
+WORTHWHILE = 3.0  # seconds of plain Python from which a loop is compiled, or read from the cache
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 PLAIN, COMPILED = "plain Python", "compiled"
 

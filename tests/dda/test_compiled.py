@@ -165,7 +165,7 @@ def test_a_broken_cache_is_made_anew(fresh, monkeypatch):
 def test_without_a_place_for_the_cache_it_is_compiled_for_longer_histories(fresh, monkeypatch):
     monkeypatch.setattr(compiled, "cache_directory", lambda: None)
     monkeypatch.setattr(compiled, "WORTHWHILE_ANEW", 30.0)
-    assert ran(1.0)[0] == compiled.PLAIN
+    assert ran(20.0)[0] == compiled.PLAIN
     assert ran(40.0) == (compiled.COMPILED, [2.5, 3.5, 4.5])
 
 
