@@ -448,7 +448,7 @@ def settle(
     solves = 0
     for _ in range(ROUNDS):
         turn(state.Q, own.D[2], body.exact, own.turn)
-        push_of_loads(body, state, own.D)
+        push_of_loads(body, state)
         for i in range(6):
             total = own.free[i]
             for j in range(6):
@@ -567,8 +567,8 @@ def force_directions(body: RollingEquations, state: RollingState, x: float, y: f
         own.up[i] = (1 - late) * own.up[i] + late * own.up_end[i]
 
 
-def push_of_loads(body: RollingEquations, state: RollingState, D: Vector) -> None:
-    """Write B_f' f of the dead loads."""
+def push_of_loads(body: RollingEquations, state: RollingState) -> None:
+    """Write B_f' f of the dead loads, for own.D and its turn."""
     own = body.room
     for i in range(6):
         own.push[i] = 0.0
@@ -584,7 +584,7 @@ def accept(body: RollingEquations, made: StepMatrices, state: RollingState, afte
     D = own.D
     h = made.numbers[2]
     place_corners(body, state, D)
-    push_of_loads(body, state, D)
+    push_of_loads(body, state)
     if near > 0:
         set_directions(body, state, near)
         pair = body.one if near == 1 else body.two

@@ -98,7 +98,9 @@ class Compilable:
 
 def is_worthwhile(seconds: float) -> bool:
     """Tell whether plain Python takes so long that compiled code pays, where it can be kept and where it cannot."""
-    return seconds >= (WORTHWHILE if cache_directory() else WORTHWHILE_ANEW)
+    if seconds < WORTHWHILE:  # and nothing is looked for, nor made, in the user's cache
+        return False
+    return seconds >= WORTHWHILE_ANEW or cache_directory() is not None
 
 
 def as_lists(value: Any) -> Any:
@@ -185,9 +187,11 @@ def _compile(loop: Loop, parts: list[object], arguments: tuple[Any, ...]) -> Loo
     except Exception:  # not installed, or not for this Python
         return None
     functions = [part for part in parts if isinstance(part, FunctionType)]
+    direct = [cell.cell_contents for cell in getattr(loop, "__closure__", None) or ()]
     for function in functions:
         if function is not loop and function not in _jitable:
-            register_jitable(function)
+            # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step
+            register_jitable(forceinline=function in direct)(function)
             _jitable.add(function)
     directory = cache_directory()
     if directory is not None:
