@@ -192,6 +192,22 @@ def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> No
     assert 0 < caught.value.time < 1e-5
 
 
+def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(block_march, "STEPS", 50)
+    monkeypatch.setattr(block_march.March, "_step", None)
+    with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
+        solve(replace(PAPER, locked=True), 1.0)
+    assert 0 < caught.value.time < 1.0
+
+
+def test_what_would_take_too_many_steps_is_given_up_early() -> None:
+    """At p = 1e24 N/m the millisecond has 27 million radians; the block rests, and no switch shortens it."""
+    resting = replace(PAPER, stiffness=1e24, pressure=0.0, gravity=9.81)
+    with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
+        solve(resting, 1e-3)
+    assert 1e-6 < caught.value.time < 1e-4  # as far as the steps that are allowed lead
+
+
 def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch: pytest.MonkeyPatch) -> None:
     stiff = replace(PAPER, stiffness=1e11)
     assert solve(stiff, 0.02, digits=30).digits == 30
