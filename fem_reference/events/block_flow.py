@@ -23,8 +23,8 @@ ANGLE = 4.0
 """Length of a step times the greatest rate [rad]; e^4 = 55 is how far the terms of its series may cancel."""
 FLOAT_TERMS = 36
 """Terms of a series in floats: 4^36/36! is 1e-20."""
-CELLS = 4
-"""Parts of a step whose Bernstein forms are looked at."""
+CELLS = (4, 32)
+"""Parts of a step whose Bernstein forms are looked at, of all functions and of those that the first cannot prove."""
 ROUNDING = 40 * np.finfo(float).eps
 """Part of its terms by which a sum of `FLOAT_TERMS` terms of 18 products may be wrong in floats."""
 SEARCHES = 4
@@ -299,9 +299,12 @@ class Step:
                 terms[i], margin[i] = 1.0, 0.0
             elif place:
                 terms[i] = np.append(terms[i, place:], np.zeros(place))
-        doubtful = np.flatnonzero(~((terms @ bernstein()).min(axis=1) > margin))
-        if not len(doubtful):
-            return 1.0, []
+        doubtful = np.arange(len(terms))
+        for cells in CELLS:
+            least = (terms[doubtful] @ bernstein(cells)).min(axis=1)
+            doubtful = doubtful[~(least > margin[doubtful])]
+            if not len(doubtful):
+                return 1.0, []
         terms, margin = terms[doubtful], margin[doubtful]
         low, width = 0.0, 1.0
         for _ in range(SEARCHES):
@@ -312,7 +315,7 @@ class Step:
                 return 0.0, doubtful.tolist()
             low, width = low + width * GRID[below[0]] - width / len(GRID), width / len(GRID)
         ahead = terms * low ** np.arange(FLOAT_TERMS)
-        proven = bool(np.all((ahead @ bernstein()).min(axis=1) > margin))
+        proven = bool(np.all((ahead @ bernstein(CELLS[0])).min(axis=1) > margin))
         return (low if proven else 0.0), doubtful.tolist()
 
 
@@ -357,16 +360,16 @@ def term_count(angle: float) -> int:
 
 
 @cache
-def bernstein() -> Array:
-    """From the coefficients of powers on [0, 1] to those of Bernstein's forms on its `CELLS` parts, (terms, forms)."""
+def bernstein(cells: int) -> Array:
+    """From the coefficients of powers on [0, 1] to those of Bernstein's forms on equal parts of it, (terms, forms)."""
     n = FLOAT_TERMS - 1
-    # z = (cell + t) / CELLS: z^j = sum of C(j, k) cell^(j - k) t^k / CELLS^j, and t^k has the form C(i, k) / C(n, k)
+    # z = (cell + t) / cells: z^j = sum of C(j, k) cell^(j - k) t^k / cells^j, and t^k has the form C(i, k) / C(n, k)
     form = [[math.comb(i, k) / math.comb(n, k) for i in range(n + 1)] for k in range(n + 1)]
     parts = []
-    for cell in range(CELLS):
+    for cell in range(cells):
         shift = np.zeros((n + 1, n + 1))
         for j in range(n + 1):
             for k in range(j + 1):
-                shift[j, k] = math.comb(j, k) * cell ** (j - k) / CELLS**j
+                shift[j, k] = math.comb(j, k) * cell ** (j - k) / cells**j
         parts.append(shift @ np.array(form))
     return np.hstack(parts)
