@@ -117,7 +117,7 @@ class March:
             idle = len(self.nodes) - self.last_switch > IDLE
             if len(self.nodes) >= STEPS or (idle and self._steps_left() > STEPS):
                 self._stop_for_work()
-            self._step(row_end, span)
+            self.step(row_end, span)
 
     def _steps_left(self) -> float:
         """Steps to the end if no corner switches any more."""
@@ -129,7 +129,7 @@ class March:
         within = float(self.state.time) + (STEPS - len(self.nodes)) * ANGLE / rate
         raise TooMuchWorkError(within, f"{reason}, since the block oscillates at {rate:.3g} rad/s")
 
-    def _step(self, row_end: arb, span: float) -> None:
+    def step(self, row_end: arb, span: float) -> None:
         """One step, up to a switch at most."""
         state = self.state
         flow = self.flows[state.states]
@@ -157,7 +157,7 @@ class March:
                 self.near = True
                 length = ahead
         elif doubtful:
-            fall = self._first_fall(flow, a, length, [flow.watched[i] for i in doubtful], radius)
+            fall = self.first_fall(flow, a, length, [flow.watched[i] for i in doubtful], radius)
             if fall is not None:
                 self._switch(flow, a, length, *fall)
                 return
@@ -194,7 +194,7 @@ class March:
         state.x, state.v = x.mid(), v.mid()
         state.spread.transport(J, added)
 
-    def _first_fall(
+    def first_fall(
         self, flow: Flow, a: arb_mat, length: arb, rows: list[Row], radius: Array
     ) -> tuple[Fall | None, Row] | None:
         """The first fall of some watched functions, in units of the step; None instead of it: at once."""

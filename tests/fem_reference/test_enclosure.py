@@ -179,13 +179,13 @@ def test_a_stiff_contact_is_followed_by_few_steps(monkeypatch: pytest.MonkeyPatc
     """One millisecond at p = 1e18 N/m are 27000 radians, 6800 steps; balls must look at the first few of them only."""
     problem = replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81)
     searches: list[float] = []
-    search = block_march.March._first_fall
+    search = block_march.March.first_fall
 
     def counted(march: block_march.March, *arguments: object) -> object:
         searches.append(float(march.state.time))
         return search(march, *arguments)
 
-    monkeypatch.setattr(block_march.March, "_first_fall", counted)
+    monkeypatch.setattr(block_march.March, "first_fall", counted)
     motion = solve(problem, 1e-3)
     assert len(searches) < 100
     assert len(motion.nodes) < 10_000
@@ -203,7 +203,7 @@ def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(block_march, "STEPS", 50)
-    monkeypatch.setattr(block_march.March, "_step", None)
+    monkeypatch.setattr(block_march.March, "step", None)
     with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
         solve(replace(PAPER, locked=True), 1.0)
     assert 0 < caught.value.time < 1.0
