@@ -33,7 +33,7 @@ from fem_reference.events.switches import LostDigitsError, Switch
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 50
+DIGITS = 60
 """Decimal digits of the first computation."""
 MOST_DIGITS = 240
 """Decimal digits of the last one, where switches cost those of the ones before."""

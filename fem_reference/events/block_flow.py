@@ -23,10 +23,15 @@ ANGLE = 4.0
 """Length of a step times the greatest rate [rad]; e^4 = 55 is how far the terms of its series may cancel."""
 FLOAT_TERMS = 36
 """Terms of a series in floats: 4^36/36! is 1e-20."""
-CELLS = 4
-"""Parts of a step whose Bernstein forms are looked at."""
+CELLS = (4, 32)
+"""Parts of a step whose Bernstein forms are looked at, of all functions and of those that the first cannot prove."""
 ROUNDING = 40 * np.finfo(float).eps
 """Part of its terms by which a sum of `FLOAT_TERMS` terms of 18 products may be wrong in floats."""
+SEARCHES = 4
+"""Times that a first fall is looked for on a finer grid."""
+GRID = np.arange(1, 129) / 128
+CLOSE = 1e-7
+"""Part of a step in which a fall that floats have seen must lie: four searches leave 128^-4 = 4e-9."""
 UNIT = [[arb(int(i == j)) for j in range(6)] for i in range(6)]
 CORNER_PLACES = [6, 7, 8, 9, 3, 5]
 """Places of (w_M, w_N, s_M, s_N, uy, vy), which determine the block, among the ten functions of `Flow.outputs`."""
@@ -269,8 +274,8 @@ class Step:
         self.sizes = np.abs(self.tables).sum(axis=1)
         self.constants = np.array([float(row.constant) for row in flow.watched])
 
-    def doubtful(self, values: Array, radius: Array) -> list[int]:
-        """The watched functions that floats cannot prove to be positive throughout the step.
+    def clear(self, values: Array, radius: Array, leads: list[int | None]) -> tuple[float, list[int]]:
+        """The part of the step throughout which floats prove all watched functions to be positive, at most 1.
 
         Parameters
         ----------
@@ -278,12 +283,40 @@ class Step:
             The ten functions, their rates and accelerations at the start, shape (30,).
         radius
             How far these may be off, shape (30,).
+        leads
+            Of each watched function how many of its first terms are zero; None: it rests at zero.
+
+        Returns
+        -------
+        share, doubtful
+            The part, which ends just before a first fall that floats can see, and the functions that end it.
         """
         terms = self.tables @ values
         terms[:, 0] += self.constants
         margin = self.sizes @ (ROUNDING * np.abs(values) + radius) + ROUNDING * np.abs(self.constants)
-        least = (terms @ bernstein()).min(axis=1)
-        return np.flatnonzero(~(least > margin)).tolist()
+        for i, place in enumerate(leads):
+            if place is None:
+                terms[i], margin[i] = 1.0, 0.0
+            elif place:
+                terms[i] = np.append(terms[i, place:], np.zeros(place))
+        doubtful = np.arange(len(terms))
+        for cells in CELLS:
+            least = (terms[doubtful] @ bernstein(cells)).min(axis=1)
+            doubtful = doubtful[~(least > margin[doubtful])]
+            if not len(doubtful):
+                return 1.0, []
+        terms, margin = terms[doubtful], margin[doubtful]
+        low, width = 0.0, 1.0
+        for _ in range(SEARCHES):
+            grid = low + width * GRID
+            grid_values = terms @ np.vander(grid, FLOAT_TERMS, increasing=True).T
+            below = np.flatnonzero((grid_values <= margin[:, None]).any(axis=0))
+            if not len(below) or (below[0] == 0 and low == 0.0):
+                return 0.0, doubtful.tolist()
+            low, width = low + width * GRID[below[0]] - width / len(GRID), width / len(GRID)
+        ahead = terms * low ** np.arange(FLOAT_TERMS)
+        proven = bool(np.all((ahead @ bernstein(CELLS[0])).min(axis=1) > margin))
+        return (low if proven else 0.0), doubtful.tolist()
 
 
 def _over_readings(flow: Flow, row: Row) -> Array:
@@ -327,16 +360,16 @@ def term_count(angle: float) -> int:
 
 
 @cache
-def bernstein() -> Array:
-    """From the coefficients of powers on [0, 1] to those of Bernstein's forms on its `CELLS` parts, (terms, forms)."""
+def bernstein(cells: int) -> Array:
+    """From the coefficients of powers on [0, 1] to those of Bernstein's forms on equal parts of it, (terms, forms)."""
     n = FLOAT_TERMS - 1
-    # z = (cell + t) / CELLS: z^j = sum of C(j, k) cell^(j - k) t^k / CELLS^j, and t^k has the form C(i, k) / C(n, k)
+    # z = (cell + t) / cells: z^j = sum of C(j, k) cell^(j - k) t^k / cells^j, and t^k has the form C(i, k) / C(n, k)
     form = [[math.comb(i, k) / math.comb(n, k) for i in range(n + 1)] for k in range(n + 1)]
     parts = []
-    for cell in range(CELLS):
+    for cell in range(cells):
         shift = np.zeros((n + 1, n + 1))
         for j in range(n + 1):
             for k in range(j + 1):
-                shift[j, k] = math.comb(j, k) * cell ** (j - k) / CELLS**j
+                shift[j, k] = math.comb(j, k) * cell ** (j - k) / cells**j
         parts.append(shift @ np.array(form))
     return np.hstack(parts)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from fem_reference.events.block_flow import ANGLE, REACH, Flow, Row, Step
+from fem_reference.events.block_flow import ANGLE, CLOSE, REACH, Flow, Row, Step
 from fem_reference.events.block_model import CORNERS, OPEN, STICKS, BlockModel, Course, States
 from fem_reference.events.block_switching import Flows, functions, lead, settled, value
 from fem_reference.events.enclosure import Fall, Polynomial, ball, exact_sums, first_fall, radius_of
@@ -25,8 +25,10 @@ from fem_reference.events.switches import (
 )
 from fem_reference.problem.problem import Array
 
-STEPS = 300_000
-"""Greatest number of steps of `ANGLE` radians, about half a minute."""
+STEPS = 100_000
+"""Greatest number of steps of `ANGLE` radians, about twenty seconds and 200 MB."""
+IDLE = 1000
+"""Steps without a switch after which a motion that would take too many steps is given up."""
 
 
 @dataclass
@@ -65,6 +67,9 @@ class March:
         self.flows = Flows(model)
         self.nodes: list[Node] = []
         self.switches: list[Switch] = []
+        self.leads: list[int | None] = []  # zeros with which the watched functions begin, see `Step.clear`
+        self.last_switch = 0  # nodes before the last switch
+        self.near = False  # whether floats have seen a fall just ahead
         self.touches: list[float] = []  # instants at which a crossing is neither proven nor excluded [s]
 
     def run(self, velocity: float) -> None:
@@ -85,6 +90,8 @@ class March:
         slide = -self.base.x
         self.state = State(arb(0), x.mid(), v.mid(), first, arb_mat(2, 1, [slide, slide]).mid(), spread)
         self.state.spread.box[12:] = radius_of(slide)
+        if self.model.locked and self._steps_left() > STEPS:
+            self._stop_for_work()  # before the first step: corners that never change cannot shorten the work
         if not self.model.locked:
             self._settle()
         self.switches.clear()
@@ -107,37 +114,56 @@ class March:
     def _cross(self, row_end: arb, span: float) -> None:
         """Go on to the end of a row of the base's record."""
         while self.state.time < row_end:
-            if len(self.nodes) >= STEPS:
-                self._stop_for_work(row_end)
-            self._step(row_end, span)
+            idle = len(self.nodes) - self.last_switch > IDLE
+            if len(self.nodes) >= STEPS or (idle and self._steps_left() > STEPS):
+                self._stop_for_work()
+            self.step(row_end, span)
 
-    def _stop_for_work(self, row_end: arb) -> None:
-        rate, time = self.flows[self.state.states].rate, float(self.state.time)
-        left = (self.end - time) * rate / ANGLE
-        reason = f"{STEPS} steps of {ANGLE:g} radians are the limit, and about {left:.3g} more would follow"
-        raise TooMuchWorkError(time, f"{reason}, the contact oscillates at {rate:.3g} rad/s")
+    def _steps_left(self) -> float:
+        """Steps to the end if no corner switches any more."""
+        return (self.end - float(self.state.time)) * self.flows[self.state.states].rate / ANGLE
 
-    def _step(self, row_end: arb, span: float) -> None:
+    def _stop_for_work(self) -> None:
+        reason = f"{STEPS} steps of {ANGLE:g} radians are the limit, and {self._steps_left():.3g} more would be needed"
+        rate = self.flows[self.state.states].rate
+        within = float(self.state.time) + (STEPS - len(self.nodes)) * ANGLE / rate
+        raise TooMuchWorkError(within, f"{reason}, since the block oscillates at {rate:.3g} rad/s")
+
+    def step(self, row_end: arb, span: float) -> None:
         """One step, up to a switch at most."""
         state = self.state
         flow = self.flows[state.states]
         left = _difference(row_end, state.time)
         step = flow.step(span)
         full = bool(left > step.length / REACH)
-        length = left if not full or left < step.length * REACH else arb(step.length)
+        length = left if left < step.length * REACH else arb(step.length)
         a = flow.acceleration(state.x, state.references)
         values = flow.values(state.x, state.v, a, state.references)
         radius = state.spread.hull()
         sizes = flow.reading_sizes @ radius
         values[np.abs(values) <= sizes] = 0.0  # what is not known to differ from zero, as where a load is centred
         self._add_node(values, radius)
-        doubtful = step.doubtful(values, sizes) if flow.watched else []
-        if doubtful:
-            fall = self._first_fall(flow, a, length, [flow.watched[i] for i in doubtful], radius)
+        if self.near:  # floats have seen a fall just ahead
+            length = _least(left, arb(step.length * CLOSE))
+            share, doubtful = 0.0, list(range(len(flow.watched)))
+        elif flow.watched:
+            share, doubtful = step.clear(values, sizes, self.leads)
+        else:
+            share, doubtful = 1.0, []
+        self.near = False
+        if doubtful and share > CLOSE:
+            ahead = arb(share * step.length * REACH)
+            if ahead < length:
+                self.near = True
+                length = ahead
+        elif doubtful:
+            fall = self.first_fall(flow, a, length, [flow.watched[i] for i in doubtful], radius)
             if fall is not None:
                 self._switch(flow, a, length, *fall)
                 return
-        self._advance(flow, a, length, step if full else None)
+        whole = full and (length is left or length == arb(step.length))
+        self._advance(flow, a, length, step if whole else None)
+        self.leads = [0] * len(flow.watched)
         state.time = row_end if length is left else _sum(state.time, length)
 
     def _add_node(self, values: Array, radius: Array) -> None:
@@ -168,7 +194,7 @@ class March:
         state.x, state.v = x.mid(), v.mid()
         state.spread.transport(J, added)
 
-    def _first_fall(
+    def first_fall(
         self, flow: Flow, a: arb_mat, length: arb, rows: list[Row], radius: Array
     ) -> tuple[Fall | None, Row] | None:
         """The first fall of some watched functions, in units of the step; None instead of it: at once."""
@@ -176,8 +202,9 @@ class March:
         references = self._balls(radius)[2]
         first: tuple[Fall, Row] | None = None
         for row, c in zip(rows, functions(rows, terms, references, length), strict=True):
-            size = max(float(x.abs_upper()) for x in c)
-            if max(radius_of(x) for x in c) > size * 2.0 ** (-ctx.prec // 2):
+            # as large as the function would be over a whole step
+            size = max(float(c[0].abs_upper()), float(c[1].abs_upper()) * max(1.0, ANGLE / (flow.rate * float(length))))
+            if radius_of(c[0]) > size * 2.0 ** (-ctx.prec // 2):
                 time = float(self.state.time)
                 raise LostDigitsError(time, f"{len(self.switches)} switches have cost half of the digits")
             place = lead(c)
@@ -299,7 +326,7 @@ class March:
         """Let the corners take the states that agree with the motion."""
         state = self.state
         radius = state.spread.hull()
-        now = settled(self.flows, state.states, *self._balls(radius), float(state.time))
+        now, self.leads = settled(self.flows, state.states, *self._balls(radius), float(state.time))
         for c in (0, 1):
             was = state.states[c]
             if was == now[c]:
@@ -313,8 +340,13 @@ class March:
             midpoint = state.time.str(40, radius=False)
             self.switches.append(Switch(float(state.time), CORNERS[c], kind, midpoint, offset))
         state.states = now
+        self.last_switch = len(self.nodes)
         if len(self.switches) > self.limit:
             raise TooManySwitchesError(float(state.time), f"more than {self.limit} switches")
+
+
+def _least(one: arb, other: arb) -> arb:
+    return one if one < other else other
 
 
 def radii_of(vector: arb_mat) -> Array:

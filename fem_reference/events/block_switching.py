@@ -70,7 +70,9 @@ def value(row: Row, x: arb_mat, references: arb_mat) -> arb:
     return (arb_mat([row.weights]) * x)[0, 0] + row.constant + sides
 
 
-def settled(flows: Flows, states: States, x: arb_mat, v: arb_mat, references: arb_mat, time: float) -> States:
+def settled(
+    flows: Flows, states: States, x: arb_mat, v: arb_mat, references: arb_mat, time: float
+) -> tuple[States, list[int | None]]:
     """The states of both corners as they agree with the motion from now on.
 
     Closed corners that stick are tried first: what rests does so in this state.
@@ -86,6 +88,11 @@ def settled(flows: Flows, states: States, x: arb_mat, v: arb_mat, references: ar
     time
         The instant, for the message [s].
 
+    Returns
+    -------
+    states, leads
+        The states, and of each watched function how many of its first terms are zero; None: it rests at zero.
+
     Raises
     ------
     NoContactStateError
@@ -93,27 +100,27 @@ def settled(flows: Flows, states: States, x: arb_mat, v: arb_mat, references: ar
     """
     first, second = (_choices(flows.model, c, states[c], x, references) for c in (0, 1))
     for choice in product(first, second):
-        if agrees(flows[choice], x, v, references):
-            return choice
+        leads = agreeing(flows[choice], x, v, references)
+        if leads is not None:
+            return choice, leads
     raise NoContactStateError(f"no state of the corners agrees with the motion at {time!r} s")
 
 
-def agrees(flow: Flow, x: arb_mat, v: arb_mat, references: arb_mat) -> bool:
-    """Whether every watched function of both corners is positive from now on, or rests at zero."""
+def agreeing(flow: Flow, x: arb_mat, v: arb_mat, references: arb_mat) -> list[int | None] | None:
+    """How many first terms of each watched function are zero, None if one of them falls from now on."""
     length = arb(1 / flow.rate)
     a = flow.acceleration(x, references)
+    leads: list[int | None] = []
     for count in (FEW, DERIVATIVES + 1):  # most functions show at once where they go
         terms = flow.terms(x, v, a, length, count)
-        resting = 0
-        for c in functions(flow.watched, terms, references, length):
-            first = lead(c)
-            if first is None:
-                resting += 1
-            elif not c[first] > 0:
-                return False
-        if not resting:
-            return True
-    return True
+        coefficients = functions(flow.watched, terms, references, length)
+        leads = [lead(c) for c in coefficients]
+        for c, first in zip(coefficients, leads, strict=True):
+            if first is not None and not c[first] > 0:
+                return None
+        if None not in leads:
+            break
+    return leads
 
 
 def _choices(model: BlockModel, index: int, state: int, x: arb_mat, references: arb_mat) -> list[int]:

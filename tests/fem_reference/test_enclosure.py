@@ -136,7 +136,7 @@ def test_floats_bound_what_is_watched(states: tuple[int, int]) -> None:
         values = flow.values(x, v, a, r)
         terms = step.tables @ values
         terms[:, 0] += step.constants
-        least = (terms @ bernstein()).min(axis=1) - step.sizes @ (ROUNDING * np.abs(values))
+        least = (terms @ bernstein(4)).min(axis=1) - step.sizes @ (ROUNDING * np.abs(values))
         for share in (0.0, 0.3, 0.55, 1.0):
             s = arb(step.length) * share
             C, S, P = flow.floats(float(s))
@@ -175,10 +175,19 @@ def test_corners_that_switch_in_one_ball_are_named() -> None:
     assert not solve(replace(ROUGH, eccentricity=0.3), 0.01).simultaneous
 
 
-def test_a_stiff_contact_is_followed_by_few_steps() -> None:
-    """One millisecond at p = 1e18 N/m are 27000 radians, 6800 steps, of which none needs a second look."""
+def test_a_stiff_contact_is_followed_by_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One millisecond at p = 1e18 N/m are 27000 radians, 6800 steps; balls must look at the first few of them only."""
     problem = replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81)
+    searches: list[float] = []
+    search = block_march.March.first_fall
+
+    def counted(march: block_march.March, *arguments: object) -> object:
+        searches.append(float(march.state.time))
+        return search(march, *arguments)
+
+    monkeypatch.setattr(block_march.March, "first_fall", counted)
     motion = solve(problem, 1e-3)
+    assert len(searches) < 100
     assert len(motion.nodes) < 10_000
     assert not motion.switches
     weight = 2700.0 * 2.0 * 9.81
@@ -190,6 +199,22 @@ def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(TooMuchWorkError, match="50 steps") as caught:
         solve(replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81), 1e-3)
     assert 0 < caught.value.time < 1e-5
+
+
+def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(block_march, "STEPS", 50)
+    monkeypatch.setattr(block_march.March, "step", None)
+    with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
+        solve(replace(PAPER, locked=True), 1.0)
+    assert 0 < caught.value.time < 1.0
+
+
+def test_what_would_take_too_many_steps_is_given_up_early() -> None:
+    """At p = 1e24 N/m the millisecond has 27 million radians; the block rests, and no switch shortens it."""
+    resting = replace(PAPER, stiffness=1e24, pressure=0.0, gravity=9.81)
+    with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
+        solve(resting, 1e-3)
+    assert 1e-6 < caught.value.time < 1e-4  # as far as the steps that are allowed lead
 
 
 def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch: pytest.MonkeyPatch) -> None:

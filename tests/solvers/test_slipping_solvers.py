@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem_reference.events import block_events
+from fem_reference.events import bar_events, block_events, block_march
 from fem_reference.events.switches import NoContactStateError
 from validation import load_scene
 from validation.runs.run import Outcome
@@ -71,6 +71,53 @@ def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path: Path, monkeypat
     assert run.outcome is Outcome.NO_CONTACT_STATE
     assert run.history is None
     assert "at 0.5 s" in run.notes[0]
+
+
+def test_the_notes_tell_what_is_proven(tmp_path: Path) -> None:
+    prepared = get_solver("block-events").prepare(scene(tmp_path))
+    notes = prepared.run().notes
+    assert sum(note.startswith("proven: ") for note in notes) == 2
+    enclosed = prepared.enclosures()
+    assert len(enclosed) == len(prepared.switches())
+    assert all(radius < 1e-40 and len(midpoint) > 35 for _, _, midpoint, radius in enclosed)
+
+
+GRANITE = """
+title = "a light block of granite on stiff springs"
+[block]
+side = 2.0
+density = 2650.0
+young = 4.0e10
+[contact]
+law = "unilateral"
+stiffness = 4.0e12
+[load]
+gravity = 9.81
+pressure = 5.0e6
+[time]
+step = 1.0e-4
+steps = 125
+[run]
+solvers = ["bar-events"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "limit", "horizon"),
+    [("bar-events", bar_events, "PIECES", 0.0096), ("block-events", block_march, "STEPS", 0.0071)],
+)
+def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, horizon: float
+) -> None:
+    """The bar of 165 pieces is cut at 80; a longer one has six thousand in ten seconds and would go on for hours."""
+    monkeypatch.setattr(module, limit, 80)
+    run = get_solver(name).prepare(scene(tmp_path, GRANITE)).run()
+    assert run.outcome is Outcome.HORIZON
+    assert run.history is None
+    told = float(run.notes[0].split("exact up to ")[1].split(" s")[0])
+    assert told == pytest.approx(horizon, rel=0.3)
+    shorter = scene(tmp_path, GRANITE).with_values({"time.steps": int(told / 1e-4)})
+    assert get_solver(name).prepare(shorter).run().outcome is Outcome.COMPLETED
 
 
 def test_a_base_that_moves_and_its_work(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ CREEP = {0.1: 1.790e-3, 0.2: 3.732e-3, 0.3: 5.532e-3, 0.4: 7.394e-3}  # m
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("pack")
     count = write_slipping_pack(directory)
-    names = ("numbers", "newmark", "rocking")
+    names = ("numbers", "enclosures", "newmark", "rocking")
     assert count == sum(len(table(directory / f"friction/{name}.csv")) for name in names) > 150
     return directory / "friction"
 
@@ -50,6 +50,18 @@ def numbers(place: Path) -> dict[str, dict[str, tuple[float, float]]]:
     for row in table(place / "numbers.csv"):
         found[row["scene"]][row["quantity"]] = float(row["value"]), float(row["uncertainty"])
     return found
+
+
+def test_every_switch_is_enclosed(place: Path) -> None:
+    rows = table(place / "enclosures.csv")
+    assert {row["scene"] for row in rows} == set(CASES)
+    for row in rows:
+        assert 0 < float(row["radius"]) < 1e-25
+    for name, printed in SWITCHES.items():
+        known = [one.split() for one in printed.split(", ")]
+        first = [row for row in rows if row["scene"] == name and float(row["midpoint"]) > 1e-4][: len(known)]
+        assert [[row["corner"], row["kind"]] for row in first] == [one[:2] for one in known]
+        assert [float(row["midpoint"]) for row in first] == pytest.approx([float(one[2]) for one in known], abs=6e-14)
 
 
 def test_switches_and_values_are_those_of_the_independent_program(

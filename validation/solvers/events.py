@@ -116,6 +116,10 @@ class Motion(Prepared):
             raise NotReported(f"{self.name}: the scene was not run")
         return tuple(Switch(one.time, one.corner, *KINDS[one.kind]) for one in self.found)
 
+    def enclosures(self) -> list[tuple[str, str, str, float]]:
+        """Return corner, kind, decimal digits of the midpoint and radius [s] of each switch that is enclosed."""
+        return [(one.corner, one.kind, one.midpoint, one.radius) for one in self.found or () if one.midpoint]
+
     def instants(self) -> Array:
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)

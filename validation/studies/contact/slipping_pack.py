@@ -13,6 +13,7 @@ from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.events import BlockMotion
 from validation.solvers.registry import get_solver
 from validation.solvers.rigid.rocking import overturning_acceleration, quarter_period
 from validation.solvers.rigid.sliding import harmonic_slide
@@ -38,6 +39,7 @@ CASES: dict[str, dict[str, Any]] = {
     "sliding": {**INCLINE, "load.slope": 28.9, "contact.friction": 15.0, "time.steps": 200},
 }
 STEP = 1e-3  # s, at which the motions are sampled
+PRINTED = 1e-39  # s, by which forty digits of a midpoint may round it
 TOLD = 12  # switches of a motion that are numbers of their own
 VALUES = {"horizontal_displacement": "m", "displacement": "m", "rotation": "rad"}
 BASE = ("slide_m", "slide_n")
@@ -65,6 +67,7 @@ A part of the reference pack of dda-validation; nothing needs to be installed.
 | scenes, SI units | `scenes/NAME.toml` |
 | exact motions, one row a step | `histories/NAME.block-events.csv` |
 | single numbers with their uncertainties | `numbers.csv`: `scene,quantity,value,unit,uncertainty` |
+| every switch of the exact motions with its proven enclosure | `enclosures.csv`: `scene,corner,kind,midpoint,radius` |
 | rigid block on a base that vibrates along its slope | `newmark.csv` |
 | rigid block that rocks | `rocking.csv` |
 
@@ -78,6 +81,9 @@ Columns: `displacement`, `horizontal_displacement` (m) and `rotation` (rad, coun
 and `slide_*` (m); `normal_force_*` and `shear_force_*` (N, on the block, upwards and towards +x); `state_*`: 0 open,
 1 sticks, 2 and -2 slips towards +x and -x. M is the corner at x = 0, N that at x = a. Compare forces and gaps rather
 than states.
+
+`enclosures.csv`: each switch is proven to be the first after the one before, and to lie within `radius` [s] of
+`midpoint` [s], which is printed to forty digits, for the data of the scene as doubles (ball arithmetic, python-flint).
 
 `creep`, `creep-low-friction` and `creep-stiff-shear` are stable blocks, tan(slope) < tan(phi), that shift by a few
 millimetres while they ring on their springs: nothing damps them.
@@ -111,18 +117,20 @@ def write_slipping_pack(directory: Path) -> int:
     """
     part = Part(directory / "friction")
     rows: list[dict[str, Any]] = []
+    enclosed: list[dict[str, Any]] = []
     for scene in slipping_cases():
         part.add_scene(scene)
-        rows += numbers(scene, part)
+        rows += numbers(scene, part, enclosed)
     shaken, rocked = list(shakes()), list(rockings())
-    for name, table in (("numbers", rows), ("newmark", shaken), ("rocking", rocked)):
+    tables = {"numbers": rows, "enclosures": enclosed, "newmark": shaken, "rocking": rocked}
+    for name, table in tables.items():
         part.add_table(name, table)
     part.add_text("README.md", README)
-    return len(rows) + len(shaken) + len(rocked)
+    return sum(map(len, tables.values()))
 
 
-def numbers(scene: Scene, part: Part) -> Iterator[dict[str, Any]]:
-    """Run an exact motion, write its history and yield its single numbers.
+def numbers(scene: Scene, part: Part, enclosed: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Run an exact motion, write its history, add its switches to those that are enclosed and yield its single numbers.
 
     Raises
     ------
@@ -130,10 +138,15 @@ def numbers(scene: Scene, part: Part) -> Iterator[dict[str, Any]]:
         The motion did not complete.
     """
     prepared = get_solver(MOTION).prepare(scene)
+    if not isinstance(prepared, BlockMotion):
+        raise InputError(f"{MOTION}: must be the suite's own solver to write its pack")
     history = prepared.run().history
     if history is None:
         raise InputError(f"{scene.name} {MOTION}: no history")
     part.add_history(scene.name, MOTION, history)
+    for corner, kind_, midpoint, radius in prepared.enclosures():
+        named = {"scene": slug(scene.name), "corner": corner, "kind": kind_}
+        enclosed.append(named | {"midpoint": midpoint, "radius": _rounded_up(radius)})
     for n, switch in enumerate(prepared.switches()[:TOLD], start=1):
         said = f"switch {n}: {switch.corner} {kind(switch)}"
         yield _number(scene, said, switch.time, "s", ROUNDED * switch.time)
@@ -165,6 +178,11 @@ def _number(scene: Scene, quantity: str, value: float, unit: str, uncertainty: f
 
 def _rounded(uncertainty: float) -> float:
     return float(f"{uncertainty:.1e}")
+
+
+def _rounded_up(radius: float) -> float:
+    """Return a radius that is no smaller, of two digits; that of the printed midpoint is added."""
+    return float(f"{1.1 * radius + PRINTED:.1e}")
 
 
 def shakes() -> Iterator[dict[str, float]]:
