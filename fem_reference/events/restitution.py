@@ -7,9 +7,10 @@ with Omega = sqrt(k / m) dt, a step is::
     A' = -Omega^2 w*/(1 + alpha Omega^2)               in contact, else A' = 0
     w' = w* + alpha A',   v' = gg v + (1 - delta) A + delta A'
 
-The first step in contact starts with v = -1, A = 0 and w* = -theta: the overshoot theta of the predictor is
-uniform from 0 to 1 where steps and impacts have nothing to do with each other. The restitution e is the speed
-after the first step without contact. It is a continuous function of theta made of straight lines.
+The first step in contact starts with v = -1, A = 0 and w* = -theta. It starts above the spring and covers gg, so that
+the overshoot theta of the predictor is at most gg, and uniform from 0 to gg where steps and impacts have nothing to do
+with each other. The restitution e is the speed after the first step without contact. It is a continuous function of
+theta made of straight lines.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Statistics:
-    """Restitution over theta uniform from 0 to 1."""
+    """Restitution over theta uniform from 0 to gg."""
 
     mean: float  # mean of e [-]
     low: float  # least e [-]
@@ -93,7 +94,7 @@ def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
     omega
         Omega = sqrt(k / m) dt, `math.inf` for a rigid contact.
     theta
-        Overshoots of the predictor from 0 to 1, shape (n,).
+        Overshoots of the predictor from 0 to gg, shape (n,).
 
     Returns
     -------
@@ -103,11 +104,11 @@ def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
     Raises
     ------
     ValueError
-        If `omega` is not positive or a theta is not from 0 to 1.
+        If `omega` is not positive or a theta is not from 0 to gg.
     """
     overshoot = np.atleast_1d(np.asarray(theta, dtype=float))
-    if not np.all((overshoot >= 0) & (overshoot <= 1)):
-        raise ValueError(f"theta: must be from 0 to 1, got {theta!r}")
+    if not np.all((overshoot >= 0) & (overshoot <= scheme.gg)):
+        raise ValueError(f"theta: must be from 0 to gg = {scheme.gg:g}, got {theta!r}")
     stiffness = scheme.response(omega)
     return np.array([_run(scheme, stiffness, float(x)) for x in overshoot])
 
@@ -128,7 +129,7 @@ def _run(scheme: ContactScheme, stiffness: float, theta: float) -> float:
 
 
 def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
-    """All straight lines of the restitution, from theta = 0 to 1.
+    """All straight lines of the restitution, from theta = 0 to gg.
 
     The state is a straight line in theta as long as contact lasts; where the predictor changes its sign within
     an interval of theta, the interval is cut.
@@ -140,7 +141,9 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
     """
     stiffness = scheme.response(omega)
     found: list[Branch] = []
-    pending: list[tuple[float, float, Line, Line, Line, int]] = [(0.0, 1.0, (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0), 0)]
+    pending: list[tuple[float, float, Line, Line, Line, int]] = [
+        (0.0, scheme.gg, (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0), 0)
+    ]
     while pending:
         low, high, predicted, v, A, steps = pending.pop()
         predicted, v, A, out = _step(scheme, stiffness, predicted, v, A)
@@ -188,7 +191,7 @@ def statistics(scheme: ContactScheme, omega: float) -> Statistics:
         If `omega` is not positive.
     """
     lines = branches(scheme, omega)
-    ends = [(line.high - line.low, line(line.low), line(line.high)) for line in lines]
+    ends = [((line.high - line.low) / scheme.gg, line(line.low), line(line.high)) for line in lines]
     values = [e for _, first, last in ends for e in (first, last)]
     return Statistics(
         mean=math.fsum(width * (first + last) / 2 for width, first, last in ends),

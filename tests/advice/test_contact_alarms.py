@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from oracles.made_cases import made_row
 
@@ -82,7 +83,7 @@ LANDED = {"contact.gap": 1e-3, "switches.first_closing": 5e-3}
     [
         (kinds.GAINED, {}, {"energy.switching_gain": 0.25}, "have added 25 % to the energy"),
         (kinds.DRAG, {"time.gg": 0.98}, {"contact.open_share": 0.4}, "40 % of the time: speeds fall with the time "
-         "constant 0.05 s"),
+         "constant 0.0495 s"),
         (kinds.PENALTY, HARD, {"contact.peak_force": 6e7}, "6e+07 N, is 4 times that of the exact bar"),
         (kinds.PULLING, {"contact.band": [0.0, 1e-3]}, {}, "up to 2e+06 N, 20 % of the load"),
         (kinds.HIDDEN, {"time.step": 2e-3}, {}, "dt = 0.002 s is beyond 0.001897 s"),
@@ -97,6 +98,19 @@ def test_a_sentence_tells_the_numbers_of_its_run(
     rows = {"dda": made_row("dda", metrics), "bar-events": made_row("bar-events", {"contact.peak_force": 1.5e7})}
     told = {alarm.kind: alarm.sentence for alarm in kinds.contact_alarms(PAPER.with_values(values), rows)}
     assert words in told[kind]
+
+
+@pytest.mark.parametrize("gg", [0.98, 0.5, 0.0])
+def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float) -> None:
+    """Speeds fall to 1/e in -dt / ln(gg): 28 % less than dt / (1 - gg) at gg = 0.5, and at once at gg = 0."""
+    flight = {"load.pressure": 0.0, "block.velocity": 1.0, "contact.gap": 1.0, "time.gg": gg, "time.steps": 40}
+    scene = PAPER.with_values(flight | {"run.columns": ["displacement"]})
+    row, history = execute(Case(scene, "dda"), "", "")
+    alarm = {alarm.kind: alarm for alarm in kinds.contact_alarms(scene, {"dda": row})}[kinds.DRAG]
+    assert history is not None
+    first, later = np.diff(history.displacement)[[0, 10]]
+    constant = 0.0 if later == 0 else -10 * scene.time.step / math.log(later / first)
+    assert alarm.values["constant"] == pytest.approx(constant, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,59 @@ def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
             assert found == pytest.approx(expected, abs=1e-6)
 
 
+@pytest.mark.parametrize("gg", [0.95, 0.99])
+def test_a_rigid_block_under_a_discount_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
+        scheme = landing.Stepping(alpha, delta, lambda _: gg)
+        for omega in (0.3, 2.0, 7.0):
+            phases = np.array([0.1, 0.45, 0.9, 0.99])
+            found = landing.restitutions(scheme, 1e-8, omega / math.sqrt(1e-8), 1.0, phases)
+            expected = [impact_restitution(alpha, delta, gg, omega, gg * float(phase)) for phase in phases]
+            assert found == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_contact_that_a_discount_holds_for_ever_takes_few_windows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At p = 1e4 E and gg = 0.99 the block creeps back to the springs' ends, in more than a million steps."""
+    ratio, gg = 2e4, 0.99
+    step = 3.65e-3 * landing.own_landing(ratio).duration / math.pi
+    windows = []
+    sound = landing._Settling.stays
+
+    def counted(self: landing._Settling, state: landing.Array) -> Any:
+        settled = sound(self, state)
+        windows.append(settled)
+        return settled
+
+    monkeypatch.setattr(landing._Settling, "stays", counted)
+    landed = landing.stepped_landing(landing.Stepping(0.5, 1.0, lambda _: gg), ratio, step, 1.0)
+    assert landed.high == 0 and len(windows) < 500  # 9,710 without looking at how the gap settles
+    assert windows[-1].all()
+
+
+def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -> None:
+    """Random states of a closed block: those said to stay are stepped on, and their free gap keeps its sign."""
+    ratio, gg, tau = 50.0, 0.9, 2e-3
+    _, closed, free_gap = landing._step_matrices(landing.Stepping(0.5, 1.0, lambda _: gg), gg, tau, ratio)
+    settling = landing._Settling.of(closed, free_gap)
+    assert settling is not None
+    random = np.random.default_rng(3)
+    z, vectors = np.linalg.eig(closed)
+    slowest = vectors[:, int(np.argmax(np.abs(z)))].real
+    slowest *= -np.sign(free_gap @ slowest)
+    states = random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1]) + np.outer(random.uniform(0, 2, 400), slowest)
+    states = states[states @ free_gap < 0]
+    stays = settling.stays(states)
+    ends = np.zeros(len(states), dtype=bool)
+    moving = states
+    for _ in range(5000):
+        moving = moving @ closed.T
+        ends |= moving @ free_gap > 1e-12
+    assert 20 < stays.sum() < len(states) - 20 and ends.any()
+    assert not (ends & stays).any()
+    undamped = landing._step_matrices(landing.Stepping(0.25, 0.5, lambda _: 1.0), 1.0, tau, ratio)[1]
+    assert landing._Settling.of(undamped, free_gap) is None
+
+
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0, 100.0])
 @pytest.mark.parametrize("scheme", [SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]])
 def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does_not(

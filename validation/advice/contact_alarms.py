@@ -148,11 +148,12 @@ def _penalty(seen: Seen) -> Iterator[Alarm]:
 def _drag(seen: Seen) -> Iterator[Alarm]:
     t, share = seen.scene.time, _number(seen.row, "contact.open_share") or 0.0
     if t.discount < 1 and share > 0:
-        said = (
+        constant = -t.step / math.log(t.discount) if t.discount > 0 else 0.0
+        sentence = (
             f"gg = {t.discount:g} slows the block in flight as well, {100 * share:.3g} % of the time: speeds fall "
-            f"with the time constant {t.step / (1 - t.discount):.3g} s"
+            f"with the time constant {constant:.3g} s, -dt / ln(gg)"
         )
-        yield seen.alarm(DRAG, said, gg=t.discount, share=share)
+        yield seen.alarm(DRAG, sentence, gg=t.discount, share=share, constant=constant)
 
 
 def _pulling(seen: Seen) -> Iterator[Alarm]:

@@ -267,7 +267,7 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
         left = 100 * friction.kept_way(scene.time.discount, scene.time.step, 1.0)
         yield (
             f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
-            f"in flight or sliding it leaves {left:.3g} % of the distance covered in a second"
+            f"in flight or sliding it leaves {left:.3g} % of the distance covered from rest in a second"
         )
 
 

@@ -41,6 +41,8 @@ REST = 1e-6
 """Speed in flight, over V, below which nothing of the landing is left."""
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
+FEWEST = 32
+"""Steps that are made beyond those: a contact takes two or more however long they are."""
 SMALLEST, LARGEST = 1e-3, 10.0
 """w_c dt between which a step is looked for."""
 GRID = 1.12
@@ -316,7 +318,7 @@ def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, 
     state[:, 0] = gg * tau * (1 - phases)
     state[:, 2] = -1.0
     duration = 0.0 if math.isinf(ratio) else own_landing(ratio).duration
-    limit = math.ceil((2 * duration + FLIGHT) / tau)
+    limit = FEWEST + math.ceil((2 * duration + FLIGHT) / tau)
     # the highest frequencies of the two states, over c/h: that of the closed block is below the sum of its parts
     flight = _Stretch.of(opened, free_gap, math.sqrt(12) * tau, contact=False)
     contact = _Stretch.of(closed, free_gap, math.sqrt(12 + 4 * ratio) * tau, contact=True)
@@ -351,12 +353,14 @@ class _Stretch:
 
     contact: bool
     levels: tuple[tuple[int, Array, Array], ...]  # stride [steps]; f T^(stride n); T^(stride n), n = 0 to WINDOW
+    settling: _Settling | None  # of a contact
 
     @classmethod
     def of(cls, matrix: Array, free_gap: Array, phase: float, contact: bool) -> _Stretch:
         """Return the tables; `phase` is the highest frequency times the step."""
         levels = []
         stride = 1
+        first = matrix
         while True:
             powers = _powers(matrix, WINDOW)
             levels.append((stride, np.einsum("i,nij->nj", free_gap, powers), powers))
@@ -364,12 +368,12 @@ class _Stretch:
                 break
             stride *= WINDOW
             matrix = powers[WINDOW]
-        return cls(contact, tuple(reversed(levels)))
+        return cls(contact, tuple(reversed(levels)), _Settling.of(first, free_gap) if contact else None)
 
     def advance(self, state: Array, passed: Array, chosen: NDArray[np.intp], limit: float) -> None:
         """Advance the chosen rows of states to the last step of the stretch; `passed` is infinite where there is none.
 
-        A flight has none where it is the last, and a stretch of more steps than the limit is none.
+        A flight has none where it is the last, a contact where it settles, and one of more steps than the limit is none.
         """
         for stride, rows, powers in self.levels:
             pending = chosen[passed[chosen] < limit]
@@ -384,7 +388,39 @@ class _Stretch:
                 pending = pending[~ends]
                 if not self.contact:
                     passed[pending[_is_over(state[pending])]] = math.inf
+                elif self.settling is not None:
+                    passed[pending[self.settling.stays(state[pending])]] = math.inf
                 pending = pending[passed[pending] < limit]
+
+
+@dataclass(frozen=True)
+class _Settling:
+    """Contacts that end no more: a discount takes the speed, and the block creeps back to the springs' ends.
+
+    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and its
+    c is negative and outweighs all others together, the gap keeps its sign for ever.
+    """
+
+    slowest: Array  # c of that z, over the state
+    others: NDArray[np.complex128]  # c of the others, one a row
+
+    @classmethod
+    def of(cls, matrix: Array, free_gap: Array) -> _Settling | None:
+        """Return the terms of a map; None where the greatest z is not real and positive, or there is no basis."""
+        z, vectors = np.linalg.eig(matrix)
+        top = int(np.argmax(np.abs(z)))
+        if z[top].imag != 0 or z[top].real <= 0:
+            return None
+        try:
+            terms = (free_gap @ vectors)[:, None] * np.linalg.inv(vectors)
+        except np.linalg.LinAlgError:
+            return None
+        return cls(np.asarray(terms[top].real), np.asarray(np.delete(terms, top, axis=0)))
+
+    def stays(self, state: Array) -> NDArray[np.bool_]:
+        """Return which rows of states stay in contact for ever."""
+        others = np.abs(state @ self.others.T).sum(axis=1)
+        return np.asarray(state @ self.slowest < -1.01 * others)  # a little more than all others, for rounding
 
 
 def _step_matrices(stepping: Stepping, gg: float, tau: float, ratio: float) -> tuple[Array, Array, Array]:

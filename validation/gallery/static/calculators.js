@@ -123,7 +123,7 @@ const calculators = (() => {
       const line = lines.find((part) => theta <= part.high) || lines[lines.length - 1];
       return line.constant + line.slope * theta;
     };
-    const theta = f.linspace(0, 1, 201), dt = f.geomspace(0.02 / frequency, 20 / frequency, 90);
+    const theta = f.linspace(0, s.gg, 201), dt = f.geomspace(0.02 / frequency, 20 / frequency, 90);
     const over = dt.map((step) => f.impact_statistics(s, frequency * step));
     return { values, command,
       facts: [["A contact returns, on average", figure(now.mean)], ["at least", figure(now.low)],

@@ -314,10 +314,10 @@ const formulas = (() => {
     return [following, speed, after, mix([gg, speed], [1 - delta, after])];
   }
 
-  // All straight lines e = constant + slope theta of the restitution over the overshoot theta from 0 to 1
+  // All straight lines e = constant + slope theta of the restitution over the overshoot theta from 0 to gg
   function branches(scheme, omega) {
     const stiffness = response(scheme.alpha, omega), found = [];
-    const pending = [[0, 1, [0, -1], [-1, 0], [0, 0], 0]];
+    const pending = [[0, scheme.gg, [0, -1], [-1, 0], [0, 0], 0]];
     while (pending.length) {
       const [low, high, ...state] = pending.pop(), steps = state.pop();
       const [predicted, v, A, out] = contact_step(scheme, stiffness, ...state);
@@ -332,11 +332,11 @@ const formulas = (() => {
     return found.sort((a, b) => a.low - b.low);
   }
 
-  // Mean, least, greatest and mean square of the restitution, theta uniform from 0 to 1
+  // Mean, least, greatest and mean square of the restitution, theta uniform from 0 to gg
   function impact_statistics(scheme, omega) {
     let mean = 0, energy = 0, low = Infinity, high = -Infinity;
     for (const line of branches(scheme, omega)) {
-      const width = line.high - line.low, first = line.constant + line.slope * line.low;
+      const width = (line.high - line.low) / scheme.gg, first = line.constant + line.slope * line.low;
       const last = line.constant + line.slope * line.high;
       mean += width * (first + last) / 2;
       energy += width * (first * first + first * last + last * last) / 3;

@@ -6,7 +6,8 @@ from __future__ import annotations
 def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tuple[float, float, float, float]:
     """Return mean, least, greatest and mean square of the restitution of a penalty contact over its phase.
 
-    A mass without load under Newmark's scheme; the phase is where in a step it lands, uniform from 0 to 1.
+    A mass without load under Newmark's scheme. The phase is how far the first predictor in contact lies below the
+    spring's end, over V dt: uniform from 0 to gg, as that step covers gg V dt and starts above the spring.
 
     Parameters
     ----------
