@@ -30,7 +30,7 @@ __all__ = sorted(_NAMES)
 def __getattr__(name: str) -> Any:
     if name not in _NAMES:
         raise AttributeError(f"module 'validation' has no attribute {name!r}")
-    from validation.siblings import check
+    from validation.entry.siblings import check
 
     check()
     return getattr(importlib.import_module(f"validation.{_NAMES[name]}"), name)

@@ -1,25 +1,6 @@
 """``python -m validation`` is ``dda-validate``."""
 
-import signal
-import sys
-
-
-def main() -> None:
-    """Run the command line on one BLAS thread; an interruption before it is ready ends without a traceback."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-    from validation.siblings import shadowed
-
-    if sentence := shadowed():
-        sys.stderr.write(f"error: {sentence}\n")
-        raise SystemExit(2)
-    from validation.runs.threads import limit_process
-
-    limit_process()
-    from validation.cli import main as run
-
-    run()
-
+from validation.entry.command import main
 
 if __name__ == "__main__":
     main()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.siblings import shadowed
+from validation.entry.siblings import shadowed
 
 if sentence := shadowed():  # before the imports that would fail on it
     pytest.exit(sentence, returncode=2)

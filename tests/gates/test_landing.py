@@ -15,8 +15,10 @@ from validation.gates import landing
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 
-UNLOADED = load_scene("impact").expand()[0].with_values(
-    {"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0}
+UNLOADED = (
+    load_scene("impact")
+    .expand()[0]
+    .with_values({"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0})
 )
 TRANSIT = landing.transit(UNLOADED)
 SCHEMES = (

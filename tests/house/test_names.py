@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 KNOWING = ("solvers/", "studies/", "report/", "gallery/", "cli/")  # rooms that declare, draw and tell named solvers
 # What the other modules name today; it may only become less.
 NAMED = {
-    "siblings.py": {"dda"},  # the package
+    "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
     "scenes/kinds.py": {"dda", "fem", "layers"},  # the same of a column
     "engine/case.py": {"fem"},  # the section of a scene

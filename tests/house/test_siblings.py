@@ -5,58 +5,135 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
-from validation.siblings import HOME, shadowed
+from validation.entry.siblings import HOME, PACKAGES, shadowed
 
+ENTRY = HOME / "validation/entry"
+PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.plugin"]
 STARTS = {
-    "command": ["-m", "validation", "list"],
-    "solve": ["-m", "validation", "solve", "figures-3-4"],
-    "plug-in": ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "validation.plugin", "--dda-solver", "my:solve"],
+    "command": (["-m", "dda_validation", "list"], 2),
+    "solve": (["-m", "dda_validation", "solve", "figures-3-4"], 2),
+    "plug-in": ([*PYTEST, "--dda-solver", "my:solve"], pytest.ExitCode.USAGE_ERROR),
 }
+SOLVE = ["solve", "figures-3-4", "--set", "time.step=0.002"]
+SOLVER = "def solve(scene):\n    return [0.0] * scene.time.steps, [0.0] * scene.time.steps\n"
+# As an editable install does: our packages come after all of Python's path.
+EDITABLE = """
+import importlib.util, pathlib, sys
+class Editable:
+    def find_spec(name, path=None, target=None):
+        file = pathlib.Path({home!r}, name, "__init__.py")
+        return importlib.util.spec_from_file_location(name, file) if file.is_file() else None
+sys.meta_path.append(Editable)
+sys.path.insert(0, {place!r})
+sys.path.append({entry!r})
+from dda_validation.siblings import shadowed
+print(shadowed())
+"""
 
 
 def test_our_own_packages_are_not_in_the_way() -> None:
     assert shadowed() is None
 
 
-def start(words: list[str], place: Path) -> subprocess.CompletedProcess[str]:
-    """Start Python where the packages of a place come first, and ours come next."""
-    path = os.pathsep.join([str(place), str(HOME), os.environ.get("PYTHONPATH", "")])
+def test_an_install_holds_every_module_of_the_folder_under_its_second_name() -> None:
+    setuptools = tomllib.loads((HOME / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
+    names = {path.stem for path in ENTRY.glob("*.py")} - {"__init__"}
+    assert HOME / setuptools["package-dir"]["dda_validation"] == ENTRY
+    assert set(setuptools["py-modules"]) == {f"dda_validation.{name}" for name in names}
+
+
+@pytest.fixture
+def installed(tmp_path: Path) -> Path:
+    """Return a directory that holds the folder under its second name, as an install does."""
+    (tmp_path / "installed").mkdir()
+    (tmp_path / "installed/dda_validation").symlink_to(ENTRY, target_is_directory=True)
+    return tmp_path / "installed"
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    """Return a directory of the user's."""
+    (tmp_path / "place").mkdir()
+    return tmp_path / "place"
+
+
+def add_package(place: Path, name: str) -> Path:
+    """Add a package to a directory and return its folder."""
+    (place / name).mkdir()
+    (place / name / "__init__.py").touch()
+    return place / name
+
+
+def start(words: list[str], place: Path, *path: Path) -> subprocess.CompletedProcess[str]:
+    """Start Python in a directory, where the packages of a path come before ours."""
+    places = [*map(str, path), str(HOME), os.environ.get("PYTHONPATH", "")]
     return subprocess.run(
         [sys.executable, *words],
         cwd=place,
-        env=os.environ | {"PYTHONPATH": path, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(places), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
         capture_output=True,
         text=True,
         timeout=120,
     )
 
 
-@pytest.fixture(params=["dda", "fem_reference"])
-def place(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """Return a directory with a package of that name."""
-    (tmp_path / request.param).mkdir()
-    (tmp_path / request.param / "__init__.py").touch()
-    return tmp_path
-
-
+@pytest.mark.parametrize("package", PACKAGES)
 @pytest.mark.parametrize("name", STARTS)
-def test_the_folder_is_named_and_nothing_runs(name: str, place: Path) -> None:
-    done = start(STARTS[name], place)
-    said = done.stdout + done.stderr
-    assert done.returncode == 2, said
-    assert f"{next(place.iterdir())} is in the way of the package " in said
-    assert "Traceback" not in said
+def test_the_folder_is_named_and_nothing_runs(name: str, package: str, place: Path, installed: Path) -> None:
+    folder = add_package(place, package)
+    words, status = STARTS[name]
+    done = start(words, place, place, installed)
+    output = done.stdout + done.stderr
+    assert done.returncode == status, output
+    assert f"{folder} is in the way of the package {package} of dda-validation" in output
+    assert "Traceback" not in output
 
 
-def test_the_first_name_from_python_finds_out(place: Path) -> None:
-    done = start(["-c", "import validation\nfrom validation import solve"], place)
-    assert done.stderr.splitlines()[-1].startswith(f"ImportError: {next(place.iterdir())} is in the way of")
+@pytest.mark.parametrize("package", ["dda", "fem_reference"])
+def test_python_itself_starting_our_package_names_the_folder(package: str, place: Path) -> None:
+    folder = add_package(place, package)
+    done = start(["-m", "validation", "list"], place, place)
+    assert done.returncode == 2 and done.stderr.startswith(f"error: {folder} is in the way of")
 
 
-def test_a_folder_without_code_is_in_nobodys_way(tmp_path: Path) -> None:
-    (tmp_path / "dda").mkdir()
-    assert start(["-m", "validation", "list", "studies"], tmp_path).returncode == 0
+@pytest.mark.parametrize("package", ["dda", "fem_reference"])
+def test_the_first_name_from_python_finds_out(package: str, place: Path) -> None:
+    folder = add_package(place, package)
+    done = start(["-c", "import validation\nfrom validation import solve"], place, place)
+    assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_folder_without_code_is_in_nobodys_way(package: str, place: Path, installed: Path) -> None:
+    (place / package).mkdir()
+    assert start(["-m", "dda_validation", "list", "studies"], place, place, installed).returncode == 0
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_folder_without_code_hides_an_editable_install(package: str, place: Path, installed: Path) -> None:
+    (place / package).mkdir()
+    code = EDITABLE.format(home=str(HOME), place=str(place), entry=str(installed))
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.stdout.startswith(f"{place / package} is in the way of the package {package}"), done.stderr
+
+
+def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place: Path, installed: Path) -> None:
+    add_package(place, "validation").joinpath("theirs.py").write_text("VALUE = 3\n")
+    place.joinpath("test_theirs.py").write_text(
+        "from validation.theirs import VALUE\n\ndef test_it():\n    assert VALUE == 3\n"
+    )
+    done = start(PYTEST, place, installed)
+    assert done.returncode == 0, done.stdout
+
+
+def test_the_process_of_a_users_solver_takes_our_package_and_not_the_folder_beside_it(place: Path) -> None:
+    add_package(place, "validation")
+    place.joinpath("my_flat_solver.py").write_text(SOLVER)
+    code = "from validation.__main__ import main\nmain()"  # the command's own script has no directory on the path
+    done = start(["-P", "-c", code, *SOLVE, "--solver", "my_flat_solver:solve"], place)
+    assert done.returncode == 0, done.stderr

@@ -179,7 +179,7 @@ def test_the_bar_needs_no_finite_elements() -> None:
 
 
 def test_the_command_line_and_the_plugin_start_light() -> None:
-    assert not loaded("import validation.plugin") & {"numpy", "scipy", "pydantic", "typer"}
+    assert not loaded("import validation.entry.plugin") & {"numpy", "scipy", "pydantic", "typer"}
     assert not loaded(HELP_PAGE) & {"numpy", "scipy", "skfem", "matplotlib", "pydantic"}
 
 

@@ -58,7 +58,7 @@ def answer_here(patch: pytest.MonkeyPatch) -> None:
     """Let users' solvers answer in this process, where not theirs is the point."""
 
     def ask(command: list[str], environment: object, request: object, limit: float) -> dict[str, Any]:
-        target = command[command.index("validation.solvers.processes.user_worker") + 1]
+        target = command[command.index(user.START) + 2]
         answer = answering(target)(json.loads(json.dumps(request)))
         return dict(json.loads(json.dumps(answer)))
 

@@ -88,10 +88,11 @@ def _guarded(act: Callable[[], object]) -> int:
     except InputError as error:
         return _said(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
-        if not error.format_message():  # no command: typer has printed none of its help
+        message: str = error.format_message()  # type: ignore[attr-defined]
+        if not message:  # no command: typer has printed none of its help
             echo(_help())
             return BAD_INPUT
-        return _said(f"error: {printable(error.format_message())} (see dda-validate --help)")  # type: ignore[attr-defined]
+        return _said(f"error: {printable(message)} (see dda-validate --help)")
     except (KeyboardInterrupt, typer.Abort) as stop:
         if isinstance(stop.__cause__, EOFError):  # typer takes it for the end of an answer; nothing is asked here
             raise stop.__cause__ from None

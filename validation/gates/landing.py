@@ -126,9 +126,7 @@ class _Motion:
     def velocity(self, time: float) -> Array:
         """Return their rates at one time, shape (2,)."""
         phase = time * self.frequencies
-        return np.asarray(
-            self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase))
-        )
+        return np.asarray(self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase)))
 
     def gap(self, time: Array) -> Array:
         """Return w at times, shape (n,)."""

@@ -47,6 +47,13 @@ UNITS = {  # what a value in another unit is, over the value in SI
 NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
 SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
 MOST_WORDS = 400  # characters of what a user's solver says
+# The first argument is the directory of this package. It is on the path for the import of `validation` alone: neither
+# does a folder of that name beside the solver stand in the way, nor do packages beside ours hide those of Python.
+START = (
+    "import sys; sys.path.insert(0, sys.argv[1]); import validation; del sys.path[0]; "
+    "from validation.solvers.processes.user_worker import main; main(sys.argv[2], sys.argv[3:])"
+)
+HOME = Path(__file__).resolve().parents[2]
 ALIKE = 0.8  # correlation from which two histories are one but for their unit
 
 
@@ -72,8 +79,7 @@ class UserSolver(Solver):
 
     def command(self) -> list[str]:
         """Return the command of the process that the solver runs in."""
-        worker = [sys.executable, "-m", "validation.solvers.processes.user_worker"]
-        return [*worker, self.target, os.getcwd(), *filter(None, sys.path)]
+        return [sys.executable, "-P", "-c", START, str(HOME), self.target, os.getcwd(), *filter(None, sys.path)]
 
     def parts(self) -> frozenset[str]:
         """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""

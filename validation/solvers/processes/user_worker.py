@@ -1,4 +1,4 @@
-"""The process in which a user's solver runs: ``python -m validation.solvers.processes.user_worker module:attribute``.
+"""The process in which a user's solver runs, see the command of `validation.solvers.user.UserSolver`.
 
 A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
 them, or "raised" with the error and "at" with its place. A request of "parts" is answered with those that it has, one
@@ -151,7 +151,3 @@ def main(name: str, paths: list[str]) -> None:
     """Answer requests with one solver."""
     sys.path[:] = paths + [path for path in sys.path if path not in paths]
     serve(answering(name))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2:])

@@ -1,0 +1,117 @@
+"""pytest plugin: the marker of the accuracy gates and the options that put a user's own solver through them.
+
+It imports nothing heavy, since every pytest of every project that has this package installed loads it, and nothing of
+`validation` before a solver is to be judged: that name may be a folder of that project's own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import textwrap
+from collections.abc import Callable, Generator, Mapping
+from pathlib import Path
+
+import pytest
+
+from .siblings import shadowed
+
+TOLD = "dda-validation"  # the property of a report that holds what a gate said of a user's solver, as JSON
+FAILED = "failed gates"  # how pytest counts them; the block at the end tells them, once, in the place of its own list
+WIDE = 110  # columns of the block
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add ``--dda-solver`` and ``--dda-timeout``."""
+    group = parser.getgroup("dda-validation", "accuracy gates for your own DDA solver")
+    group.addoption(
+        "--dda-solver",
+        metavar="MODULE:ATTRIBUTE",
+        help="put this solver, solve(scene) -> history, in place of `dda` and run every gate that applies to it",
+    )
+    group.addoption(
+        "--dda-timeout",
+        metavar="SECONDS",
+        type=float,
+        default=60.0,
+        help="time limit of the solver for one case in seconds, plus 5 ms for each of its steps (default: 60)",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the marker, so that the gates run under strict markers in any project."""
+    config.addinivalue_line("markers", "validation: the accuracy gates of dda-validation, one test a gate")
+    # pytest-xdist registers it as well; without xdist the gates still carry it.
+    config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
+    if user := config.getoption("--dda-solver", None):
+        if sentence := shadowed():
+            raise pytest.UsageError(sentence)
+        from validation.solvers.registry import is_solver
+
+        if not is_solver(user):
+            known = "module:attribute, or a name that `dda-validate list` shows"
+            raise pytest.UsageError(f"--dda-solver: must be {known}, got {user!r}")
+        os.environ["DDA_VALIDATE_TIMEOUT"] = str(config.getoption("--dda-timeout"))
+        if not hasattr(config, "workerinput"):  # the workers of pytest-xdist need not try it again
+            _check_loads(user)
+
+
+def _check_loads(user: str) -> None:
+    """Refuse a solver that cannot be loaded, once and in one line, before any gate is run."""
+    from validation.solvers.registry import get_solver
+    from validation.solvers.user import UserSolver
+
+    solver = get_solver(user)
+    if isinstance(solver, UserSolver) and (reason := solver.load_error()):
+        raise pytest.UsageError(f"--dda-solver: {user} cannot be loaded: {reason}")
+
+
+@pytest.fixture(scope="session")
+def finished_cases(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the directory of this run's finished cases, which the workers of pytest-xdist share."""
+    base = tmp_path_factory.getbasetemp()
+    return (base.parent if hasattr(request.config, "workerinput") else base) / "finished-cases"
+
+
+@pytest.fixture
+def tell(request: pytest.FixtureRequest) -> Callable[[Mapping[str, object]], None]:
+    """Return a function that hands what a gate said of a user's solver to the block at the end.
+
+    The fixture `record_property` of pytest does the same, with a warning for each gate under --junitxml.
+    """
+    properties = request.node.user_properties
+    return lambda said: properties.append((TOLD, json.dumps(said)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] | None:
+    """Count the failing gates of a user's solver apart: the block at the end tells them by what they mean."""
+    return (FAILED, "F", "FAILED") if report.failed and _told(report) else None
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> Generator[None, None, None]:
+    """Write what the gates tell of a user's solver, after everything else."""
+    yield
+    user = config.getoption("--dda-solver", None)
+    reports = [report for found in terminalreporter.stats.values() for report in found]
+    said = [told for report in reports if isinstance(report, pytest.TestReport) for told in _told(report)]
+    if user is None or not said:
+        return
+    from validation.studies.own_solver.block import block
+    from validation.studies.own_solver.session import Told
+
+    terminalreporter.write_sep("=", f"{user}: what the gates tell")
+    for line in block([Told(**json.loads(text)) for text in said], every=config.getoption("verbose") > 0):
+        for part in line.split("\n"):
+            indent = " " * (len(part) - len(part.lstrip()) + 4)
+            for row in textwrap.wrap(part, WIDE, subsequent_indent=indent, drop_whitespace=True) or [""]:
+                terminalreporter.write_line(row)
+
+
+def _told(report: pytest.TestReport) -> list[str]:
+    """Return what a report says of a gate of a user's solver: one text, or nothing."""
+    properties = report.user_properties if report.when == "call" else []
+    return [str(value) for name, value in properties if name == TOLD]
