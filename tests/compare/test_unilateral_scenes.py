@@ -40,7 +40,8 @@ def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]
     answer = judged(**changes)
     assert answer.causes == causes
     assert (answer.opened is None) == (causes == ["contact-locked"])
-    assert answer.departs == bool(set(causes) - {"own-weight"})
+    assert answer.departs == bool(causes)
+    assert (answer.departure is None) == (set(causes) <= {"own-weight"})
 
 
 def test_the_batch_and_the_suite_s_solver_step_alike() -> None:

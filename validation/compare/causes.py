@@ -17,6 +17,9 @@ from validation.compare.fits.fit import NAMED
 from validation.compare.fits.target import Target
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
+ROUND_EXACT = 1e-6  # relative error that a fit without noise leaves of a factor
+ROUND_DIGITS = 2  # significant digits of a factor that a person types, and that no base has by chance
+ROUND_ERROR = 1e-3  # relative error of a factor, beyond which its digits are not known well enough to be called round
 UNEXPLAINED = "unexplained"
 DIVERGED = "diverged"
 
@@ -184,15 +187,47 @@ def compliance(target: Target, variant: Variant) -> float:
 
 
 def benign_springs(target: Target, variant: Variant) -> bool:
-    """Whether the springs are the scene's, on a slightly compliant base or one that is seen to swing."""
+    """Whether the springs may be the scene's, on a slightly compliant base or one that is seen to swing.
+
+    No base adds a negative compliance.
+    """
     soft = compliance(target, variant)
-    return -BENIGN_COMPLIANCE / 5 <= soft <= BENIGN_COMPLIANCE * (1 if variant.base == 0 else 4)
+    return 0 <= soft <= BENIGN_COMPLIANCE * (1 if variant.base == 0 else 4)
 
 
-def causes_of(target: Target, ids: Sequence[str], variant: Variant, scene: Variant) -> list[str]:
-    """Return the ids of what was found, in the catalogue's order; springs are called by what they stand for."""
+def round_factor(factor: float, error: float) -> bool:
+    """Whether a factor, or one over it, is a round number within what its relative error leaves open."""
+    if error > ROUND_ERROR:
+        return False
+    for value in (factor, 1 / factor):
+        typed = float(f"{value:.{ROUND_DIGITS - 1}e}")
+        if abs(value / typed - 1) <= max(error, ROUND_EXACT):
+            return True
+    return False
+
+
+def is_base(target: Target, variant: Variant, softness_error: float) -> bool:
+    """Whether softer springs are called a base: benign ones whose factor no person would type.
+
+    A base of its own mass is known by its swing, whatever the factor.
+    """
+    if not benign_springs(target, variant):
+        return False
+    return variant.base > 0 or not round_factor(math.exp(-variant.softness), softness_error)
+
+
+def causes_of(
+    target: Target, ids: Sequence[str], variant: Variant, scene: Variant, softness_error: float = 0.0
+) -> list[str]:
+    """Return the ids of what was found, in the catalogue's order; springs are called by what they stand for.
+
+    Parameters
+    ----------
+    softness_error
+        Half width of the 95 % interval of the softness, which is the relative error of the springs' factor [-].
+    """
     found = set(ids)
-    if "springs-factor" in found and benign_springs(target, variant):
+    if "springs-factor" in found and is_base(target, variant, softness_error):
         found = found - {"springs-factor"} | {"base-compliance"}
     if "dead-band" in found and not scene.opens:
         found |= {"contact-opened"}

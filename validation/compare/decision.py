@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dda.one_block.variants import Variant
 from validation.compare.causes import CAUSES, OUTSIDE, Move, benign_springs
 from validation.compare.fits.bar import MARGIN
-from validation.compare.fits.fit import Fit
+from validation.compare.fits.fit import Fit, fit
 from validation.compare.fits.target import Target
 from validation.compare.fitting import Found
 
@@ -17,6 +17,7 @@ CLEAR = 10.0  # of the information criterion: odds of 150 to 1
 NEEDED = 14.0  # the same for a cause where noise alone would do: there are some forty to choose from
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
+SEEN = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
 FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
@@ -108,8 +109,22 @@ def accepted(target: Target, own: Fit, found: Fit) -> bool:
     if found.misfit <= min(NEGLIGIBLE, own.misfit * NEGLIGIBLE_SHARE):
         return True
     noise = MARGIN * target.spread
-    around = v.updated or v.base > 0 or (v.softness > 0 and benign_springs(target, v))
-    return around and found.misfit <= min(math.hypot(AROUND, noise), SHARE * own.misfit)
+    loose = min(math.hypot(AROUND, noise), SHARE * own.misfit)
+    return found.misfit <= loose and _surrounded(target, found)
+
+
+def _surrounded(target: Target, found: Fit) -> bool:
+    """Whether moving geometry or a base is seen in a history: without it the same fit leaves much more.
+
+    What surrounds a block is treated differently by every program, so that some of it may be left; a base of 1e-6 or
+    a geometry that makes no difference has explained nothing, and excuses nothing.
+    """
+    v = found.variant
+    base = v.base > 0 or (v.softness > 0 and benign_springs(target, v))
+    if not (v.updated or base):
+        return False
+    without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
+    return fit(target, [(without, ())])[0].misfit > SEEN * found.misfit
 
 
 def _nameable(target: Target, own: Fit, found: Found) -> bool:

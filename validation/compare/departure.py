@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from dda.one_block.variants import Variant
-from validation.compare.causes import CAUSES, benign_springs
+from validation.compare.causes import CAUSES
 from validation.compare.fits.fit import Fit
 from validation.compare.fits.responses import computed
 from validation.compare.fits.target import Target
@@ -28,14 +28,15 @@ class Departure:
     kind: Kind
 
 
-def expected(target: Target, found: Fit, scene: Variant) -> Array:
+def expected(target: Target, found: Fit, scene: Variant, causes: Sequence[str]) -> Array:
     """Return the displacement of the scene's own scheme with what a program may add without fault [m].
 
     Weight, moving geometry and a slightly compliant base are taken over from the fit.
     """
     v = found.variant
-    soft = v.softness if benign_springs(target, v) else 0.0
-    plain = replace(scene, softness=soft, base=v.base, weight=v.weight, updated=v.updated)
+    yields = "base-compliance" in causes
+    softness, base = (v.softness, v.base) if yields else (0.0, 0.0)
+    plain = replace(scene, softness=softness, base=base, weight=v.weight, updated=v.updated)
     return computed(target.column, [plain], target.steps).displacement[:, 0]
 
 

@@ -58,11 +58,12 @@ class Answer:
     nearest: dict[str, Any] | None = None  # where nothing explains it
     alike: list[dict[str, Any]] = field(default_factory=list)  # causes that give the same rows
     evidence: tuple[Stage, ...] = ()
+    own_model: bool = True  # whether it is DDA that explains the history, not another model in space or in time
 
     @property
     def departs(self) -> bool:
-        """Whether the history is another one than the scene's."""
-        return self.departure is not None
+        """Whether the history is another one than the scene itself gives, for whatever reason."""
+        return bool(self.causes) or not self.own_model
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -197,17 +198,18 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     target, own, found = case.target, case.own, verdict.best.fit
     stages = _stages(case)
-    named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own)
+    error = intervals(found)["softness"].half_width if "softness" in found.free else 0.0
+    named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own, error)
     ids = named_ if verdict.explained else [UNEXPLAINED]
     v = found.variant if verdict.explained else own
     steps = _opened(target, found.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
-    expected = departure.expected(target, shown, own)
+    expected = departure.expected(target, shown, own, ids)
     gone = departure.departure(target, expected, ids, steps)
     told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target, ids, v)
     soft = causes.compliance(target, v)
-    alike = families.as_good(target, verdict) or families.relatives(target, ids, values)
+    alike = families.as_good(target, verdict) or families.relatives(target, ids, values, v)
     nearest = None if verdict.explained or verdict.alike else _nearest(target, verdict, named_)
     said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft)
     if not verdict.explained:
@@ -298,6 +300,7 @@ def _answer_of_rival(foreign: Foreign, reading: Reading, verdict: RivalVerdict, 
         values=verdict.values if verdict.explained else {},
         unexplained=0.0 if verdict.explained else verdict.left,
         evidence=tuple(stages),
+        own_model=best.model == DDA,
     )
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from dda.one_block.variants import Variant
 from validation.compare.causes import causes_of, values_of
 from validation.compare.decision import Verdict
 from validation.compare.fits.target import Target
@@ -18,6 +19,8 @@ TELLS = {
     "scheme": "another time step",
     "start": "another time step",
     "springs-factor": "another contact stiffness, or the contact pressure if it is missing",
+    "base-compliance": "another contact stiffness: a base adds as many metres, springs by a factor as large a share",
+    "width-factor": "load.eccentricity, or a printed mass: the width of the block and of its base",
     "young-factor": "another contact stiffness: on stiff springs only the block deforms",
     "load-factor": "the contact pressure if it is missing; load.gravity = 9.81 without pressure",
     "density-factor": "load.gravity = 9.81 without pressure: density then acts on the static displacement",
@@ -28,7 +31,9 @@ TELLS = {
 }
 
 
-def relatives(target: Target, ids: Sequence[str], values: dict[str, float]) -> list[dict[str, Any]]:
+def relatives(
+    target: Target, ids: Sequence[str], values: Mapping[str, float], variant: Variant
+) -> list[dict[str, Any]]:
     """Return what gives the same rows as the named causes, by the equations alone.
 
     The rows depend on m/(k dt^2), E/p and load/p only (m the mass, k the springs), and the pressure on the load.
@@ -50,7 +55,25 @@ def relatives(target: Target, ids: Sequence[str], values: dict[str, float]) -> l
         side = values["side-factor"]
         said = {"density-factor": float(f"{side**2:.6g}"), "load-factor": side}
         found.append(_relative(list(said), said, TELLS["side-factor"]))
+    if "base-compliance" in ids and variant.base == 0:
+        found.append(_springs_for_base(ids, values, variant))
+    if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:
+        # per unit of width, pressure, mass and stiffness of the block stay; the two springs share a wider base
+        wider = _six(math.exp(variant.softness))
+        found.append(_relative(["width-factor"], {"width-factor": wider}, TELLS["width-factor"]))
     return found
+
+
+def _springs_for_base(ids: Sequence[str], values: Mapping[str, float], variant: Variant) -> dict[str, Any]:
+    """Return the springs that give the rows of a base without mass: it stands in series with them."""
+    others = [name for name in ids if name != "base-compliance"]
+    known = {name: values[name] for name in others if name in values}
+    factor = _six(math.exp(-variant.softness))
+    return _relative([*others, "springs-factor"], known | {"springs-factor": factor}, TELLS["base-compliance"])
+
+
+def _six(value: float) -> float:
+    return float(f"{value:.6g}")
 
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:

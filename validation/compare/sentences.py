@@ -73,7 +73,8 @@ def sentence(said: Said, alike: Sequence[Mapping[str, Any]] = ()) -> str:
     allowed = f", allowing for {_listed(benign)}" if benign else ""
     left = f"the remaining difference is {per_cent(said.misfit, 2)} %"
     if not faults:
-        return f"Same model, same scheme: {said.own}{allowed}; {left}."
+        same = f" (the same rows: {_family(alike[0])})" if alike else ""
+        return f"Same model, same scheme: {said.own}{allowed}{same}; {left}."
     words = _listed([_fault_words(name, said) for name in faults])
     family = f" (the same rows: {_family(alike[0])})" if alike else ""
     if set(faults) & set(INTEGRATOR):

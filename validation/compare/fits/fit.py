@@ -27,7 +27,7 @@ NAMED: dict[str, tuple[float, float]] = {
     "central differences": (0.0, 1 / 2),
     "unconditionally complex": (9 / 16, 1.0),
     "backward differences": (4 / 5, 3 / 2),
-    "backward Euler": (1.0, 1.0),
+    "backward Euler": (1.0, 3 / 2),  # from rest with A0 = 0 row by row: M a1 + K x1 = F, v1 = v + dt a1, x1 = x + dt v1
 }
 # what counts as a change of a number, and the range within sense
 SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "weight": 1.0, "load": 0.1,
