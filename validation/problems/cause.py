@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from validation.compare.causes import UNEXPLAINED
-from validation.compare.diagnosis import compare
-from validation.compare.reading import SIDEWAYS, Foreign
+from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
 from validation.problems.families import Family, laws, of_damping, of_data, of_output

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.compare.fits.fit import NAMED
-from validation.compare.sentences import scheme_words
+from validation.diagnosis.fits.fit import NAMED
+from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard
 from validation.problems.variations import accurate

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.compare.causes import CAUSES
-from validation.compare.diagnosis import Answer
-from validation.compare.sentences import told_lines
+from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.judgement import Answer
+from validation.diagnosis.sentences import told_lines
 from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, parameters, short
 from validation.report.figures import histories, motion

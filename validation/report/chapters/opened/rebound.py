@@ -119,9 +119,7 @@ def conclusion(maps: Sequence[Group]) -> str:
             gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
     said = "; ".join(parts)
-    return (
-        f"{said[:1].upper()}{said[1:]}: a step too large for the contact spoils the motion, not the iteration."
-    )
+    return f"{said[:1].upper()}{said[1:]}: a step too large for the contact spoils the motion, not the iteration."
 
 
 def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
