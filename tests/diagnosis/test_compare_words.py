@@ -21,13 +21,14 @@ from validation import load_scene, solve
 from validation.cli import compare as cli_compare
 from validation.diagnosis import departure
 from validation.diagnosis import sentences as wording
+from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.judgement import MODEL_WORDS, Answer, compare
+from validation.diagnosis.judgement import MODEL_WORDS, compare
 from validation.diagnosis.other_solvers import Goal, Rival, rivals
 from validation.diagnosis.other_verdict import RivalVerdict
 from validation.diagnosis.other_verdict import _causes as causes_of_rival

@@ -10,8 +10,8 @@ from faults import seams
 from oracles import confusion
 from oracles.pages import page_with
 
+from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
-from validation.diagnosis.judgement import Answer
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
 

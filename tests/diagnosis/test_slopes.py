@@ -12,7 +12,8 @@ from conftest import thinned, typed
 from oracles.sliding_dda import Motion, Slider, run
 
 from validation import load_scene
-from validation.diagnosis.judgement import Answer, compare
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign, read
 from validation.errors import InputError
 from validation.scenes.scene import Scene

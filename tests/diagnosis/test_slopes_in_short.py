@@ -12,9 +12,10 @@ import pytest
 from oracles.sliding_dda import Motion, Slider, run
 
 from validation import load_scene, solve
+from validation.diagnosis.answer import Answer
 from validation.diagnosis.forces.forward import Agreement, agreement, at_step, surrounded
 from validation.diagnosis.forces.judge import _law
-from validation.diagnosis.judgement import Answer, compare
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
 from validation.scenes.scene import Scene

@@ -12,7 +12,8 @@ from faults import seams
 from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
 
-from validation.diagnosis.judgement import Answer, compare
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
 PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms

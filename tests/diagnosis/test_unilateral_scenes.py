@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from validation import load_scene, solve
+from validation.diagnosis.answer import Answer
 from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.responses import computed
-from validation.diagnosis.judgement import Answer, compare
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant

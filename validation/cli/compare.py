@@ -11,7 +11,7 @@ import typer
 from validation.cli.app import SetOption, app, one_case
 
 if TYPE_CHECKING:
-    from validation.diagnosis.judgement import Answer
+    from validation.diagnosis.answer import Answer
 
 SHOWN = 6  # lines of the ranking
 

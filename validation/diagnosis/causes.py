@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.fits.fit import NAMED, Fit, fit, intervals
+from validation.diagnosis.fits.fit import NAMED, Fit, changed, fit, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.stepping import UNEQUAL
 from validation.diagnosis.variant import Variant
@@ -327,7 +327,7 @@ def intervals_of(target: Target, found: Fit, ids: Sequence[str]) -> dict[str, tu
         if not math.isfinite(interval.half_width):
             continue
         low, high = (
-            values_of(target, ids, replace(found.variant, **{name: interval.value + side * interval.half_width}))
+            values_of(target, ids, changed(found.variant, {name: interval.value + side * interval.half_width}))
             for side in (-1.0, 1.0)
         )
         for cause in values:

@@ -18,8 +18,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import dda
 from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
@@ -347,7 +349,7 @@ class Stepper:
         return found[..., 0], found[..., 1], np.array(flags)
 
 
-def times(matrix: Array, vector: Array) -> Array:
+def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) -> Array:
     """Return the product of matrices (variants, m, n) and vectors (..., variants, n)."""
     return np.asarray((matrix @ vector[..., None])[..., 0])
 

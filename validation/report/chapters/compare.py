@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
-from validation.diagnosis.judgement import Answer
 from validation.diagnosis.sentences import told_lines
 from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, parameters, short
