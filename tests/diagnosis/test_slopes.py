@@ -200,6 +200,43 @@ def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagge
     assert "not explained" in answer.sentence
 
 
+NUMBERS = [
+    ({"phi": math.degrees(math.atan(1.1 * math.tan(math.radians(22))))}, "friction-factor", 1.1),
+    ({"ps": 1e9}, "shear-springs-factor", 2.5),
+    ({"gg": 0.99}, "gg", 0.99),
+    ({"rho": 2970.0}, "density-factor", 1.1),
+    ({"cohesion": 2e4}, "cohesion", 2e4),
+    ({"p": 1.2e9}, "normal-springs-factor", 1.2),
+]
+
+
+@pytest.mark.parametrize(("slip", "cause", "value"), thinned(NUMBERS, 6))
+def test_one_wrong_number_is_named_by_a_run_that_gives_the_history(
+    slip: dict[str, object], cause: str, value: float
+) -> None:
+    answer = judged(sound(steps=200, **slip))
+    assert answer.causes == [cause] and answer.departs
+    assert answer.values[cause] == pytest.approx(value, rel=1e-3)
+    stages = {stage.name: stage for stage in answer.evidence}
+    assert stages["motion"].agrees  # of the scene with that number
+
+
+def test_a_wrong_coefficient_of_friction_is_not_called_right_by_its_forces() -> None:
+    answer = judged(sound(steps=200, phi=24.0, mu=0.2))
+    stages = {stage.name: stage for stage in answer.evidence}
+    assert answer.causes == ["unexplained"] and stages["friction"].agrees is False
+
+
+def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
+    found = sound(steps=200)
+    answer = compare(scene(), Foreign(found.time, 1e3 * found.v, sideways=1e3 * found.u))
+    assert answer.causes == ["unit"]
+    assert [(slip.column, slip.factor) for slip in answer.slips] == [
+        ("horizontal_displacement", 1e3),
+        ("displacement", 1e3),
+    ]
+
+
 @pytest.mark.long
 def test_another_factor_on_all_springs_and_a_turned_sign_are_named() -> None:
     found = program(p=2e9, ps=8e8, lagged=True)

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
-from validation.problems.families import numbers
 from validation.problems.judge import Word, judge
 from validation.problems.problem import problem, problem_of
 from validation.runs.history import History

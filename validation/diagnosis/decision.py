@@ -16,6 +16,7 @@ from validation.diagnosis.variant import Variant
 CLEAR = 10.0  # of the information criterion: odds of 150 to 1
 NEEDED = 14.0  # the same for a cause where noise alone would do: there are some forty to choose from
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
+AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
 SEEN = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
@@ -110,7 +111,8 @@ def accepted(target: Target, own: Fit, found: Fit) -> bool:
     if found.misfit <= min(NEGLIGIBLE, own.misfit * NEGLIGIBLE_SHARE):
         return True
     noise = MARGIN * target.spread
-    loose = min(math.hypot(AROUND, noise), SHARE * own.misfit)
+    around = AROUND_OPEN if v.opens else AROUND
+    loose = min(math.hypot(around, noise), SHARE * own.misfit)
     return found.misfit <= loose and _surrounded(target, found)
 
 

@@ -19,6 +19,7 @@ from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
+from validation.diagnosis.forces.one_number import OneChange
 from validation.diagnosis.other_solvers import Goal, Rival, rivals
 from validation.diagnosis.other_verdict import RivalVerdict, judged
 from validation.diagnosis.ranking import ranking, row_of
@@ -281,15 +282,23 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
         answer.departure_of(found, ids),
         ids,
         found.opened if found.explained else None,
-        answer.sentence(scene, found, ids),
+        answer.sentence(scene, found, ids, read.corrected),
         (*foreign.notes, *read.notes),
         misfit=found.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
         values=found.values if found.explained else {},
         unexplained=0.0 if found.explained else left,
         nearest=None if found.explained else near,
+        alike=[_alone(one) for one in found.alike],
         evidence=tuple(answer.stages(found, read)),
+        slips=read.corrected,
     )
+
+
+def _alone(change: OneChange) -> dict[str, Any]:
+    """Return one of several changes that give the same rows, as plain data."""
+    values = {} if change.value is None else {change.id: change.value}
+    return {"causes": [change.id], "values": values, "further_scene": "another slope or coefficient of friction"}
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:

@@ -28,6 +28,7 @@ from validation.diagnosis.fits.target import Target
 from validation.diagnosis.fitting import Found, fitted
 from validation.diagnosis.variant import Variant
 
+OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it
 # tried by themselves only: beside another cause they are rare, and the pairs grow with the square of what is tried
 SINGLE = (
     *("dead-band", "hht", "generalised-alpha", "substeps", "exact-in-time", "velocity", "stiffness-damping"),
@@ -76,6 +77,7 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
         return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))
     faults = [move for move in few if move.id not in SURROUNDINGS]
     around = tuple(_surroundings(target, scene))
+    faults += [move for move in moves(target, scene) if move.id == "dead-band" and OTHER_PROGRAMS in move.changes]
     beside = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
     beside = [*beside[:3], *_heavy(target, beside[:3])]
     fine = [f for f in beside if accepted(target, before.own, f.fit)]

@@ -16,10 +16,11 @@ import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
+from validation.diagnosis.numbers import laws
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
-from validation.problems.families import Family, laws, of_damping, of_data, of_output
+from validation.problems.families import Family, of_damping, of_data, of_output
 from validation.problems.models import Base, Columns, Runs
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History

@@ -12,12 +12,14 @@ from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.rectangle import upright
-from validation.diagnosis.forces.judge import BLURRED, NORMAL, Found
+from validation.diagnosis.forces.forward import at_step, displacements
+from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
 from validation.diagnosis.forces.motion import body_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
+from validation.diagnosis.readings import Slip
 from validation.diagnosis.sentences import per_cent, scheme_words
 from validation.errors import InputError
-from validation.runs.history import Array
+from validation.runs.history import DISPLACEMENT, Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -25,6 +27,8 @@ KNOWN = frozenset(
     {features.FRICTION, features.LAGGED, features.SLOPE, features.WEIGHT, features.OFF_CENTRE}
     | {features.UNILATERAL, features.DEAD_BAND}
 )
+UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
+NEAR_POWER = 0.5  # of the exponent: what creeps and slides differs by a factor of a few from program to program
 UNIFORM = 1e-3  # relative; times are often printed with four digits
 
 
@@ -35,8 +39,13 @@ class Read:
     place: Array  # m, (steps, 2)
     rounding: Array  # m, (steps, 2)
     step: float  # s
-    slips: tuple[str, ...]
+    corrected: tuple[Slip, ...]
     notes: tuple[str, ...]
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """Ids of the errors of sign and unit that were corrected, each once."""
+        return tuple(sorted({slip.cause for slip in self.corrected}))
 
 
 def read(scene: Scene, foreign: Foreign) -> Read:
@@ -68,9 +77,24 @@ def read(scene: Scene, foreign: Foreign) -> Read:
     no_digits = np.zeros(len(place))
     units = [no_digits if unit is None else unit for unit in (foreign.sideways_rounding, foreign.rounding)]
     signs = [_sign(column, load) for column, load in zip(place.T, body_of(scene).load, strict=True)]
-    slips = ("sign",) if min(signs) < 0 else ()
+    names = SIDEWAYS, DISPLACEMENT
+    corrected = [Slip("sign", name, -1.0) for name, sign in zip(names, signs, strict=True) if sign < 0]
+    step = float(np.mean(steps))
+    factor = _unit(scene, step, place)
+    if factor != 1:
+        corrected += [Slip("unit", name, factor) for name in names]
     notes = (stepping.note,) if stepping.note else ()
-    return Read(place * signs, np.column_stack(units), float(np.mean(steps)), slips, notes)
+    return Read(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
+
+
+def _unit(scene: Scene, step: float, place: Array) -> float:
+    """Return the power of ten by which both displacements are larger than those of the scene's own run, else one."""
+    own = displacements(at_step(scene, step, len(place)))
+    size = 0.0 if own is None else float(np.max(np.abs(own)))
+    if size == 0 or not np.any(place):
+        return 1.0
+    ratio = math.log10(float(np.max(np.abs(place))) / size)
+    return next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
 
 
 def _check(scene: Scene) -> None:
@@ -105,7 +129,7 @@ def departure_of(found: Found, ids: Sequence[str]) -> Departure | None:
 
 def _first(found: Found, ids: Sequence[str]) -> int | None:
     """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
-    return 1 if "sign" in ids else found.first
+    return 1 if {"sign", "unit"} & set(ids) else found.first
 
 
 def stages(found: Found, read: Read) -> list[Stage]:
@@ -115,7 +139,7 @@ def stages(found: Found, read: Read) -> list[Stage]:
     telling = f"{found.telling} steps tell them apart"
     blurred = "; the digits of the file do not show it" if found.tolerance > BLURRED else ""
     numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
-    right = "signs and columns are the scene's" if not read.slips else "a sign is reversed"
+    right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
     pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
     run = found.run
     left = None if math.isnan(run.left) else run.left
@@ -125,11 +149,18 @@ def stages(found: Found, read: Read) -> list[Stage]:
         Stage("normal forces", found.normal <= NORMAL, pressed, {"misfit": found.normal, "allowed": NORMAL}),
         Stage(
             "friction",
-            None if blurred else found.first is None,
+            None if blurred else _law_holds(found),
             f"rules that hold to {per_cent(found.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
             numbers,
         ),
     ]
+
+
+def _law_holds(found: Found) -> bool | None:
+    """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
+    if found.first is not None or max(found.shares.values()) < MOST:
+        return False
+    return True if found.run.same else None
 
 
 def _motion(found: Found) -> str:
@@ -143,7 +174,7 @@ def _motion(found: Found) -> str:
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
 
 
-def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
+def sentence(scene: Scene, found: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
     """Return the first line of the answer."""
     t = scene.time
     own = scheme_words(t.alpha, t.delta, t.discount)
@@ -151,13 +182,21 @@ def sentence(scene: Scene, found: Found, ids: Sequence[str]) -> str:
     held = f"{law} friction gives the force of {100 * found.shares[law]:.4g} % of the steps"
     if not found.explained:
         why = "the digits of the file do not show its forces" if found.tolerance > BLURRED else f"at best, {held}"
+        if found.alike:
+            words = list(dict.fromkeys(one.words for one in found.alike))
+            same = "gives" if len(words) == 1 else "give"
+            return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(found)}."
         normal = f"the normal law leaves {per_cent(found.normal, 2)} %"
         return f"Departs, not explained: {why}; {normal}; {_motion(found)}."
-    faults = [_fault(name, found) for name in ids if not CAUSES[name].benign]
+    faults = [slip.words for slip in corrected]
+    faults += [_fault(name, found) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
     benign = [_benign(name, found) for name in ids if CAUSES[name].benign]
     allowed = f", allowing for {' and '.join(benign)}" if benign else ""
     if not faults:
         return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
+    if found.change:
+        faults = [*(slip.words for slip in corrected), found.change]
+        return f"Departs: {' and '.join(faults)}; {_motion(found)}."
     first = _first(found, ids)
     where = f" from step {first} on" if first else ""
     return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."

@@ -63,7 +63,7 @@ def agreement(scene: Scene, place: Array, rounding: Array) -> Agreement:
     rounding
         Units of their last digits [m], (steps, 2).
     """
-    own = _run(scene)
+    own = displacements(scene)
     if own is None:
         return NO_RUN
     rest, size = place - own, _size(place)
@@ -117,12 +117,12 @@ def _amplified(scene: Scene, own: Array) -> Array:
     """Return what the scene makes of other arithmetic up to each step [m], (steps, 2); infinite where it has no run."""
     c, grown = scene.contact, np.zeros_like(own)
     for name, value in (("contact.stiffness", c.stiffness), ("contact.friction", c.friction or 0.0)):
-        shaken = _run(scene.with_values({name: value * (1 + SHAKEN)}))
+        shaken = displacements(scene.with_values({name: value * (1 + SHAKEN)}))
         grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - own))
     return np.asarray(np.maximum.accumulate(grown, axis=0))
 
 
-def _run(scene: Scene) -> Array | None:
+def displacements(scene: Scene) -> Array | None:
     """Return displacements along and across the base; None where the suite has no such run."""
     solver = get_solver(DDA)
     try:
@@ -148,7 +148,7 @@ def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place:
         return full
 
     def left(z: Array) -> Array:
-        run = _run(_changed(short, whole(z), follows))
+        run = displacements(_changed(short, whole(z), follows))
         return np.ones(first.size) if run is None else np.ravel((run - first) / size)
 
     found = least_squares(left, start[free], x_scale=np.array([1.0, 0.1])[free], xtol=1e-14, ftol=1e-14, max_nfev=12)

@@ -10,6 +10,7 @@ import numpy as np
 from validation.diagnosis.forces.forward import NO_RUN, SURROUNDINGS, Agreement, agreement, at_step, surrounded
 from validation.diagnosis.forces.laws import Followed, follow
 from validation.diagnosis.forces.motion import Body, Scheme, body_of, motion_of
+from validation.diagnosis.forces.one_number import OneChange, one_number
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -42,6 +43,8 @@ class Found:
     first: int | None  # step, from 1, at which the scene's own law is left
     opened: tuple[int, int] | None  # first and last step with both corners open
     run: Agreement = NO_RUN  # what the suite's own run leaves, of the scene, or of what surrounds the block
+    change: str = ""  # the one thing in the scene that explains it, in words
+    alike: tuple[OneChange, ...] = ()  # changes of which each does
 
 
 def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
@@ -67,11 +70,20 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     if run.same and (run.until is None or found.shares[scene.contact.rules] >= MOST_SLIPS):
         return replace(found, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
     run = replace(run, same=False)
-    if not found.explained or not set(found.causes) <= SURROUNDINGS:
+    if found.explained and not set(found.causes) <= SURROUNDINGS:
         return replace(found, run=run)
-    if found.causes:
-        run = surrounded(exact, found.causes, fitted, place, rounding)
-    return replace(found, explained=run.same, run=run)
+    if found.explained and found.causes:
+        around = surrounded(exact, found.causes, fitted, place, rounding)
+        if around.same:
+            return replace(found, explained=True, run=around)
+        run = around if around.left < run.left else run
+    change, alike = one_number(exact, place, rounding)
+    if change is None:
+        return replace(found, explained=False, run=run, alike=tuple(alike))
+    values = {} if change.value is None else {change.id: change.value}
+    return replace(
+        found, causes=(change.id,), values=values, explained=True, first=1, run=change.run, change=change.words
+    )
 
 
 def _lags(scene: Scene) -> bool:
