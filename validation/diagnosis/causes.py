@@ -356,3 +356,17 @@ def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
     while high < len(trials) - 1 and same[high + 1]:
         high += 1
     return float(f"{trials[low]:.3g}"), float(f"{trials[high]:.3g}")
+
+
+def roundest(low: float, high: float) -> float:
+    """Return the number between two positive ones that has the fewest digits, of these the nearest to their mean."""
+    middle = math.sqrt(low * high)
+    power = 10.0 ** round(math.log10(middle))
+    if low <= power <= high:
+        return power
+    for digits in range(1, 8):
+        unit = 10.0 ** (math.floor(math.log10(middle)) - digits + 1)
+        inside = [k * unit for k in range(math.ceil(low / unit), math.floor(high / unit) + 1)]
+        if inside:
+            return float(f"{min(inside, key=lambda value: abs(math.log(value / middle))):.8g}")
+    return middle

@@ -25,7 +25,7 @@ from validation.diagnosis.other_verdict import RivalVerdict, judged
 from validation.diagnosis.ranking import ranking, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, readings_of, slips
-from validation.diagnosis.search import paired, simple
+from validation.diagnosis.search import beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.errors import InputError
@@ -94,6 +94,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case))
         verdict = paired(case.target, own, verdict)
+    elif not (verdict.explained or verdict.reached):
+        verdict = beside(case.target, own, verdict)
     linear = scene.contact.law == "locked"
     return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
 
@@ -170,10 +172,13 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     gone = departure.departure(target, expected, ids, steps)
     told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target, ids, v)
+    ends = causes.intervals_of(target, found, ids) if verdict.explained else {}
+    if "dead-band" in ends:
+        values["dead-band"] = causes.roundest(*ends["dead-band"])
     soft = causes.compliance(target, v)
     alike = families.as_good(target, verdict) or families.relatives(target, ids, values, v)
     nearest = None if verdict.explained or verdict.alike else _nearest(target, verdict, named_)
-    said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected)
+    said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected, ends)
     if not verdict.explained:
         sentence = sentences.not_explained(said, nearest, alike, verdict.left, stages)
     else:
@@ -199,7 +204,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         alike,
         tuple(stages),
         slips=corrected if verdict.explained else (),
-        intervals=causes.intervals_of(target, verdict.best.fit, ids) if verdict.explained else {},
+        intervals=ends,
     )
 
 

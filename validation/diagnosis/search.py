@@ -75,14 +75,25 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
     verdict = decided(target, before.own, fitted(target, scene, pairs))
     if verdict.reached or before.around < FAULT:
         return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))
+    return _nearer(verdict, beside(target, scene, before))
+
+
+def _nearer(*verdicts: Verdict) -> Verdict:
+    """Return the verdict that explains more."""
+    return min(verdicts, key=lambda v: (not v.explained, not v.reached, v.best.fit.misfit))
+
+
+def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
+    """Return what one cause explains beside what surrounds the block; else what was found before."""
+    few = _few(target, scene, before.single)
     faults = [move for move in few if move.id not in SURROUNDINGS]
     around = tuple(_surroundings(target, scene))
     faults += [move for move in moves(target, scene) if move.id == "dead-band" and OTHER_PROGRAMS in move.changes]
-    beside = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
-    beside = [*beside[:3], *_heavy(target, beside[:3])]
-    fine = [f for f in beside if accepted(target, before.own, f.fit)]
-    last = decided(target, before.own, [_without_excess(target, before.own, f) for f in fine] or beside)
-    return min((last, verdict, before), key=lambda v: (not v.explained, not v.reached, v.best.fit.misfit))
+    tried = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
+    tried = [*tried[:3], *_heavy(target, tried[:3])]
+    fine = [f for f in tried if accepted(target, before.own, f.fit)]
+    last = decided(target, before.own, [_without_excess(target, before.own, f) for f in fine] or tried)
+    return _nearer(last, before)
 
 
 def _around(target: Target, scene: Variant) -> list[Found]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from validation.diagnosis.causes import CAUSES
@@ -80,6 +80,7 @@ class Said:
     misfit: float  # relative L2 [-]
     compliance: float  # share of the static displacement that softer springs add [-]
     slips: Sequence[Slip] = ()  # of sign and unit
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def own(self) -> str:
@@ -245,13 +246,21 @@ def _fault_words(name: str, said: Said) -> str:
         "coupling": "the springs' coupling of v and ey " + ("is missing" if v.coupling == 0 else "has the wrong sign"),
         "stress-not-kept": f"only the {'force of the springs' if v.kept == 'springs' else 'stress'} is carried over",
         "contact-opened": f"the contact opened in steps {steps}" if steps else "the contact opened",
-        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
+        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m" + _between(said, name),
     }
     return words.get(name, CAUSES[name].words)
 
 
 def _slips(cause: str, slips: Sequence[Slip]) -> str:
     return " and ".join(slip.words for slip in slips if slip.cause == cause) or CAUSES[cause].words
+
+
+def _between(said: Said, name: str) -> str:
+    """Say between which values of a number the rows do not change."""
+    if name not in said.intervals:
+        return ""
+    low, high = said.intervals[name]
+    return f" ({low:.3g} to {high:.3g} m give the same rows)"
 
 
 def _gravity(factor: float) -> str:
