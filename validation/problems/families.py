@@ -15,7 +15,8 @@ from validation.runs.history import Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-STARTS = (0.5, 0.75, 1.3, 2.0)  # factors to begin from where a run costs nothing
+STARTS = (0.5, 0.75, 0.88, 1.12, 1.3, 2.0)  # factors to begin from where a run costs nothing
+DISCOUNTS = (0.99, 0.95, 0.8)  # of the velocity of a step
 DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
 MOST_LATE = 2.0  # steps
 FASTEST, SLOWEST = 1.1, 0.5  # of the rate at which time may run
@@ -63,6 +64,20 @@ def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Family]:
             lambda u, change=number.changed: _changed(runs, base, change, u),  # type: ignore[misc]
             starts,
         )
+
+
+def of_discount(runs: Runs, base: Base) -> Iterator[Family]:
+    """Yield another discount of the velocity, which acts at every step: of a base at the steps of the scene."""
+    own = runs.scene.time.discount
+    if base.exact:
+        return
+    yield Family(
+        "gg",
+        lambda gg: f"gg = {gg:.5g} where the scene has {own:.5g}",
+        lambda u: own * math.exp(-abs(u)),
+        lambda u: runs.sampled(base, {"time.gg": own * math.exp(-abs(u))}),
+        tuple(-math.log(gg) for gg in DISCOUNTS),
+    )
 
 
 def _changed(runs: Runs, base: Base, change: Callable[[Scene, float], dict[str, Any]], u: float) -> Columns | None:
