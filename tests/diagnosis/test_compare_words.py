@@ -466,6 +466,54 @@ def test_the_page_shows_the_same_in_per_cent_and_the_curves_in_millimetres(
     assert any(isinstance(b, FigureBlock) for b in blocks) and Paragraph("a note", "small") in blocks
 
 
+def test_the_page_draws_the_pressure_below_the_displacement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    caught: list[Figure] = []
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure))
+    pressures = {name: 1e6 * scale * np.ones(5) for name, scale in (("the file", 4.0), ("dda", 5.0), ("best", 6.0))}
+    chapters_compare.page(SCENE, "theirs.csv", replace(ANSWER, pressures=pressures), tmp_path)
+    top, middle, below = caught[0].axes
+    for name, values in pressures.items():
+        _, y = line_in(middle, to_hex(style_of(name).color))
+        assert np.allclose(y, 1e-6 * values)
+    assert top.get_ylabel() != middle.get_ylabel() and below.get_yscale() == "log"
+
+
+def test_the_exact_continuum_is_not_the_same_scheme() -> None:
+    """In space and in time it is another model than the scene's own run by DDA, which the status says."""
+    scene = SCENE.with_values({"time.step": 5e-4})
+    run = solve(scene, "continuum")
+    answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
+    assert answer.causes == ["exact-in-time"] and answer.departs and answer.departure is not None
+    assert answer.sentence.startswith("Closest match: continuum") and "a different scheme" in answer.sentence
+    assert not [stage for stage in answer.evidence if stage.agrees is False]
+
+
+@pytest.mark.long
+def test_what_surrounds_a_block_leaves_no_wrong_stage() -> None:
+    run = solve(SCENE.with_values({"load.gravity": 9.81}), "dda")
+    answer = compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
+    assert answer.causes == ["own-weight"] and answer.sentence.startswith("Same model, same scheme")
+    assert not [stage for stage in answer.evidence if stage.agrees is False]
+    assert answer.intervals["own-weight"] == pytest.approx((1, 1), abs=1e-6)
+
+
+def test_a_wrong_pressure_dates_the_departure_by_itself() -> None:
+    answer = judged(lambda v, p: (v, 0.5 * p))
+    assert answer.causes == ["pressure-factor"]
+    assert answer.departure is not None and answer.departure.step == 1
+    assert answer.sentence.count("the displacement is right") == 1
+
+
+def test_a_slip_of_sign_and_unit_is_told_with_its_column_and_factor() -> None:
+    answer = judged(lambda v, p: (v, -1e-3 * p))
+    assert [(slip.cause, slip.column, slip.factor) for slip in answer.slips] == [
+        ("sign", "contact_pressure", -1.0),
+        ("unit", "contact_pressure", 1e-3),
+    ]
+    assert "the contact pressure is in other units, 0.001 times the scene's" in answer.sentence
+    assert answer.as_dict()["slips"][1] == {"cause": "unit", "column": "contact_pressure", "factor": 1e-3}
+
+
 def test_the_page_lists_the_best_schemes_what_is_left_and_which_stages_are_right() -> None:
     ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(chapters_compare.LINES + 2)]
     marks = (("at_rest", True), ("period", False), ("load", None))

@@ -32,6 +32,7 @@ class Answer:
     nearest: dict[str, Any] | None = None  # where nothing explains it
     alike: list[dict[str, Any]] = field(default_factory=list)  # causes that give the same rows
     evidence: tuple[Stage, ...] = ()
+    pressures: dict[str, Array] = field(default_factory=dict)  # name to pressure at the times of `curves` [Pa]
     slips: tuple[Slip, ...] = ()  # of sign and unit, column by column
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)  # of `values`, 95 %
     own_model: bool = True  # whether it is DDA that explains the history, not another model in space or in time

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +35,13 @@ class Stage:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
         return {"stage": self.name, "agrees": self.agrees, "words": self.words, **self.numbers}
+
+
+def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
+    """Return a stage whose number differs from the scene's for a reason that is no fault: neither right nor wrong."""
+    if stage.agrees is not False:
+        return stage
+    return replace(stage, agrees=None, words=f"{stage.words}; {explained_by} explains it")
 
 
 def growth(values: Array, wanted: Array) -> float | None:

@@ -20,6 +20,7 @@ TELLS = {
     "start": "another time step",
     "springs-factor": "another contact stiffness, or the contact pressure if it is missing",
     "base-compliance": "another contact stiffness: a base adds as many metres, springs by a factor as large a share",
+    "stiffness-damping": "another time step: the damping is per second, that of a scheme per step",
     "width-factor": "load.eccentricity, or a printed mass: the width of the block and of its base",
     "young-factor": "another contact stiffness: on stiff springs only the block deforms",
     "load-factor": "the contact pressure if it is missing; load.gravity = 9.81 without pressure",
@@ -55,6 +56,10 @@ def relatives(
         side = values["side-factor"]
         said = {"density-factor": float(f"{side**2:.6g}"), "load-factor": side}
         found.append(_relative(list(said), said, TELLS["side-factor"]))
+    if list(ids) == ["stiffness-damping"]:
+        found.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
+    if list(ids) == ["gravity-factor"] and values["gravity-factor"] == -1 and not target.column.pressure:
+        found.append(_relative(["sign"], {}, TELLS["own-weight"]))
     if "base-compliance" in ids and variant.base == 0:
         found.append(_springs_for_base(ids, values, variant))
     if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:

@@ -29,6 +29,7 @@ from validation.diagnosis.search import beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.errors import InputError
+from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -92,7 +93,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         names = RIVALS if scene.block.poisson == 0 else ("fem",)
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
         if theirs is not None and theirs.explained:
-            return _answer_of_rival(foreign, case.reading, theirs, _stages(case))
+            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), _own_run(case))
         verdict = paired(case.target, own, verdict)
     elif not (verdict.explained or verdict.reached):
         verdict = beside(case.target, own, verdict)
@@ -178,14 +179,17 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     soft = causes.compliance(target, v)
     alike = families.as_good(target, verdict) or families.relatives(target, ids, values, v)
     nearest = None if verdict.explained or verdict.alike else _nearest(target, verdict, named_)
+    if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
+        stages = [evidence.surrounded(stage) for stage in stages]
     said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected, ends)
     if not verdict.explained:
         sentence = sentences.not_explained(said, nearest, alike, verdict.left, stages)
     else:
         sentence = sentences.sentence(said, alike)
     time = np.cumsum(target.steps)[target.rows]
-    best = computed(target.column, [found.variant], target.steps).displacement[target.rows, 0]
-    curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best}
+    best = computed(target.column, [found.variant], target.steps)
+    curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
+    pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
         ranking(DDA, target, v, shown.free, others),
@@ -204,6 +208,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         alike,
         tuple(stages),
         slips=corrected if verdict.explained else (),
+        pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
         intervals=ends,
     )
 
@@ -248,13 +253,38 @@ def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
     return (*foreign.notes, *said, *slipped)
 
 
-def _answer_of_rival(foreign: Foreign, reading: Reading, verdict: RivalVerdict, stages: Sequence[Stage] = ()) -> Answer:
-    """Return the answer where another solver than DDA, or the linear DDA of any polygon, explains the history best."""
+def _own_run(case: Case) -> Array:
+    """Return the displacement of DDA's own run of the scene at every step [m]."""
+    return computed(case.target.column, [case.own], case.target.steps).displacement[:, 0]
+
+
+def _answer_of_rival(
+    foreign: Foreign,
+    reading: Reading,
+    verdict: RivalVerdict,
+    stages: Sequence[Stage] = (),
+    own_run: Array | None = None,
+) -> Answer:
+    """Return the answer where another solver than DDA, or the linear DDA of any polygon, explains it best.
+
+    Parameters
+    ----------
+    own_run
+        Displacement of DDA's own run of the scene, where another solver explains the history [m].
+    """
     best, rows = verdict.best, reading.stepping.rows
-    ids = [*reading.slips, *verdict.causes] if verdict.explained else [UNEXPLAINED]
+    without_scheme = verdict.explained and own_run is not None and best.alpha is None
+    ids = [*reading.slips, *(["exact-in-time"] if without_scheme else []), *verdict.causes]
+    ids = ids if verdict.explained else [UNEXPLAINED]
     gone = None
     if any(not CAUSES[name].benign for name in ids):
-        gone = departure.measured(verdict.own[rows], reading.displacement, rows, 0.0)
+        expected = own_run if without_scheme and own_run is not None else verdict.own
+        gone = departure.measured(expected[rows], reading.displacement, rows, 0.0)
+    sentence = sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS)
+    if verdict.explained and own_run is not None:
+        off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
+        sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
+        stages = [evidence.surrounded(stage, "another model") for stage in stages]
     time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
         {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
@@ -262,7 +292,7 @@ def _answer_of_rival(foreign: Foreign, reading: Reading, verdict: RivalVerdict, 
         gone,
         ids,
         None,
-        sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS),
+        sentence,
         _notes(foreign, reading),
         misfit=best.misfit,
         curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},

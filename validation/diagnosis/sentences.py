@@ -159,7 +159,7 @@ def rival_sentence(
     if gone is None:
         return f"Same model as {best.model} ({model}), same scheme: {own}{said}; {left}."
     where = f"departs from step {gone.step} on, mainly in {gone.kind}"
-    scheme = "a different scheme" if "scheme" in causes else "same scheme"
+    scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(causes) else "same scheme"
     return f"Closest match: {best.model} ({model}), {scheme}: {own}; {where}{said}; {left}."
 
 
