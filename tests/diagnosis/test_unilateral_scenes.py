@@ -67,3 +67,9 @@ def test_the_batch_and_the_suite_s_solver_step_alike() -> None:
 def test_a_scene_with_a_gap_is_refused_by_name() -> None:
     with pytest.raises(InputError, match="unilateral contact"):
         compare(SCENE.with_values({"contact.gap": 0.01}), Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
+
+
+def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight() -> None:
+    scene = SCENE.with_values({"contact.gap": 1e-3, "load.gravity": 9.81})
+    with pytest.raises(InputError, match=r"that rest on unilateral contact; got contact.gap = 0.001$"):
+        compare(scene, Foreign(np.arange(1, 9) * 5e-4, -np.ones(8)))

@@ -58,6 +58,8 @@ def relatives(
         found.append(_relative(list(said), said, TELLS["side-factor"]))
     if list(ids) == ["stiffness-damping"]:
         found.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
+    if list(ids) == ["sign"] and target.column.gravity and not target.column.pressure:
+        found.append(_relative(["gravity-factor"], {"gravity-factor": -1.0}, TELLS["own-weight"]))
     if list(ids) == ["gravity-factor"] and values["gravity-factor"] == -1 and not target.column.pressure:
         found.append(_relative(["sign"], {}, TELLS["own-weight"]))
     if "base-compliance" in ids and variant.base == 0:

@@ -14,7 +14,7 @@ from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.rectangle import own_variant, rectangle_of
+from validation.diagnosis.fits.rectangle import OPENING, own_variant, rectangle_of
 from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
@@ -71,8 +71,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(
-            f"{scene.name}: compare takes linear scenes and centred ones on contact that opens, got one with "
-            + ", ".join(features.of(scene))
+            f"{scene.name}: compare takes linear scenes, and centred loads on blocks that rest on unilateral contact; "
+            f"got {', '.join(_beyond(scene))}"
         )
     features.refuse_sweep(scene)
     if not np.any(foreign.displacement):
@@ -99,6 +99,15 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         verdict = beside(case.target, own, verdict)
     linear = scene.contact.law == "locked"
     return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
+
+
+def _beyond(scene: Scene) -> list[str]:
+    """Return what `compare` does not take of a scene whose contact opens, and nothing that it does."""
+    gap, velocity = scene.contact.gap, scene.block.velocity
+    numbers = [f"contact.gap = {gap:g}"] if gap else []
+    numbers += [f"block.velocity = {velocity:g}"] if velocity else []
+    others = [name for name in features.of(scene) if name not in OPENING]
+    return numbers or others or ["another contact.band"]
 
 
 # ---- reading --------------------------------------------------------------------------------------------------------

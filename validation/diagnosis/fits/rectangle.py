@@ -6,6 +6,8 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
+OPENING = frozenset({features.UNILATERAL, features.DEAD_BAND, features.WEIGHT})  # that opening contact may come with
+
 
 def rectangle_of(scene: Scene) -> Rectangle | None:
     """Return the data of a scene whose upright rectangle moves up and down only, else None."""
@@ -32,10 +34,9 @@ def upright(scene: Scene) -> bool:
 
 def _opens_only(scene: Scene) -> bool:
     """Whether a scene is not linear for its contact that opens alone, which touches and is at rest at first."""
-    known = {features.UNILATERAL, features.DEAD_BAND, features.WEIGHT}
     closing, opening = scene.contact.band
     at_rest = scene.contact.gap == 0 and scene.block.velocity == 0
-    return set(features.of(scene)) <= known and at_rest and (closing > 0 or opening == 0)
+    return set(features.of(scene)) <= OPENING and at_rest and (closing > 0 or opening == 0)
 
 
 def own_variant(scene: Scene) -> Variant:
