@@ -73,6 +73,24 @@ def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
     assert landing.own_landing(2.0).restitution == pytest.approx(0.9307, abs=1e-4)
 
 
+def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rigid blocks of the study `rebound` have k down to 1e-16, at which strain rings 1e8 times in a contact."""
+    above, below = (landing.own_landing(factor * landing.SOFTEST) for factor in (1.0, 1 - 1e-9))
+    for name, band in (("restitution", 1e-12), ("first_rate", 1e-6), ("depth", 1e-9)):
+        assert getattr(below, name) == pytest.approx(getattr(above, name), abs=band)
+    assert below.duration == pytest.approx(above.duration, rel=1e-9)
+    assert below.contacts == above.contacts == 1
+
+    def ring(*_: Any, **__: Any) -> None:
+        raise AssertionError("the contact is followed from wave to wave")
+
+    monkeypatch.setattr(landing, "_end", ring)
+    assert landing.own_landing(1.08e-16).duration == pytest.approx(math.pi / math.sqrt(1.08e-16))
+    rigid_block = load_scene("rebound-constant").expand()[0]
+    expected = landing.whole_mass_frequency(rigid_block)
+    assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
+
+
 def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
     """Over V sqrt(p m / 2): 2 in the soft limit, 1.47 in the stiff one, whose second impact is the deepest."""
     depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 60)]

@@ -41,6 +41,8 @@ REST = 1e-6
 """Speed in flight, over V, below which nothing of the landing is left."""
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
+SOFTEST = 1e-6
+"""k below which the block lands as a rigid mass on springs, to k / 2; its strain would ring 1 / sqrt(k) times meanwhile."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
 SMALLEST, LARGEST = 1e-3, 10.0
@@ -149,6 +151,8 @@ def own_landing(ratio: float) -> OwnLanding:
     """
     if not (math.isfinite(ratio) and ratio > 0):
         raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
+    if ratio < SOFTEST:
+        return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
     free, closed = np.diag(STRAIN), np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
     depths: list[float] = []
