@@ -128,6 +128,15 @@ def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
             assert found == pytest.approx(expected, abs=1e-6)
 
 
+def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
+    """The ends of the phase count half: 0.50 of stiff springs under constant acceleration, 1.67 under average."""
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
+        for omega in (0.3, 10.0, 1000.0):
+            landed = landing.stepped_landing(landing.Stepping(alpha, delta, lambda _: 1.0), 1e-8, omega * 1e4, 1.0)
+            mean, _, _, square = impact_statistics(alpha, delta, 1.0, omega)
+            assert (landed.mean, landed.energy) == pytest.approx((mean, square), rel=6e-3)
+
+
 @pytest.mark.parametrize("gg", [0.95, 0.99])
 def test_a_rigid_block_under_a_discount_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
     for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):

@@ -301,9 +301,10 @@ def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: floa
     """
     values = restitutions(stepping, ratio, step, transit, PHASES)
     own = rigid_stop()[-1] if math.isinf(ratio) else own_landing(ratio).restitution
-    return SteppedLanding(
-        float(values.mean()), float(values.min()), float(values.max()), float((values**2).mean()), own
-    )
+    # any phase is as likely: its ends are half an interval each
+    mean = np.trapezoid(values, PHASES)
+    energy = np.trapezoid(values**2, PHASES)
+    return SteppedLanding(float(mean), float(values.min()), float(values.max()), float(energy), own)
 
 
 def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, phases: Array) -> Array:
