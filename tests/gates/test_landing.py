@@ -15,8 +15,10 @@ from validation.gates import landing
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 
-UNLOADED = load_scene("impact").expand()[0].with_values(
-    {"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0}
+UNLOADED = (
+    load_scene("impact")
+    .expand()[0]
+    .with_values({"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0})
 )
 TRANSIT = landing.transit(UNLOADED)
 SCHEMES = (
@@ -176,7 +178,8 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
     z, vectors = np.linalg.eig(closed)
     slowest = vectors[:, int(np.argmax(np.abs(z)))].real
     slowest *= -np.sign(free_gap @ slowest)
-    states = random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1]) + np.outer(random.uniform(0, 2, 400), slowest)
+    states = np.outer(random.uniform(0, 2, 400), slowest)
+    states += random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1])
     states = states[states @ free_gap < 0]
     stays = settling.stays(states)
     ends = np.zeros(len(states), dtype=bool)

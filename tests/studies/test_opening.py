@@ -78,7 +78,7 @@ def test_the_uncertainty_of_a_printed_number_is_half_a_unit_of_its_last_digit(va
     assert half_unit(value) == pytest.approx(half, rel=1e-9)
 
 
-# ---- orders of the pairs beside those of the study's gates ------------------------------------------------------------
+# ---- orders of the pairs beside those of the study's gates -----------------------------------------------------------
 
 HALVINGS = 4  # mesh widths, of which neighbours give an order
 

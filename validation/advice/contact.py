@@ -61,9 +61,7 @@ def restitution(
     if scheme is None:
         return None
     ratio = landing.stiffness_ratio(scene, stiffness)
-    return landing.stepped_landing(
-        scheme, ratio, scene.time.step if step is None else step, landing.transit(scene)
-    )
+    return landing.stepped_landing(scheme, ratio, scene.time.step if step is None else step, landing.transit(scene))
 
 
 def hidden_from(scene: Scene) -> float | None:

@@ -115,8 +115,8 @@ def _may_gain(seen: Seen) -> Iterator[Alarm]:
     if seen.returns and seen.omega > 1 and not contact.cannot_gain(seen.scene):
         sentence = (
             f"alpha = {t.alpha:g}, delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: opening and closing can add "
-            "energy; they cannot with delta >= 1 and 2 alpha >= delta, nor with contact.rule = \"implicit\" or "
-            "\"energy-conserving\""
+            'energy; they cannot with delta >= 1 and 2 alpha >= delta, nor with contact.rule = "implicit" or '
+            '"energy-conserving"'
         )
         yield seen.alarm(MAY_GAIN, sentence, omega=seen.omega, alpha=t.alpha, delta=t.delta)
 

@@ -42,7 +42,7 @@ REST = 1e-6
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
 SOFTEST = 1e-6
-"""k below which the block lands as a rigid mass on springs, to k / 2; its strain would ring 1 / sqrt(k) times meanwhile."""
+"""k below which the block lands as a rigid mass, to k / 2; its strain would ring 1 / sqrt(k) times in the contact."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
 SMALLEST, LARGEST = 1e-3, 10.0
@@ -128,9 +128,7 @@ class _Motion:
     def velocity(self, time: float) -> Array:
         """Return their rates at one time, shape (2,)."""
         phase = time * self.frequencies
-        return np.asarray(
-            self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase))
-        )
+        return np.asarray(self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase)))
 
     def gap(self, time: Array) -> Array:
         """Return w at times, shape (n,)."""
@@ -378,7 +376,7 @@ class _Stretch:
     def advance(self, state: Array, passed: Array, chosen: NDArray[np.intp], limit: float) -> None:
         """Advance the chosen rows of states to the last step of the stretch; `passed` is infinite where there is none.
 
-        A flight has none where it is the last, a contact where it settles, and one of more steps than the limit is none.
+        A flight has none where it is the last, a contact where it settles; one of more steps than the limit is none.
         """
         for stride, rows, powers in self.levels:
             pending = chosen[passed[chosen] < limit]
@@ -402,8 +400,8 @@ class _Stretch:
 class _Settling:
     """Contacts that end no more: a discount takes the speed, and the block creeps back to the springs' ends.
 
-    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and its
-    c is negative and outweighs all others together, the gap keeps its sign for ever.
+    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and
+    its c is negative and outweighs all others together, the gap keeps its sign for ever.
     """
 
     slowest: Array  # c of that z, over the state
