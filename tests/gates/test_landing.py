@@ -75,6 +75,24 @@ def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
     assert landing.own_landing(2.0).restitution == pytest.approx(0.9307, abs=1e-4)
 
 
+def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rigid blocks of the study `rebound` have k down to 1e-16, at which strain rings 1e8 times in a contact."""
+    above, below = (landing.own_landing(factor * landing.SOFTEST) for factor in (1.0, 1 - 1e-9))
+    for name, band in (("restitution", 1e-12), ("first_rate", 1e-6), ("depth", 1e-9)):
+        assert getattr(below, name) == pytest.approx(getattr(above, name), abs=band)
+    assert below.duration == pytest.approx(above.duration, rel=1e-9)
+    assert below.contacts == above.contacts == 1
+
+    def ring(*_: Any, **__: Any) -> None:
+        raise AssertionError("the contact is followed from wave to wave")
+
+    monkeypatch.setattr(landing, "_end", ring)
+    assert landing.own_landing(1.08e-16).duration == pytest.approx(math.pi / math.sqrt(1.08e-16))
+    rigid_block = load_scene("rebound-constant").expand()[0]
+    expected = landing.whole_mass_frequency(rigid_block)
+    assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
+
+
 def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
     """Over V sqrt(p m / 2): 2 in the soft limit, 1.47 in the stiff one, whose second impact is the deepest."""
     depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 60)]
@@ -110,6 +128,15 @@ def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
             found = landing.restitutions(scheme, 1e-8, step, 1.0, phases)
             expected = [impact_restitution(alpha, delta, 1.0, omega, float(phase)) for phase in phases]
             assert found == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
+    """The ends of the phase count half: 0.50 of stiff springs under constant acceleration, 1.67 under average."""
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
+        for omega in (0.3, 10.0, 1000.0):
+            landed = landing.stepped_landing(landing.Stepping(alpha, delta, lambda _: 1.0), 1e-8, omega * 1e4, 1.0)
+            mean, _, _, square = impact_statistics(alpha, delta, 1.0, omega)
+            assert (landed.mean, landed.energy) == pytest.approx((mean, square), rel=6e-3)
 
 
 @pytest.mark.parametrize("gg", [0.95, 0.99])
@@ -151,7 +178,8 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
     z, vectors = np.linalg.eig(closed)
     slowest = vectors[:, int(np.argmax(np.abs(z)))].real
     slowest *= -np.sign(free_gap @ slowest)
-    states = random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1]) + np.outer(random.uniform(0, 2, 400), slowest)
+    states = np.outer(random.uniform(0, 2, 400), slowest)
+    states += random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1])
     states = states[states @ free_gap < 0]
     stays = settling.stays(states)
     ends = np.zeros(len(states), dtype=bool)

@@ -41,6 +41,8 @@ REST = 1e-6
 """Speed in flight, over V, below which nothing of the landing is left."""
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
+SOFTEST = 1e-6
+"""k below which the block lands as a rigid mass, to k / 2; its strain would ring 1 / sqrt(k) times in the contact."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
 SMALLEST, LARGEST = 1e-3, 10.0
@@ -147,6 +149,8 @@ def own_landing(ratio: float) -> OwnLanding:
     """
     if not (math.isfinite(ratio) and ratio > 0):
         raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
+    if ratio < SOFTEST:
+        return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
     free, closed = np.diag(STRAIN), np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
     depths: list[float] = []
@@ -295,9 +299,10 @@ def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: floa
     """
     values = restitutions(stepping, ratio, step, transit, PHASES)
     own = rigid_stop()[-1] if math.isinf(ratio) else own_landing(ratio).restitution
-    return SteppedLanding(
-        float(values.mean()), float(values.min()), float(values.max()), float((values**2).mean()), own
-    )
+    # any phase is as likely: its ends are half an interval each
+    mean = np.trapezoid(values, PHASES)
+    energy = np.trapezoid(values**2, PHASES)
+    return SteppedLanding(float(mean), float(values.min()), float(values.max()), float(energy), own)
 
 
 def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, phases: Array) -> Array:
@@ -371,7 +376,7 @@ class _Stretch:
     def advance(self, state: Array, passed: Array, chosen: NDArray[np.intp], limit: float) -> None:
         """Advance the chosen rows of states to the last step of the stretch; `passed` is infinite where there is none.
 
-        A flight has none where it is the last, a contact where it settles, and one of more steps than the limit is none.
+        A flight has none where it is the last, a contact where it settles; one of more steps than the limit is none.
         """
         for stride, rows, powers in self.levels:
             pending = chosen[passed[chosen] < limit]
@@ -395,8 +400,8 @@ class _Stretch:
 class _Settling:
     """Contacts that end no more: a discount takes the speed, and the block creeps back to the springs' ends.
 
-    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and its
-    c is negative and outweighs all others together, the gap keeps its sign for ever.
+    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and
+    its c is negative and outweighs all others together, the gap keeps its sign for ever.
     """
 
     slowest: Array  # c of that z, over the state

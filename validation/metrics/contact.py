@@ -188,7 +188,7 @@ def imbalance(record: ContactRecord) -> Value:
 
 
 def horizon(m: Measurable) -> Value:
-    """Time up to which two correct codes agree to 1e-6: a run with p (1 + 1e-12) stays that near [s]."""
+    """Time up to which a run with p (1 + 1e-12) agrees to 1e-6 of the maxima: no two codes need agree longer [s]."""
     shadow = m.shadow() if m.shadow is not None else None
     if shadow is None or not len(m.history.time):
         return NOT_REPORTED

@@ -61,7 +61,7 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory
     )
     own = {ratio: landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
     said = (
-        "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ 1 − π ω_c dt / 4 for (1/2, 1); at ω_c "
+        "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ exp(−π ω_c dt / 4) for (1/2, 1); at ω_c "
         "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
         "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
         "average. This is a rigid mass. The block of one strain is one only in two limits, with a quarter of its mass, "
@@ -153,7 +153,7 @@ def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directo
 
 
 HORIZON = (
-    "Histories agree up to: the time for which a run with p (1 + 10⁻¹²) stays within 10⁻⁶; beyond, two correct "
+    "Repeatable up to: the time for which a run with p (1 + 10⁻¹²) stays within 10⁻⁶; beyond, two correct "
     "programs differ, and only balances of momentum and energy are left to compare. Energies are those lost "
     "(negative: gained) by the end, over what start and loads give: the scheme's own damping of what keeps its "
     "contact state, and openings and closings apart."
@@ -199,7 +199,7 @@ def budget_table(maps: Sequence[Group]) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
     titles = columns("text", "Scheme", "p", "dt [ms]")
     titles += columns("decimal", "scheme", "switching", group="Lost by, over the energy given")
-    titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Histories agree up to [s]")
+    titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Repeatable up to [s]")
     rows = []
     for group in maps:
         name = kind(group)
