@@ -86,7 +86,7 @@ def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPa
     def ring(*_: Any, **__: Any) -> None:
         raise AssertionError("the contact is followed from wave to wave")
 
-    monkeypatch.setattr(landing, "_end", ring)
+    monkeypatch.setattr(landing._Motion, "gap", ring)
     assert landing.own_landing(1.08e-16).duration == pytest.approx(math.pi / math.sqrt(1.08e-16))
     rigid_block = load_scene("rebound-constant").expand()[0]
     expected = landing.whole_mass_frequency(rigid_block)
