@@ -98,5 +98,5 @@ def test_the_page_on_contact_takes_it(tmp_path: Path) -> None:
     done = typed("contact", path, "--json")
     found = json.loads(done.stdout)
     assert done.returncode == 0 and found["omega"] is None and found["runs"]["dda"]["contact.penetration"] == 0
-    assert [set(alarm["values"]) for alarm in found["alarms"]] == [{"low", "mean", "high"}]  # and no w_c dt
+    assert [set(alarm["values"]) for alarm in found["alarms"]] == [{"low", "mean", "high", "own"}]  # and no w_c dt
     assert found["restitution_now"]["mean"] == pytest.approx(0.5)
