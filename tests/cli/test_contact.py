@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact_page, friction
+from validation.cli import app
+from validation.cli import contact as command
 from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
@@ -180,3 +183,21 @@ def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked(
     assert "hops  " not in stays and "A gap may open faster than it closed without any gain of energy" in stays
     asked = typed("contact", *slope, "--penetration", "1e-3").stdout
     assert "Asked for: a restitution within 5 % of the block's own and a penetration below 0.001 m" in asked
+
+
+def test_every_run_is_announced_before_it_starts() -> None:
+    scene = load_scene("unlocked-constant").with_values({"time.step": 0.001, "time.steps": 8})
+    scenes = contact_page.scenes(scene)
+    calls: list[tuple[int, int, str]] = []
+    command._rows(scenes, lambda *call: calls.append(call))
+    assert [(done, label.split(", ")) for done, _, label in calls] == [
+        (done, [f"at most; {name}", "8 steps"]) for done, name in enumerate(scenes)
+    ]
+
+
+def test_the_bar_does_not_wait_for_the_end_of_a_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    started = threading.Event()
+    monkeypatch.setattr(app, "SLOW", 0.0)
+    monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
+    with app._progress("contact", between_calls=True):
+        assert started.wait(60)

@@ -126,8 +126,15 @@ def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
 
 
 @contextmanager
-def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, str], None]]:
-    """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds."""
+def _progress(
+    title: str, shown: bool = True, *, between_calls: bool = False
+) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds.
+
+    With `between_calls` the bar does not wait for the next call: one piece of the work may take minutes.
+    """
+    import threading
+
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
     from rich.table import Column
@@ -149,8 +156,15 @@ def _progress(title: str, shown: bool = True) -> Iterator[Callable[[int, int, st
             bar.start()
         bar.update(task, completed=done, total=total, label=label)
 
+    timer = threading.Timer(SLOW, bar.start)
+    timer.daemon = True
+    if shown and between_calls:
+        timer.start()
     try:
         yield show
     finally:
+        timer.cancel()
+        if timer.is_alive():  # it may be starting the bar just now
+            timer.join()
         if bar.live.is_started:
             bar.stop()

@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import count
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import NUMERICAL_FAILURE, PASSED, SceneArgument, SetOption, app, one_case, refuse_bad_input
+from validation.cli.app import (
+    NUMERICAL_FAILURE,
+    PASSED,
+    SceneArgument,
+    SetOption,
+    _progress,
+    app,
+    one_case,
+    refuse_bad_input,
+)
 from validation.cli.damping import JsonOption
 from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
     from validation.scenes.scene import Scene
+
+Progress = Callable[[int, int, str], None]  # of the runs done, how many there are at most, and what the next one is
 
 
 @app.command()
@@ -45,8 +57,10 @@ def contact(
 
     case = one_case(scene, assignments)
     scenes = contact_page.scenes(case)
-    rows, absent = _rows(scenes)
-    found = contact_page.answer(case, rows, error, penetration, _probe(scenes[contact_page.exact()]))
+    with _progress("contact", between_calls=True) as progress:
+        rows, absent = _rows(scenes, progress)
+        probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
+        found = contact_page.answer(case, rows, error, penetration, probe)
     if as_json:
         echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
     else:
@@ -54,13 +68,17 @@ def contact(
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
-def _probe(scene: Scene) -> Callable[[float], float | None]:
-    """Return the function of p that says how deep the exact block goes [m]."""
+def _probe(scene: Scene, progress: Progress, before: int) -> Callable[[float], float | None]:
+    """Return the function of p that says how deep the exact block goes [m]; each call of it is one more run."""
+    from validation.advice.contact import RAISES
     from validation.advice.contact_page import exact
     from validation.engine.case import Case
     from validation.engine.measure import execute
 
+    runs = count(before)
+
     def depth(stiffness: float) -> float | None:
+        progress(next(runs), before + 1 + RAISES, f"at most; {exact()} on springs of {stiffness:.3g} N/m")
         row, _ = execute(Case(scene.with_values({"contact.stiffness": stiffness}), exact()), "", "contact")
         value = row.metrics.get("contact.penetration")
         return value if isinstance(value, float) else None
@@ -68,7 +86,7 @@ def _probe(scene: Scene) -> Callable[[float], float | None]:
     return depth
 
 
-def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
+def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], dict[str, str]]:
     """Return the rows of the runs that completed, and why the others have none.
 
     Raises
@@ -76,13 +94,15 @@ def _rows(scenes: dict[str, Scene]) -> tuple[dict[str, Row], dict[str, str]]:
     InputError
         The judged method does not take the scene.
     """
+    from validation.advice.contact import RAISES
     from validation.advice.contact_page import own
     from validation.engine.case import Case
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
 
     rows, absent = {}, {}
-    for name, scene in scenes.items():
+    for done, (name, scene) in enumerate(scenes.items()):
+        progress(done, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
         row, _ = execute(Case(scene, name), "", "contact")
         if name == own():
             refuse_bad_input(scene.name, name, row)
