@@ -220,8 +220,9 @@ class StepSeries:
         self.references, self.base = stacked.references[:, nodes], stacked.base[:, nodes]
         table = np.einsum("ij,kjl->kil", self.flow.outputs, self.flow.powers(self.scale))
         self.c = table @ stacked.values[:, nodes]  # over (s / scale)^k, shape (terms, 12, nodes)
-        # where vx and its rates are zero w_M is w_N, to the last bit
-        level = ~stacked.values[[4, 14, 24]][:, nodes].any(axis=0)
+        # Where vx is zero throughout, w_M is w_N to the last bit. Zero rates at the node are not enough: a base that
+        # begins to move, or a slope, turns the block by its third and higher derivatives.
+        level = ~self.c[:, 4].any(axis=0)
         self.c[:, 7, level] = self.c[:, 6, level]
         self.c[0, 8:10] += self.flow.stretched[:, None]
         for corner in (0, 1):
