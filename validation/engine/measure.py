@@ -101,6 +101,7 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
     return replace(run, seconds=least, notes=(*run.notes, spread))
 
 
+@np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of
 def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> tuple[Prepared | None, Run]:
     """Prepare and run a scene, and turn the solver's errors into outcomes; what was prepared, None if nothing was."""
     prepared: Prepared | None = None
@@ -110,9 +111,8 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         memory.check(scene, solver)
         asked, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
-        with np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
-            prepared = solver.prepare(asked, full)
-            run = prepared.run(fields)
+        prepared = solver.prepare(asked, full)
+        run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
         return prepared, Run(Outcome.REFUSED, notes=(str(error),))
