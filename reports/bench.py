@@ -293,6 +293,7 @@ def engine_seconds(runs: dict[str, tuple[float, np.ndarray]]) -> list[float | st
 def opening_steps(steps: int = 10**5, dt: float = 1e-5, p: float = 1.5e9) -> str:
     """Return the line of a block on corners that open; the engines drop the same box by a millimetre."""
     model = opening_model(p)
+    opening_history(4 * steps, dt, model)  # long enough to be compiled, which is kept
     seconds, answer = least(lambda: opening_history(steps, dt, model), 5)
     switches = np.count_nonzero(np.diff(answer.closed_m))
     off = difference(tuple(answer.columns.values()), block_numpy.opening(steps, dt=dt, p=p))

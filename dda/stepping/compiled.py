@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import importlib.metadata
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -25,7 +26,8 @@ import numpy as np
 
 Loop = Callable[..., Any]
 
-WORTHWHILE = 3.0  # seconds of plain Python from which a loop is compiled, or read from the cache
+WORTHWHILE_KEPT = 0.8  # seconds of plain Python from which a loop is read from the cache, which takes about as long
+WORTHWHILE = 3.0  # the same from which it is compiled and kept
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 PLAIN, COMPILED = "plain Python", "compiled"
 
@@ -52,7 +54,7 @@ def run_loop(
         About how long the plain function takes.
     """
     with np.errstate(all="ignore"):
-        if is_worthwhile(seconds):
+        if is_worthwhile(loop, seconds):
             left = tuple(as_record(part) for part in records)
             own = compiled(loop, (*left, *series, *kept))
             if own is not None:
@@ -73,7 +75,7 @@ class Compilable:
     """
 
     def __init__(self, function: Loop, seconds: float) -> None:
-        self.function, self.records = function, is_worthwhile(seconds)
+        self.function, self.records = function, is_worthwhile(function, seconds)
         self.how = PLAIN
 
     def room(self, value: Any) -> Any:
@@ -96,11 +98,26 @@ class Compilable:
         return self.room(argument) if arrays or numbers else argument
 
 
-def is_worthwhile(seconds: float) -> bool:
-    """Tell whether plain Python takes so long that compiled code pays, where it can be kept and where it cannot."""
-    if seconds < WORTHWHILE:  # and nothing is looked for, nor made, in the user's cache
+def is_worthwhile(loop: Loop, seconds: float) -> bool:
+    """Tell whether plain Python takes so long that compiled code pays: at hand, to be kept, or to be made each time."""
+    if seconds < WORTHWHILE_KEPT:  # and nothing is looked for, nor made, in the user's cache
         return False
+    if seconds < WORTHWHILE:
+        return is_kept(loop)
     return seconds >= WORTHWHILE_ANEW or cache_directory() is not None
+
+
+def is_kept(loop: Loop) -> bool:
+    """Tell whether the user's cache holds a loop as its sources are now."""
+    directory = cache_directory()
+    try:
+        version = importlib.metadata.version("numba")
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    if directory is None:
+        return False
+    functions = [part for part in parts_of(loop) if isinstance(part, FunctionType)]
+    return any((directory / _digest(functions, version)).rglob("*.nbi"))
 
 
 def as_lists(value: Any) -> Any:

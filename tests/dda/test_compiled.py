@@ -37,6 +37,7 @@ SCHEMES = [Scheme(0.5, 1.0, 0.99, DT), Scheme(0.25, 0.5, 1.0, DT, "consistent"),
 def always(monkeypatch):
     """Compile, however short a history is."""
     pytest.importorskip("numba")
+    monkeypatch.setattr(compiled, "WORTHWHILE_KEPT", 0.0)
     monkeypatch.setattr(compiled, "WORTHWHILE", 0.0)
     monkeypatch.setattr(compiled, "WORTHWHILE_ANEW", 0.0)
 
@@ -45,7 +46,7 @@ def pair(solve, monkeypatch):
     """Return the result of compiled code and that of plain Python."""
     fast = solve()
     with monkeypatch.context() as patch:
-        patch.setattr(compiled, "is_worthwhile", lambda seconds: False)
+        patch.setattr(compiled, "is_worthwhile", lambda loop, seconds: False)
         plain = solve()
     assert any(compiled.COMPILED in note for note in fast.notes) and any(compiled.PLAIN in note for note in plain.notes)
     return fast, plain
@@ -167,6 +168,15 @@ def test_without_a_place_for_the_cache_it_is_compiled_for_longer_histories(fresh
     monkeypatch.setattr(compiled, "WORTHWHILE_ANEW", 30.0)
     assert ran(20.0)[0] == compiled.PLAIN
     assert ran(40.0) == (compiled.COMPILED, [2.5, 3.5, 4.5])
+
+
+def test_what_is_kept_is_read_for_shorter_histories_than_are_compiled(fresh, monkeypatch):
+    monkeypatch.setattr(compiled, "WORTHWHILE_KEPT", 1.0)
+    monkeypatch.setattr(compiled, "WORTHWHILE", 3.0)
+    assert ran(2.0)[0] == compiled.PLAIN
+    assert ran(4.0)[0] == compiled.COMPILED
+    assert ran(2.0)[0] == compiled.COMPILED
+    assert ran(0.5)[0] == compiled.PLAIN
 
 
 @pytest.mark.parametrize("name", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME"])
