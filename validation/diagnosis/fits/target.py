@@ -79,8 +79,7 @@ class Target:
         """Return the variants' histories scaled as `values` is, one column each."""
         stepped = histories if self.searching else computed
         found = stepped(self.column, variants, self.steps)
-        with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-            joined = self.join(found.displacement[self.rows], found.pressure[self.rows])
+        joined = self.join(found.displacement[self.rows], found.pressure[self.rows])
         return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> list[Array]:
