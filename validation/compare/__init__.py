@@ -1,3 +1,6 @@
-"""Another program's history, judged against a scene: the names under which `validation.diagnosis` is known."""
+"""Another program's history, judged against a scene.
 
-from validation.diagnosis import compare as compare
+Reading, fitting, naming causes, and the sentences that say so.
+"""
+
+from validation.compare.diagnosis import compare as compare
