@@ -63,7 +63,7 @@ A row holds `scene`, `metric`, `low`, `high`, `reference`, `until`, `reference_k
 column and r that of `reference` (a file in `histories/`), over the steps up to the time `until` (all, if empty):
 
 - `*.l2` = norm(x - r) / norm(r), Euclidean over the steps; `*.max` = max|x - r| / max|r|
-- `*.final` last value; `*.minimum` least value
+- `*.final` last value; `*.minimum` least value; `*.peak` largest value of the first excursion beyond the static value
 - `*.settling_step`: first step n >= 1 from which |x / static - 1| <= 0.01 for ever after
 - `*.static`: static solution, where your code gives one
 - `mode1.frequency`: first axial natural frequency [rad/s], where your code gives one
