@@ -33,7 +33,9 @@ def carrying(sound: Callable[..., Any]) -> Callable[..., Any]:
 
     def solve(problem: Any, end: float) -> Any:
         motion = sound(problem, end)
-        return SimpleNamespace(switches=motion.switches, at=lambda t: pressed(motion.at(t)))
+        names = ("switches", "touches", "simultaneous", "radius")
+        known = {name: getattr(motion, name) for name in names if hasattr(motion, name)}  # of a bar the switches only
+        return SimpleNamespace(at=lambda t: pressed(motion.at(t)), **known)
 
     return solve
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,9 +24,7 @@ def fewer(sound: Callable[..., Any]) -> Callable[..., Any]:
 
     def solve(*a: Any, **k: Any) -> Any:
         motion = sound(*a, **k)
-        shown = SimpleNamespace(**vars(motion) | {"switches": motion.switches[:-1]})
-        shown.at = motion.at
-        return shown
+        return replace(motion, switches=motion.switches[:-1])
 
     return solve
 
