@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import importlib.metadata
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -109,15 +108,17 @@ def is_worthwhile(loop: Loop, seconds: float) -> bool:
 
 def is_kept(loop: Loop) -> bool:
     """Tell whether the user's cache holds a loop as its sources are now."""
+    from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
+
     directory = cache_directory()
     try:
-        version = importlib.metadata.version("numba")
-    except importlib.metadata.PackageNotFoundError:
+        numba_version = version("numba")
+    except PackageNotFoundError:
         return False
     if directory is None:
         return False
     functions = [part for part in parts_of(loop) if isinstance(part, FunctionType)]
-    return any((directory / _digest(functions, version)).rglob("*.nbi"))
+    return any((directory / _digest(functions, numba_version)).rglob("*.nbi"))
 
 
 def as_lists(value: Any) -> Any:
