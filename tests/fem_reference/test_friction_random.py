@@ -20,7 +20,9 @@ def check(seed):
     cohesion = contact.friction.cohesion * 2.0 * model.share
     limit = contact.friction.tangent * run.normal + cohesion * (run.states != 0)
     assert run.normal.min() >= 0 and not run.normal[run.gap > 0].any() and not run.shear[run.states == 0].any()
-    assert np.all(np.abs(run.shear) <= limit * (1 + 1e-12))
+    # the points share one solution, so that the largest force of a step rounds them all
+    largest = np.maximum(run.normal, np.abs(run.shear)).max(axis=1, keepdims=True)
+    assert np.all(np.abs(run.shear) <= limit + 1e-12 * largest)
     slides = np.abs(run.states) == 2
     assert np.allclose(run.shear[slides], -np.sign(run.states[slides]) * limit[slides], rtol=1e-9)
     moved = np.diff(run.slid, axis=0, prepend=0.0)
