@@ -233,17 +233,8 @@ def test_verdicts_of_other_studies_stay(scene_file: Path, tmp_path: Path) -> Non
 # ---- cases that end badly -------------------------------------------------------------------------------------------
 
 
-EDGES = [
-    ("pressure = 5.0e6", "pressure = 1e308"),
-    pytest.param("young = 1.0e9", "young = 1e-308", marks=pytest.mark.long),
-]
-
-
-@pytest.mark.parametrize(("sound", "edge"), EDGES)
-def test_a_case_at_the_edge_of_numbers_does_not_end_the_others(
-    sound: str, edge: str, scene_file: Path, tmp_path: Path
-) -> None:
-    scene_file.write_text(SCENE.replace(sound, edge))
+def test_a_case_at_the_edge_of_numbers_does_not_end_the_others(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("pressure = 5.0e6", "pressure = 1e308"))
     done = typed("run", scene_file, "--results", tmp_path / "r", "--jobs", "1")
     assert done.returncode == 1 and "small: ended without a measurement: small" in done.stdout
     assert len(Results(tmp_path / "r").manifest("small")["cases"]) == 3

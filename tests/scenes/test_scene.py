@@ -76,6 +76,8 @@ REFUSED = [
     (UNLOCKED | {"block__tilt": 1.0}, 'block: tilt goes with run.geometry = "updated" only, got 1'),
     (UNLOCKED | {"run__rotation": "first-order"}, 'run: rotation goes with geometry = "updated" only'),
     ({"load__base_motion": 3}, "load.base_motion: must be a valid string, got 3"),
+    ({"contact__stiffness": 1e-320}, "contact.stiffness: must be at least 1e-60, got 1e-320"),
+    ({"block__young": 1e-61}, "block.young: must be at least 1e-60, got 1e-61"),
     ({"time__step": 0.0}, "time.step: must be greater than 0, got 0.0"),
     ({"time__steps": 0}, "time.steps: must be greater than or equal to 1, got 0"),
     ({"time__steps": 1.5}, "time.steps: must be a whole number, got 1.5"),

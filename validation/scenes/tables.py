@@ -10,6 +10,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from validation.scenes.outline import Point, area, check_polygon, convex_quadrilateral
 
 FINE_ELEMENTS = 16
+SMALLEST = 1e-60
+"""Smallest positive value of a quantity, in its unit: fourth powers of lengths and squares of time steps, and their
+inverses, keep all digits of double precision."""
 
 
 def _real(value: object) -> float:
@@ -22,6 +25,13 @@ def _real(value: object) -> float:
         number = math.inf
     if not math.isfinite(number):
         raise ValueError("must be a finite number")
+    return number
+
+
+def _not_tiny(number: float) -> float:
+    """Accept a positive number whose powers are numbers too."""
+    if number < SMALLEST:
+        raise ValueError(f"must be at least {SMALLEST:g}")
     return number
 
 
@@ -52,9 +62,13 @@ def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
 
 Real = Annotated[float, BeforeValidator(_real)]
 Angle = Annotated[float, BeforeValidator(_real), Field(gt=-90, lt=90)]  # deg
-Positive = Annotated[Real, Field(gt=0)]
+Positive = Annotated[Real, Field(gt=0), AfterValidator(_not_tiny)]
 Stiffness = Annotated[
-    float, BeforeValidator(_stiffness), Field(gt=0), PlainSerializer(_stiffness_as_data, when_used="json")
+    float,
+    BeforeValidator(_stiffness),
+    Field(gt=0),
+    AfterValidator(_not_tiny),
+    PlainSerializer(_stiffness_as_data, when_used="json"),
 ]
 NonNegative = Annotated[Real, Field(ge=0)]
 Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
