@@ -29,10 +29,10 @@ def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) 
     for scene, solver in finished.rows:
         solvers.setdefault(scene, []).append(solver)
     for scene, names in solvers.items():
-        asked = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
-        needed = dict.fromkeys(solver for pair in asked for solver in pair)
+        solver_pairs = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
+        needed = dict.fromkeys(solver for pair in solver_pairs for solver in pair)
         histories = {s: history for s in needed if (history := finished.history(scene, s)) is not None}
-        for solver, reference in asked:
+        for solver, reference in solver_pairs:
             if solver in histories and reference in histories:
                 yield _comparison(finished, scene, solver, reference, histories)
 
@@ -45,8 +45,9 @@ def _ordered(solvers: Iterable[str]) -> list[str]:
 def _comparison(
     finished: Finished, scene: str, solver: str, reference: str, histories: Mapping[str, History]
 ) -> ComparisonRecord:
-    history, against, static = histories[solver], histories[reference], finished.rows[scene, solver].metrics
-    values = {m: plain(_paired(m, history, against, static)) for m in PAIRS}
+    history = histories[solver]
+    metrics = finished.rows[scene, solver].metrics
+    values = {metric: plain(_paired(metric, history, histories[reference], metrics)) for metric in PAIRS}
     return {
         "scene": scene,
         "solver": solver,

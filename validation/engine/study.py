@@ -73,11 +73,11 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        stated = [load_scene(scene) if isinstance(scene, str) else scene for scene in self.scenes]
-        scenes = [case for scene in stated for case in scene.expand()]
-        named = {scene.name: scene for scene in scenes}
+        declared_scenes = [load_scene(scene) if isinstance(scene, str) else scene for scene in self.scenes]
+        scenes = [case for scene in declared_scenes for case in scene.expand()]
+        scenes_by_name = {scene.name: scene for scene in scenes}
         pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
-        pairs += [(named[name], solver) for name, solver in self.extra if name in named]
+        pairs += [(scenes_by_name[name], solver) for name, solver in self.extra if name in scenes_by_name]
         repeats = REPEATS if self.timed else 0
         return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 

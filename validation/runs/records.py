@@ -105,7 +105,7 @@ Word = Annotated[str, Field(pattern="^(PASS|FAIL|NOT RUN)$")]
 Band = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_ordered)]
 
 
-class Judged(TypedDict):
+class BaselineVerdict(TypedDict):
     """What two runs are compared by, gate by gate."""
 
     id: str
@@ -115,7 +115,7 @@ class Judged(TypedDict):
     verdict: Word
 
 
-class VerdictRecord(Judged):
+class VerdictRecord(BaselineVerdict):
     """One gate's verdict; values are rounded well above the last bits, and no seconds stand in it."""
 
     scene: str
@@ -128,7 +128,7 @@ class VerdictRecord(Judged):
     alarms: list[str]
 
 
-def sound(record: Judged) -> Judged:
+def sound(record: BaselineVerdict) -> BaselineVerdict:
     """Return a verdict that its own value and band bear out; the value has four digits, two where it is small.
 
     Raises
@@ -149,7 +149,7 @@ def sound(record: Judged) -> Judged:
     return record
 
 
-def unique(records: list[Judged]) -> list[Judged]:
+def unique(records: list[BaselineVerdict]) -> list[BaselineVerdict]:
     """Return verdicts of which no two are of one gate.
 
     Raises
@@ -167,4 +167,4 @@ def unique(records: list[Judged]) -> list[Judged]:
 
 
 Verdicts = Annotated[list[Annotated[VerdictRecord, AfterValidator(sound)]], AfterValidator(unique)]
-Baseline = Annotated[list[Annotated[Judged, AfterValidator(sound)]], AfterValidator(unique)]
+Baseline = Annotated[list[Annotated[BaselineVerdict, AfterValidator(sound)]], AfterValidator(unique)]
