@@ -16,7 +16,8 @@ from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
-from validation.runs.results import KEPT
+from validation.runs.modes import Mode
+from validation.runs.results import WITH_HISTORY
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
@@ -62,6 +63,9 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
             run = stability.with_growth_outcome(run, prepared, scene)
         with np.errstate(all="ignore"):
             metrics = _measure(prepared, solver, case, run, failed)
+    estimate = run.estimate
+    if estimate is not None and not math.isfinite(estimate):
+        estimate = None
     row = Row(
         key=key,
         study=study,
@@ -72,11 +76,11 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         work=dict(run.work),
         seconds={k: round(v, 6) for k, v in run.seconds.items()},
         notes=tuple(map(printable, (*run.notes, *failed))),
-        estimate=run.estimate if run.estimate is not None and math.isfinite(run.estimate) else None,
+        estimate=estimate,
         provenance=origin.of_row(solver),
     )
     row.line()  # what cannot be kept is found here
-    return row, _requested_columns(run.history, scene) if run.outcome in KEPT else None
+    return row, _requested_columns(run.history, scene) if run.outcome in WITH_HISTORY else None
 
 
 def _requested_columns(history: History | None, scene: Scene) -> History | None:
@@ -150,8 +154,8 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     assumed_static: Mapping[str, float] = static or {}
     if static is None and STATIC in needs:
         assumed_static = prepared.assumed_static()
-    modes = _reported(prepared.modes, (), failed) if MODES in needs else ()
-    diagnostics = _reported(prepared.diagnostics, {}, failed) if DIAGNOSTICS in needs else {}
+    modes: tuple[Mode, ...] = _reported(prepared.modes, (), failed) if MODES in needs else ()
+    diagnostics: Mapping[str, float] = _reported(prepared.diagnostics, {}, failed) if DIAGNOSTICS in needs else {}
     switches = _reported(prepared.switches, None, failed) if SWITCHES in needs else None
     contact_record = _reported(prepared.contact_record, None, failed) if CONTACT in needs else None
     measurable = Measurable(

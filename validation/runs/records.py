@@ -136,10 +136,13 @@ def sound(record: BaselineVerdict) -> BaselineVerdict:
     ValueError
         It passes without a number, or its word is not that of its value.
     """
-    value, (low, high), word = record["value"], record["band"], record["verdict"]
+    value = record["value"]
+    low, high = record["band"]
+    word = record["verdict"]
     inside = outside = True
     if isinstance(value, int | float):
-        slack = (6e-4 if abs(value) >= 1e-9 else 6e-2) * min(abs(value), 1e300) + 1e-12
+        rounding = 6e-4 if abs(value) >= 1e-9 else 6e-2
+        slack = rounding * min(abs(value), 1e300) + 1e-12
         inside = low - slack <= value <= high + slack
         outside = not low + slack < value < high - slack
     elif word == "PASS":
@@ -157,12 +160,12 @@ def unique(records: list[BaselineVerdict]) -> list[BaselineVerdict]:
     ValueError
         A study has two of one id.
     """
-    met = set()
+    gates = set()
     for record in records:
         name = (record["study"], record["id"])
-        if name in met:
+        if name in gates:
             raise ValueError(f"{record['id'][:200]} appears twice in the study {record['study'][:200]}")
-        met.add(name)
+        gates.add(name)
     return records
 
 

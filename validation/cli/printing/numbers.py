@@ -92,7 +92,7 @@ def _block(scene: Scene) -> Iterator[Number]:
     yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
     yield Number("h/c", height / speed, "s", "travel time of the wave through the block")
     yield Number("c dt/h", speed * dt / height, "", "share of the block that the wave crosses per step")
-    if load := opened.pushing(scene):
+    if load := opened.resultant_load(scene):
         yield Number("F/2p", load / (2 * scene.contact.stiffness), "m", "compression of the springs at rest")
 
 
@@ -165,7 +165,8 @@ def _column(scene: Scene) -> Iterator[Number]:
         height = layer.thickness / layer.blocks
         travel_time += layer.thickness / speed
         top_impedance = layer.density * speed
-        yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
+        place = f"{number}: " if len(column.layer) > 1 else ""
+        yield from _layer(scene, place, speed, height)
     yield Number("H/c", travel_time, "s", "travel time of the wave through the column")
     with suppress(InputError):  # DDA does not take the column
         yield Number(
