@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
 
@@ -35,6 +38,11 @@ def about(value: float, half: float) -> tuple[float, float]:
 def near(value: float, relative: float) -> tuple[float, float]:
     """Band of a relative half width about a value."""
     return about(value, abs(value) * relative)
+
+
+def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
+    """Return the order, with its sign, fitted on all levels of a refinement: error = C size^order."""
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
 def decimals(value: float) -> float:
