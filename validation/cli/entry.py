@@ -130,7 +130,8 @@ def _is_numerical(error: Exception) -> bool:
 
 def _last_argument(error: BaseException) -> str:
     """Return what an error says in the end: errors of the system come with their number."""
-    return printable(str(error.args[-1] if error.args else type(error).__name__))
+    last = error.args[-1] if error.args else type(error).__name__
+    return printable(str(last))
 
 
 def _print_error(line: str) -> int:

@@ -103,7 +103,8 @@ def _judge_solver(target: str, solver: str, assignments: list[str] | None, progr
     from validation.solvers.user import SAME_AS, UserSolver
 
     of_pack = target in PROBLEMS
-    case = one_case(PREFIX + target if of_pack else target, assignments)
+    source = PREFIX + target if of_pack else target
+    case = one_case(source, assignments)
     posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
     adapter = get_solver(solver)
     progress(0, 3, f"{case.name} {solver}")

@@ -32,7 +32,8 @@ def end() -> NoReturn:
     with _message_lock, suppress(OSError):
         while _pending_messages:
             os.write(2, _pending_messages.pop())
-    os._exit(128 + _received[0] if _received else INTERRUPTED)
+    status = 128 + _received[0] if _received else INTERRUPTED
+    os._exit(status)
 
 
 def promise_rows() -> None:

@@ -27,7 +27,8 @@ def diff(
     differences = changes(read_verdicts(before), read_verdicts(after))
     with tolerate_closed_pipe():
         print_changes(differences)
-    raise typer.Exit(GATE_FAILED if any(change.worse for change in differences) else PASSED)
+    status = GATE_FAILED if any(change.worse for change in differences) else PASSED
+    raise typer.Exit(status)
 
 
 @app.command("export-pack")

@@ -137,7 +137,9 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
             peak_cells.append([(f"{frequency:.6g}", f"{amplitude:.6g}") for frequency, amplitude in peaks])
         for displacement, pressure in itertools.zip_longest(*peak_cells, fillvalue=("", "")):
             rows.append((label, *displacement, *pressure))
-    print_table(rows if len(rows) > 1 else [("no peak in this range",)])
+    if len(rows) == 1:
+        rows = [("no peak in this range",)]
+    print_table(rows)
     if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
 

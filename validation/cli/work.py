@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -40,7 +41,7 @@ def rows(
     from validation.runs.files import write_atomically
 
     lines = _table(study, results)
-    names = list(dict.fromkeys(name for line in lines for name in line))
+    names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, names, lineterminator="\n")
     writer.writeheader()
@@ -75,7 +76,8 @@ def plot(
             name = f"{line['scene'].partition('[')[0]} {line['solver']}"
             series.setdefault(name, []).append((float(pair[0]), float(pair[1])))  # type: ignore[arg-type]
     if not series:
-        _refuse_unknown({"--x": x, "--y": y}, list(dict.fromkeys(name for line in lines for name in line)), study)
+        names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
+        _refuse_unknown({"--x": x, "--y": y}, names, study)
         raise InputError(f"--x, --y: must be columns with positive numbers in common rows, got {x} and {y}")
     echo(f"wrote {save(columns_figure((x, y), series), out)}")
 

@@ -30,7 +30,7 @@ def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) 
         solvers.setdefault(scene, []).append(solver)
     for scene, names in solvers.items():
         solver_pairs = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
-        needed = dict.fromkeys(solver for pair in solver_pairs for solver in pair)
+        needed = dict.fromkeys(itertools.chain.from_iterable(solver_pairs))
         histories = {s: history for s in needed if (history := finished.history(scene, s)) is not None}
         for solver, reference in solver_pairs:
             if solver in histories and reference in histories:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -63,12 +64,13 @@ class RunAnswer:
     @property
     def verdicts(self) -> list[Verdict]:
         """The verdicts of all studies, in their order."""
-        return [verdict for run in self.runs for verdict in run.verdicts]
+        return list(itertools.chain.from_iterable(run.verdicts for run in self.runs))
 
     def alarms(self, names: Iterable[str] | None = None) -> list[AlarmRecord]:
         """Return the alarms of the named studies, by default of all."""
         studies = self.names if names is None else names
-        return [alarm for name in studies for alarm in self.results.manifest(name).get("alarms", [])]
+        alarms = (self.results.manifest(name).get("alarms", []) for name in studies)
+        return list(itertools.chain.from_iterable(alarms))
 
 
 def lines(answer: RunAnswer, width: int) -> Iterator[Line]:
@@ -274,7 +276,7 @@ def as_data(answer: RunAnswer) -> dict[str, Any]:
             }
             for run, seconds in zip(answer.runs, answer.seconds, strict=True)
         ],
-        "verdicts": [verdict for name in answer.names for verdict in answer.results.verdicts(name)],
+        "verdicts": list(itertools.chain.from_iterable(map(answer.results.verdicts, answer.names))),
         "ended_badly": list(badly_ended(answer)),
         "alarms": alarm_kinds(answer),
         "changes": None if answer.changes is None else [_change(change) for change in answer.changes],

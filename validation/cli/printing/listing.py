@@ -103,7 +103,10 @@ def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = ""
     """
     widths = [max(map(len, column)) for column in zip(*filter(None, lines), strict=True)][:-1]
     offset = len(indent) + sum(n + 2 for n in widths)
-    return "\n".join(row for line in lines for row in _rows(line, widths, indent, offset, width))
+    rows: list[str] = []
+    for line in lines:
+        rows += _rows(line, widths, indent, offset, width)
+    return "\n".join(rows)
 
 
 def _rows(line: Line, widths: Sequence[int], indent: str, offset: int, width: int | None) -> list[str]:

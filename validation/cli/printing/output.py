@@ -69,7 +69,8 @@ def console() -> Console:
         def on_broken_pipe(self) -> None:  # rich would end the process
             raise
 
-    return Plain(width=None if sys.stdout.isatty() else PAGE)
+    width = None if sys.stdout.isatty() else PAGE
+    return Plain(width=width)
 
 
 def width() -> int:

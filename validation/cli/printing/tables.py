@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -50,6 +51,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
         gate = v.gate
         status = str(v.status)
         case_seconds = seconds.get(gate.cases[0])
+        duration = "" if case_seconds is None else f"{case_seconds:.2f}"
         table.add_row(
             escape(printable(name(gate.scene))),
             " | ".join(gate.pair),
@@ -57,7 +59,7 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
             value_text(v.value),
             _band(v),
             f"[{STYLES[status]}]{status}[/]",
-            "" if case_seconds is None else f"{case_seconds:.2f}",
+            duration,
         )
     printer = console()
     if printer.measure(table, options=printer.options.update(width=10_000)).maximum <= printer.width:
@@ -102,7 +104,8 @@ def print_lines(lines: Iterable[Line]) -> None:
     for text, word in lines:
         styled_text = Text(text)
         if word:
-            styled_text.stylize(STYLES[word], 0, len(word) if text.startswith(word) else len(text))
+            end = len(word) if text.startswith(word) else len(text)
+            styled_text.stylize(STYLES[word], 0, end)
         printer.print(styled_text, soft_wrap=True)
 
 
@@ -226,9 +229,11 @@ def print_changes(changes: list[Change]) -> None:
         kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"
         table.add_row(kind, *map(escape, (c.study, c.id, *values)))
     printer = console()
-    if changes:
-        printer.print(table)
-    kinds = [c.kind for c in changes]
-    words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
+    if not changes:
+        printer.print("no gate differs", markup=False)
+        return
+    printer.print(table)
+    kinds = Counter(c.kind for c in changes)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
     many = "1 gate differs" if len(changes) == 1 else f"{len(changes)} gates differ"
-    printer.print(f"{many}: {words}" if changes else "no gate differs", markup=False)
+    printer.print(f"{many}: {counts}", markup=False)
