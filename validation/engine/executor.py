@@ -25,7 +25,19 @@ PARENT_CHECK_INTERVAL = 0.25  # s
 def executed(
     pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
 ) -> Iterator[tuple[Row, History | None]]:
-    """Run the pending cases, in this process where one worker or one case is all there is."""
+    """Run the pending cases, in this process where one worker or one case is all there is.
+
+    Parameters
+    ----------
+    pending
+        The cases by key.
+    study
+        Whose name the rows get; a study of timings runs its cases one after the other in this process.
+    jobs
+        Worker processes; ignored where an executor is given.
+    executor
+        That of a cluster, or None.
+    """
     if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
             yield _checked(case, key, study.name)

@@ -34,6 +34,13 @@ Part = TypeVar("Part")
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     """Run a case; whatever happens in it ends as a named outcome.
 
+    Parameters
+    ----------
+    case
+        Scene, solver and what is measured.
+    key, study
+        Under which the row is kept, and the study that asks for it.
+
     Returns
     -------
     The row with the metrics of the run itself, and the history where there is one.
@@ -108,7 +115,21 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
 
 @np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of
 def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> tuple[Prepared | None, Run]:
-    """Prepare and run a scene, and turn the solver's errors into outcomes; what was prepared, None if nothing was."""
+    """Prepare and run a scene, and turn the solver's errors into outcomes.
+
+    Parameters
+    ----------
+    solver, scene
+        The solver and a scene without a sweep.
+    full
+        Switch the numerical savings off.
+    fields
+        File for displacement and stress fields; none is written where None.
+
+    Returns
+    -------
+    The prepared scene, None where the solver did not come so far, and the run.
+    """
     prepared: Prepared | None = None
     try:
         if reason := solver.refusal(scene):
@@ -130,7 +151,7 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
 
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-    """Return the checked run of a scene, whatever its outcome."""
+    """Return the checked run of a scene, whatever its outcome; the parameters are those of `attempt`."""
     with one_thread():
         return checked(attempt(solver, scene, full, fields)[1], scene)
 

@@ -86,7 +86,15 @@ def finish(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Finished:
-    """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
+    """Take finished cases from the results directory and run the others, each kept as soon as it ends.
+
+    Parameters
+    ----------
+    cases, study
+        The cases, and the study whose names their rows get.
+    results, jobs, executor, progress
+        As in `run_study`.
+    """
     keyed = [(case, case.key()) for case in cases]
     rows_by_key = {} if study.timed else _valid_rows(keyed, results)
     pending = {key: case for case, key in keyed if key not in rows_by_key}

@@ -27,7 +27,15 @@ def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
 
 
 def with_growth_outcome(run: Run, prepared: Prepared, scene: Scene) -> Run:
-    """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted."""
+    """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted.
+
+    Parameters
+    ----------
+    run
+        The run; one that ended otherwise than by its growth is returned as it is.
+    prepared, scene
+        The model, which predicts the growth of a step, and the scene that was run.
+    """
     if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW, Outcome.UNBOUNDED) or run.history is None:
         return run
     radius = _diagnostics(prepared).get("predicted_radius", 0.0)

@@ -226,7 +226,7 @@ class DDA(Solver):
         if features.SUB_BLOCKS in scene_features and (incompatible := scene_features & NOT_OF_SUB_BLOCKS):
             return f"it does not handle {min(incompatible)} together with {features.SUB_BLOCKS}"
         if features.FRICTION in scene_features and features.LAGGED not in scene_features and scene.contact.band[1]:
-            return "a corner that pulls within its band rubs under lagged rules only"
+            return "a corner in tension within its band is frictional under lagged rules only"
         if {features.CONSERVING, features.BASE_MOTION} <= scene_features:
             return f"it does not handle {features.BASE_MOTION} together with {features.CONSERVING}"
         if {features.SUB_BLOCKS, features.ADAPTIVE} <= scene_features:

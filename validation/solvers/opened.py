@@ -51,13 +51,31 @@ def record(scene: Scene, **parts: Any) -> ContactRecord:
 
 
 def impulse_of_force(force: Array, step: float, late: float) -> Array:
-    """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s]."""
+    """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s].
+
+    Parameters
+    ----------
+    force
+        N at the end of each step [N], shape (steps,).
+    step
+        dt [s].
+    late
+        Weight of the force at a step's end: delta of Newmark's scheme, 1 of an implicit contact force.
+    """
     before = np.concatenate(([0.0], force[:-1]))
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
 
 
 def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
-    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s].
+
+    Parameters
+    ----------
+    scene
+        Mass, discount gg, loads F and the velocity at t = 0.
+    velocity
+        Of the centre of mass at the end of each step, upwards [m/s], shape (steps,).
+    """
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
     gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
     return np.asarray(
@@ -66,6 +84,14 @@ def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
 
 
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
-    """Return the contacts of all corners between steps, in the order of their beginning."""
+    """Return the contacts of all corners between steps, in the order of their beginning.
+
+    Parameters
+    ----------
+    gaps
+        Gap of each corner at each step, negative where it is closed [m], shape (corners, steps).
+    step
+        dt [s].
+    """
     timed_rebounds = itertools.chain.from_iterable(rebounds_of_steps(gap, step) for gap in gaps)
     return tuple(rebound for _, rebound in sorted(timed_rebounds, key=operator.itemgetter(0)))

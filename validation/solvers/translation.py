@@ -42,7 +42,17 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
 
 
 def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: float = 0.0) -> Run:
-    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name."""
+    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name.
+
+    Parameters
+    ----------
+    scene, result
+        The scene and the `Result` of a solver package.
+    columns
+        Column name to values at each step; those that the scene asks for are kept.
+    built
+        Time that was spent on the model before [s].
+    """
     history = History(result.time, {name: columns[name] for name in scene.run.columns})
     counted = ("unknowns", "nonzeros", "factorisations", "solves")
     work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
@@ -51,7 +61,15 @@ def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: f
 
 
 def switches_between_steps(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
-    """Return the switches between the steps of contacts, 1 where closed and 0 where open, in the order of time."""
+    """Return the switches of contacts from step to step, in the order of time.
+
+    Parameters
+    ----------
+    closed
+        Name of a corner to its state at each step, 1 where it is closed and 0 where it is open, shape (steps,).
+    time
+        Times of the steps [s], shape (steps,).
+    """
     switches = []
     for corner, state in closed.items():
         steps = np.flatnonzero(np.diff(state)) + 1

@@ -54,5 +54,15 @@ def decimals(value: float) -> float:
 def printed(
     scene: str, pair: tuple[str, ...], metric: str, value: float, half: float, reason: str, **window: Any
 ) -> Gate:
-    """Return the gate on a number that an independent program printed: `half` a unit of its last digit."""
+    """Return the gate on a number that an independent program printed.
+
+    Parameters
+    ----------
+    scene, pair, metric
+        What is judged.
+    value, half
+        The number, and half a unit of its last digit: the half width of the band.
+    reason, window
+        Why it is so, and further fields of the gate, such as `until`.
+    """
     return Gate(scene, pair, metric, *about(value, half), reason, OTHER, half, **window)
