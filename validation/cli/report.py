@@ -29,9 +29,9 @@ def report(
 
     if out.suffix.lower() != ".pdf":
         raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
-    finished = Results(results)
-    page = build(finished, out)
-    print_unread(finished)
+    store = Results(results)
+    page = build(store, out)
+    print_unread(store)
     echo(f"wrote {page}")
 
 

@@ -125,7 +125,7 @@ def run(
         raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other, got both")
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
-    finished = Results(results)
+    store = Results(results)
     required = require or []
     # What would be refused at the end is refused before anything runs.
     adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
@@ -134,19 +134,19 @@ def run(
             raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
     if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
         raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
-    finished.check()
+    store.check()
     before = None if baseline is None else read_verdicts(baseline)
 
     machine = Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler)
-    runs, seconds = _run_studies(studies, finished, machine, show_progress=not quiet)
+    runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
     names = [judged.study.name for judged in runs]
-    records = list(itertools.chain.from_iterable(map(finished.verdicts, names)))
+    records = list(itertools.chain.from_iterable(map(store.verdicts, names)))
     changes = after_run(records, names, summary, before)
     worse = None if changes is None else any(change.worse for change in changes)
     messages = [*complaints(runs), *missing_gates(runs, required)]
     verdicts = list(itertools.chain.from_iterable(judged.verdicts for judged in runs))
     status = _status(verdicts, required, any(judged.refused for judged in runs), worse, messages)
-    answer = RunAnswer(runs, seconds, finished, messages, changes, frozenset(names) - set(STUDIES), status)
+    answer = RunAnswer(runs, seconds, store, messages, changes, frozenset(names) - set(STUDIES), status)
     with tolerate_closed_pipe():
         if as_json:
             echo(json.dumps(as_data(answer), indent=1, allow_nan=False))

@@ -22,10 +22,10 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
     from validation.runs.results import Results
     from validation.studies.work.points import table
 
-    finished = Results(results)
-    if study not in finished.studies():
+    store = Results(results)
+    if study not in store.studies():
         raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
-    return table(finished, finished.whole(study))
+    return table(store, store.whole(study))
 
 
 @app.command()
