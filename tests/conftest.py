@@ -230,10 +230,10 @@ def _draw_without_constants() -> None:
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Skip what needs FEniCSx by name where there is none, which is asked when the first such test is reached."""
     if item.get_closest_marker("fenicsx"):
-        from validation.solvers.fenicsx import NEEDED, interpreter
+        from validation.solvers.fenicsx import INSTALL_HINT, interpreter
 
         if interpreter() is None:
-            pytest.skip(f"fenicsx is NOT RUN: {NEEDED}")
+            pytest.skip(f"fenicsx is NOT RUN: {INSTALL_HINT}")
 
 
 def thinned(cases: Iterable[object], every: int) -> list[object]:

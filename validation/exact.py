@@ -3,8 +3,8 @@
 >>> import numpy as np
 >>> from validation.exact import locked_block
 >>> block = {"width": 2.0, "height": 2.0, "density": 2700.0, "young": 1e9, "stiffness": 1e9}
->>> found = locked_block(np.array([0.01]), **block, pressure=5e6)
->>> round(float(found.displacement[0]), 6)
+>>> answer = locked_block(np.array([0.01]), **block, pressure=5e6)
+>>> round(float(answer.displacement[0]), 6)
 -0.01983
 
 The motions of a block and of a layered column load numpy alone; those of a rigid block that rocks need scipy, which is
@@ -166,20 +166,21 @@ def frictional_block(
         A number is out of its range.
     """
     data = {"width": width, "height": height, "density": density, "young": young, "stiffness": stiffness}
-    more = {"shear_stiffness": shear_stiffness, "friction": friction, "slope": slope, "cohesion": cohesion}
-    return _block(time, pressure=pressure, gravity=gravity, **data, **more)
+    joint = {"shear_stiffness": shear_stiffness, "friction": friction, "slope": slope, "cohesion": cohesion}
+    return _block(time, pressure=pressure, gravity=gravity, **data, **joint)
 
 
 def _block(time: ArrayLike, **data: Any) -> BlockAnswer:
     from fem_reference.events.block_events import solve
     from fem_reference.events.block_model import BlockProblem
 
-    asked = _instants(time)
-    motion = solve(BlockProblem(**data), float(asked[-1]))
-    seen: BlockHistory = motion.at(asked)
-    u, v, rotation = seen.displacement[:3]
-    switched = {kind: tuple(s.time for s in motion.switches if s.kind == kind) for kind in ("opens", "closes")}
-    return BlockAnswer(asked, v, u, rotation, seen.contact_pressure, switched["opens"], switched["closes"])
+    instants = _instants(time)
+    motion = solve(BlockProblem(**data), float(instants[-1]))
+    state: BlockHistory = motion.at(instants)
+    u, v, rotation = state.displacement[:3]
+    openings = tuple(switch.time for switch in motion.switches if switch.kind == "opens")
+    closings = tuple(switch.time for switch in motion.switches if switch.kind == "closes")
+    return BlockAnswer(instants, v, u, rotation, state.contact_pressure, openings, closings)
 
 
 def _instants(time: ArrayLike) -> Array:
@@ -190,10 +191,11 @@ def _instants(time: ArrayLike) -> Array:
     ValueError
         They are others.
     """
-    asked = np.atleast_1d(np.asarray(time, dtype=np.float64))
-    if asked.ndim != 1 or not np.isfinite(asked).all() or asked[0] < 0 or np.any(np.diff(asked) < 0) or asked[-1] <= 0:
+    instants = np.atleast_1d(np.asarray(time, dtype=np.float64))
+    in_range = instants.ndim == 1 and np.isfinite(instants).all() and instants[0] >= 0 and instants[-1] > 0
+    if not in_range or np.any(np.diff(instants) < 0):
         raise ValueError("time: must be finite instants that rise from 0 or later to after 0")
-    return asked
+    return instants
 
 
 def rigid_slide(time: ArrayLike, *, slope: float, friction: float, gravity: float = 9.81) -> Array:
@@ -210,9 +212,10 @@ def rigid_slide(time: ArrayLike, *, slope: float, friction: float, gravity: floa
     gravity
         g [m/s2].
     """
-    t, b = np.asarray(time, dtype=np.float64), math.radians(slope)
-    driven = gravity * (math.sin(b) - math.cos(b) * math.tan(math.radians(friction)))
-    return np.asarray(max(driven, 0.0) * t**2 / 2)
+    t = np.asarray(time, dtype=np.float64)
+    b = math.radians(slope)
+    acceleration = gravity * (math.sin(b) - math.cos(b) * math.tan(math.radians(friction)))
+    return np.asarray(max(acceleration, 0.0) * t**2 / 2)
 
 
 def rocking_quarter_period(*, width: float, height: float, tilt: float, gravity: float = 9.81) -> float:
@@ -253,8 +256,8 @@ def rocking_tilt(time: ArrayLike, *, width: float, height: float, tilt: float, g
     """
     from fem_reference.exact.rocking import RockingBlock, solve
 
-    asked = _instants(time)
-    rotation, _ = solve(RockingBlock(width, height, gravity), float(asked[-1]), tilt).at(asked)
+    instants = _instants(time)
+    rotation, _ = solve(RockingBlock(width, height, gravity), float(instants[-1]), tilt).at(instants)
     return np.asarray(rotation)
 
 
@@ -306,6 +309,7 @@ def layered_column(
 
     strata = tuple(Stratum(d, rho, e, 0.0) for d, rho, e in zip(thickness, density, young, strict=True))
     columns = [f"displacement_{number}" for number in range(1, len(heights) + 1)]
-    ground, scheme = Ground(strata, motion, (), impedance), Scheme(0.25, 0.5, 1.0, step)
-    found = solve_layers(ground, scheme, steps, drive, columns, heights)
-    return step * np.arange(1.0, steps + 1), np.array([found.columns[name] for name in columns])
+    ground = Ground(strata, motion, (), impedance)
+    scheme = Scheme(0.25, 0.5, 1.0, step)
+    solution = solve_layers(ground, scheme, steps, drive, columns, heights)
+    return step * np.arange(1.0, steps + 1), np.array([solution.columns[name] for name in columns])

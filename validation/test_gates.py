@@ -29,9 +29,11 @@ from validation.studies.own_solver.session import Session, plain
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each gate; with ``--dda-solver`` of those on `dda` only."""
-    found = gates() if metafunc.config.getoption("--dda-solver", None) is None else applying()
-    marks = {name: pytest.mark.xdist_group(scene_of(gate.scene)) for name, (_, gate) in found.items()}
-    metafunc.parametrize("name", [pytest.param(name, marks=marks[name], id=name) for name in found])
+    selected_gates = gates() if metafunc.config.getoption("--dda-solver", None) is None else applying()
+    parameters = []
+    for name, (_, gate) in selected_gates.items():
+        parameters.append(pytest.param(name, marks=pytest.mark.xdist_group(scene_of(gate.scene)), id=name))
+    metafunc.parametrize("name", parameters)
 
 
 @pytest.fixture(scope="session")
@@ -55,8 +57,8 @@ def test_gate(
     if session is None:
         verdict = _verdict(name, finished)
     else:
-        verdict, told = session.judge(name)
-        tell(plain(told))
+        verdict, statement = session.judge(name)
+        tell(plain(statement))
     if verdict.status is Status.NOT_RUN:
         pytest.skip(f"NOT RUN: {verdict.why}")
     gate = verdict.gate
@@ -70,13 +72,13 @@ def _verdict(name: str, finished: Finished) -> Verdict:
     study, gate = gates()[name]
     missing = [pair for pair in study_of(study).needs(gate) if pair not in finished.rows]
     if missing:
-        kept = finished.results.rows()
-        found = finish([_asked(cases(study)[pair], kept) for pair in missing], study_of(study), finished.results)
-        finished.rows.update(found.rows)
+        finished_keys = finished.results.rows()
+        pending = [_gated_case(cases(study)[pair], finished_keys) for pair in missing]
+        finished.rows.update(finish(pending, study_of(study), finished.results).rows)
     return evaluate(gate, Finished(finished.rows, finished.results, recipes(study)))
 
 
-def _asked(case: Case, kept: Container[str]) -> Case:
+def _gated_case(case: Case, finished_keys: Container[str]) -> Case:
     """Return a case with the metrics that gates ask for, or with all of them where a row holds them already."""
-    only = asked().get((case.scene.name, case.solver), frozenset())
-    return case if case.key() in kept else replace(case, only=only)
+    required_metrics = asked().get((case.scene.name, case.solver), frozenset())
+    return case if case.key() in finished_keys else replace(case, only=required_metrics)

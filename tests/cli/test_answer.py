@@ -13,8 +13,8 @@ from oracles.made_cases import kept_study, made_row
 
 from validation import load_scene
 from validation.cli.printing import answer
-from validation.cli.printing.answer import FAILURES_SHOWN, SCREEN, Ran
-from validation.engine.measured import Judged
+from validation.cli.printing.answer import FAILURES_SHOWN, SCREEN, RunAnswer
+from validation.engine.measured import JudgedStudy
 from validation.gates.changes import Change
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.results import Results
@@ -27,16 +27,16 @@ NOT_RUN = Verdict(GATE, None, Status.NOT_RUN, "fenicsx: needs the package dolfin
 ENDS = {"dda": Outcome.COMPLETED, "fem": Outcome.OVERFLOW, "bar": Outcome.TIMEOUT, "continuum": Outcome.NOT_APPLICABLE}
 
 
-def run_of(name: str, verdicts: Sequence[Verdict], ends: dict[str, Outcome] | None = None) -> Judged:
+def run_of(name: str, verdicts: Sequence[Verdict], ends: dict[str, Outcome] | None = None) -> JudgedStudy:
     study = replace(get_study("core"), name=name, expects=(Outcome.OVERFLOW,))
-    return Judged(study, verdicts, {(CASE.name, solver): end for solver, end in (ends or {}).items()})
+    return JudgedStudy(study, verdicts, {(CASE.name, solver): end for solver, end in (ends or {}).items()})
 
 
-def ran(results: Results, runs: Sequence[Judged], own: frozenset[str] = frozenset()) -> Ran:
-    return Ran(runs, [1.25] * len(runs), results, ["a: no case was measured"], None, own, 1)
+def ran(results: Results, runs: Sequence[JudgedStudy], own: frozenset[str] = frozenset()) -> RunAnswer:
+    return RunAnswer(runs, [1.25] * len(runs), results, ["a: no case was measured"], None, own, 1)
 
 
-def said(what: Ran, width: int = 80) -> list[str]:
+def said(what: RunAnswer, width: int = 80) -> list[str]:
     return [text for text, _ in answer.lines(what, width)]
 
 
@@ -84,7 +84,7 @@ def test_what_comes_next_is_the_report_and_every_gate_where_the_study_is_no_user
     report = f"dda-validate report --results {made.directory} writes the PDF"
     what = ran(made, [run_of("made", [judge(GATE, 0.04)])])
     assert answer.next_commands(what) == [report, "the same command with --verbose lists every gate"]
-    assert answer.next_commands(replace(what, own=frozenset({"made"}))) == [report]
+    assert answer.next_commands(replace(what, user_scenes=frozenset({"made"}))) == [report]
 
 
 def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made: Results) -> None:

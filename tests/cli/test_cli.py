@@ -188,8 +188,9 @@ def test_an_interruption_promises_rows_where_the_command_keeps_them() -> None:
 def test_an_interruption_in_a_long_call_is_told_as_well() -> None:
     """The main thread is where it hears of no signal: what it would say is said for it, once."""
     deaf = (
-        "signals.PATIENCE = 0.1\ndef deaf(act):\n    while True:\n        try:\n            threading.Event().wait(1)\n"
-        "        except KeyboardInterrupt:\n            pass\nentry._guarded = deaf"
+        "signals.GRACE_PERIOD = 0.1\ndef deaf(act):\n    while True:\n        try:\n"
+        "            threading.Event().wait(1)\n        except KeyboardInterrupt:\n            pass\n"
+        "entry._exit_status = deaf"
     )
     assert interrupted(deaf) == INTERRUPTED
 

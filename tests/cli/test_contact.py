@@ -197,7 +197,7 @@ def test_every_run_is_announced_before_it_starts() -> None:
 
 def test_the_bar_does_not_wait_for_the_end_of_a_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
     started = threading.Event()
-    monkeypatch.setattr(app, "SLOW", 0.0)
+    monkeypatch.setattr(app, "PROGRESS_DELAY", 0.0)
     monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
     with app._progress("contact", between_calls=True):
         assert started.wait(60)

@@ -42,7 +42,7 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
     outcome: Outcome, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(typer.Exit) as ended:
-        cli_judge._history(Run(outcome, notes=("so it was",)), "locked", "mine")
+        cli_judge._completed_history(Run(outcome, notes=("so it was",)), "locked", "mine")
     assert ended.value.exit_code == 3
     assert capsys.readouterr().out == f"locked mine: {outcome}: {outcome.sentence} so it was\n"
 
@@ -86,8 +86,8 @@ def test_what_got_worse_is_red_and_what_got_better_green(monkeypatch: pytest.Mon
 
 def test_one_solver_on_several_cases_is_told_to_name_another() -> None:
     alone = {(scene, "dda"): Outcome.COMPLETED for scene in ("a", "b")}
-    assert tables._alone(alone).startswith("next: name two solvers or more")
-    assert "1 of 2 did" in tables._alone({("a", "dda"): Outcome.COMPLETED, ("a", "bar"): Outcome.OVERFLOW})
+    assert tables._without_comparison(alone).startswith("next: name two solvers or more")
+    assert "1 of 2 did" in tables._without_comparison({("a", "dda"): Outcome.COMPLETED, ("a", "bar"): Outcome.OVERFLOW})
 
 
 # ---- show ---------------------------------------------------------------------------------------------------------

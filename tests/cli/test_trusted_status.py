@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
-from validation.engine.measured import Judged, covers, wanting
+from validation.engine.measured import JudgedStudy, covers, missing_gates
 from validation.engine.run import run_study
 from validation.gates.gate import Gate, Status, Verdict
 from validation.report import book
@@ -115,7 +115,7 @@ def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp
     run_study(study, Results(tmp_path))
     ends = {("small", "dda"): Outcome.OVERFLOW}
     for expects, failed in (((), True), ((Outcome.OVERFLOW,), False), ((Outcome.MISPREDICTED,), True)):
-        run = Judged(replace(study, expects=expects), [], ends)
+        run = JudgedStudy(replace(study, expects=expects), [], ends)
         assert bool(run.failed) is failed
     found = [row.outcome for row in Results(tmp_path).rows().values()]
     assert found == [Outcome.OVERFLOW]
@@ -149,8 +149,8 @@ def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
     assert not covers("fem", "fem-60") and not covers("fenicsx:2", "fenicsx")
     core = get_study("core")
     damping = Gate("figures-3-4[time.step=0.01]", ("damping",), "operator", 0.0, 1.0, "a derived row of the elements")
-    run = Judged(core, [Verdict(damping, None, Status.NOT_RUN)], {})
-    assert list(wanting([run], ["fem"])) == ["--require fem: 1 of 1 gates on it are NOT RUN"]
+    run = JudgedStudy(core, [Verdict(damping, None, Status.NOT_RUN)], {})
+    assert list(missing_gates([run], ["fem"])) == ["--require fem: 1 of 1 gates on it are NOT RUN"]
 
 
 # ---- baselines ------------------------------------------------------------------------------------------------------

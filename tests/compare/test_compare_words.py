@@ -356,7 +356,7 @@ def test_the_command_prints_misfit_and_compliance_in_per_cent(capsys: pytest.Cap
 
 
 def test_the_best_schemes_are_listed_and_each_stage_is_right_or_wrong(capsys: pytest.CaptureFixture[str]) -> None:
-    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(cli_compare.SHOWN + 2)]
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(cli_compare.RANKING_LINES + 2)]
     stages = [Stage(name, agrees, "words", {}) for name, agrees in (("rest", True), ("period", False), ("load", None))]
     cli_compare._print(replace(ANSWER, ranking=ranked, evidence=tuple(stages)))
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]

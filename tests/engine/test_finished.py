@@ -12,7 +12,7 @@ from oracles.made_cases import made_history, made_row
 from validation.engine import horizon
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
-from validation.engine.measured import Judged, complaints
+from validation.engine.measured import JudgedStudy, complaints
 from validation.gates.gate import Gate, Status, Verdict
 from validation.runs.results import Results
 from validation.runs.row import Value
@@ -69,10 +69,10 @@ def test_of_a_run_that_grew_only_its_stability_is_judged(
 # ---- what a run complains of ----------------------------------------------------------------------------------------
 
 
-def judged(ends: list[Outcome], *words: Status) -> Judged:
+def judged(ends: list[Outcome], *words: Status) -> JudgedStudy:
     gate = Gate("s", ("dda",), "displacement.static", 0.0, 1.0, "why")
     cases = {("s", f"a:{i}"): ended for i, ended in enumerate(ends)}
-    return Judged(get_study("core"), [Verdict(gate, None, word) for word in words], cases)
+    return JudgedStudy(get_study("core"), [Verdict(gate, None, word) for word in words], cases)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def judged(ends: list[Outcome], *words: Status) -> Judged:
         (judged([Outcome.NOT_RUN]), ["core: no case was measured"]),
     ],
 )  # fmt: skip
-def test_complaints_count_what_they_do_not_name(run: Judged, said: list[str]) -> None:
+def test_complaints_count_what_they_do_not_name(run: JudgedStudy, said: list[str]) -> None:
     assert list(complaints([run])) == said
 
 

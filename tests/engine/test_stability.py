@@ -77,7 +77,7 @@ def test_growth_at_another_rate_is_named(scene, sound, steps):
     solver = Grower()
     solver.sound = sound
     case = scene.with_values({"time.steps": steps, "run.columns": ["displacement"]})
-    run = stability.named(solver.solve(case), solver.prepare(case), case)
+    run = stability.with_growth_outcome(solver.solve(case), solver.prepare(case), case)
     assert run.outcome is (Outcome.MISPREDICTED if sound else Outcome.COMPLETED)
     assert run.outcome.sentence.endswith(".")
 

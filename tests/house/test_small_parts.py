@@ -27,7 +27,7 @@ from validation.solvers import memory
 from validation.solvers.dda import SubBlocks, model_of
 from validation.solvers.fem import problem_of
 from validation.solvers.registry import get_solver
-from validation.solvers.translation import pulls, to_run
+from validation.solvers.translation import tension_note, to_run
 
 PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
 
@@ -71,10 +71,10 @@ def test_a_run_keeps_every_count_second_and_note_of_a_solver_under_its_name(scen
 def test_tension_is_reported_at_its_worst_instant() -> None:
     time = 0.5 * np.arange(1, 6)
     history = History(time, {"contact_pressure": np.array([1.0, -2.0, 5.0, -7.5e3, -3.0])})
-    assert pulls(history) == ("the locked contact carries tension: -7500 Pa at t = 2 s",)
-    assert pulls(History(time, {"contact_pressure": np.array([0.0, 1.0, 2.0, 3.0, 0.0])})) == ()
-    assert pulls(History(time, {"displacement": -time})) == ()
-    assert pulls(History(time, {"contact_pressure": np.array([1.0, -2.0, np.nan, 0.0, 0.0])})) == ()
+    assert tension_note(history) == ("the locked contact carries tension: -7500 Pa at t = 2 s",)
+    assert tension_note(History(time, {"contact_pressure": np.array([0.0, 1.0, 2.0, 3.0, 0.0])})) == ()
+    assert tension_note(History(time, {"displacement": -time})) == ()
+    assert tension_note(History(time, {"contact_pressure": np.array([1.0, -2.0, np.nan, 0.0, 0.0])})) == ()
 
 
 def test_a_history_until_an_instant_has_its_step_however_it_is_rounded() -> None:

@@ -40,7 +40,7 @@ MADE = ContactRecord(  # a mass of 2 kg that comes down with 3 m/s, touches in t
     open_share=np.array([1.0, 0.0, 1.0, 1.0]),
     start_velocity=-3.0,
     start_energy=9.0,
-    given=10.0,
+    input_energy=10.0,
     velocity=np.array([-3.0, 2.0, 1.0, 1.0]),
     energies={
         "kinetic": np.array([9.0, 0.0, 1.0, 1.0]),
@@ -120,10 +120,10 @@ def test_what_a_slope_and_its_discount_give_by_hand() -> None:
     """10800 kg on 28.9 degrees: F = m g cos b, H = m g sin b; F^2 / 4p + H^2 / 4ps + F^2 h / 2Ea, with h = a."""
     scene = load_scene("slope-sliding").expand()[0].with_values({"contact.shear_stiffness": 4e8, "time.gg": 0.9})
     down, along = 10800 * 9.81 * np.cos(np.radians(28.9)), 10800 * 9.81 * np.sin(np.radians(28.9))
-    assert opened.pushing(scene) == pytest.approx(down)
-    assert opened.given_energy(scene) == pytest.approx(down**2 / 4e9 + along**2 / 1.6e9 + down**2 / 2e9)
+    assert opened.resultant_load(scene) == pytest.approx(down)
+    assert opened.energy_input(scene) == pytest.approx(down**2 / 4e9 + along**2 / 1.6e9 + down**2 / 2e9)
     gained = 10800 * np.cumsum([-1.0, -2.0 + 0.9]) + down * scene.time.step * np.array([1, 2])
-    assert opened.balanced(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
+    assert opened.impulse_of_momentum(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
 
 
 def test_corners_that_switch_together_open_once() -> None:
@@ -146,7 +146,7 @@ def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:
     assert measured(bare)["contact.restitution"] == measured(bare)["energy.rise"] == "not reported"
     flying = replace(MADE, force=0 * MADE.force, rebounds=())
     assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == "undefined"
-    assert measured(replace(MADE, given=0.0))["energy.rise"] == "undefined"
+    assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == "undefined"
 
 
 def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it() -> None:
@@ -197,7 +197,7 @@ def test_impulse_and_energy_close_the_balances_of_dda(name: str) -> None:
     assert record.velocity is not None and record.gap.max() > 0 and not record.cuts.any()
     before = np.concatenate(([scene.block.velocity], record.velocity[:-1]))
     late = np.concatenate(([1 - scene.time.delta if scene.time.start == "zero" else 0.0], np.zeros(99)))
-    loads = opened.pushing(scene) * scene.time.step * (1 - late)  # A0 = 0 leaves the load at t = 0 out
+    loads = opened.resultant_load(scene) * scene.time.step * (1 - late)  # A0 = 0 leaves the load at t = 0 out
     gained = m * np.sum(record.velocity - gg * before) + np.sum(loads)
     assert record.impulse[-1] == pytest.approx(gained, rel=1e-9)
     assert measured(record)["energy.imbalance"] < 1e-11

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from validation.runs.records import Judged, sound, unique
+from validation.runs.records import BaselineVerdict, sound, unique
 
 
-def judged(verdict: str, value: Any, band: tuple[float, float] = (1.0, 2.0), name: str = "g") -> Judged:
+def judged(verdict: str, value: Any, band: tuple[float, float] = (1.0, 2.0), name: str = "g") -> BaselineVerdict:
     return {"id": name, "study": "s", "value": value, "band": list(band), "verdict": verdict}
 
 

@@ -28,7 +28,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
-from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, places
+from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, worker_directories
 from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
 from validation.studies.second_fem_code import POLYGONS, SAME, TWO_CODES
@@ -80,8 +80,8 @@ def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
             raise PermissionError(13, "Permission denied", path)
         return os.listdir(path)
 
-    places = SimpleNamespace(**vars(os) | {"listdir": listed})
-    monkeypatch.setattr(adapters_fenicsx, "os", places)
+    worker_directories = SimpleNamespace(**vars(os) | {"listdir": listed})
+    monkeypatch.setattr(adapters_fenicsx, "os", worker_directories)
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setenv("PATH", os.pathsep.join(["/locked/bin", str(tmp_path / "absent"), str(tmp_path)]))
     assert list(adapters_fenicsx.candidates()) == [sys.executable, str(tmp_path / "python3")]
@@ -211,18 +211,18 @@ def test_the_reason_is_found_under_the_launcher_s_words() -> None:
     advice = "[host:00012] 1 more process has sent help message help-mpi-api.txt / mpi-abort"
     error = "PermissionError: [Errno 13] Permission denied: '/nonexistent'"
     aborted = ["MPI_ABORT was invoked on rank 0", "", "NOTE: invoking MPI_ABORT", rule, advice]
-    assert worker.last_words("\n".join([error, error, rule, *aborted])) == error
-    assert worker.last_words(f"{rule}\norte_session_dir failed\n{rule}\n{advice}\n") == "orte_session_dir failed"
-    assert worker.last_words("\n") == "no message"
+    assert worker.stderr_tail("\n".join([error, error, rule, *aborted])) == error
+    assert worker.stderr_tail(f"{rule}\norte_session_dir failed\n{rule}\n{advice}\n") == "orte_session_dir failed"
+    assert worker.stderr_tail("\n") == "no message"
 
 
 def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
-    assert places().keys() == {"TMPDIR"}
+    assert worker_directories().keys() == {"TMPDIR"}
     monkeypatch.delenv("XDG_CACHE_HOME")
     for home in ("/proc/none", "/dev/null/home"):  # where not even root can make a directory
         monkeypatch.setenv("HOME", home)
-        found = places()
+        found = worker_directories()
         assert len({found[name] for name in ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")}) == 1
         assert os.access(found["XDG_CACHE_HOME"], os.W_OK)
 

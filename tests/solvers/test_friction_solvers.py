@@ -56,7 +56,7 @@ def test_cohesion_is_a_stress_over_the_whole_base():
 def test_lagged_friction_and_its_bands_are_taken():
     lagged = scene({"rules": "lagged", "band": [1e-3, 1e-6]})
     assert not np.array_equal(record(lagged)[0]["displacement"], record(scene())[0]["displacement"])
-    with pytest.raises(InputError, match="rubs under lagged rules only"):
+    with pytest.raises(InputError, match="is frictional under lagged rules only"):
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
     with pytest.raises(InputError, match="lagged friction together with sub-blocks"):
         DDA().build(scene({"rules": "lagged"}, block={"subdivide": [2, 1]}), False)

@@ -21,7 +21,7 @@ def ended(
 ) -> tuple[list[str], list[Any]]:
     """Return the lines that pytest writes and what the block was asked."""
     lines, asked = list[str](), list[Any]()
-    told = [(plugin.TOLD, json.dumps(asdict(SAID))), ("other", "x")]
+    told = [(plugin.STATEMENT, json.dumps(asdict(SAID))), ("other", "x")]
     report = pytest.TestReport("t", ("t", 1, "t"), {}, "passed", None, when, user_properties=told)
     reporter = SimpleNamespace(stats={"passed": [report], "": [object()]}, write_line=lines.append,
                                write_sep=lambda sign, text: lines.append(text))  # fmt: skip

@@ -20,7 +20,7 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.processes import worker
-from validation.solvers.user import VARIABLE, UserSolver, words
+from validation.solvers.user import VARIABLE, UserSolver, one_line
 
 HERE = Path(__file__).parent / "user_solvers"
 MANY = (
@@ -34,7 +34,7 @@ needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the
 
 @pytest.fixture
 def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    monkeypatch.setattr(worker, "kept", {})  # what other tests have started has no mark
+    monkeypatch.setattr(worker, "workers", {})  # what other tests have started has no mark
     with new_mark() as name:
         monkeypatch.setenv(MARK, name)
         yield name
@@ -132,7 +132,7 @@ def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str)
     for target, outcome, said in SURVIVED:
         row = row_of(scene.with_values({"title": target}), "named:Named")
         assert told(row, outcome, said), (target, row.outcome, row.notes)
-        used.update(worker.kept.values())
+        used.update(worker.workers.values())
     assert len(used) == 1, "the processes that have answered"
     worker.close_all()
     assert left(mark) == []
@@ -143,7 +143,7 @@ def at_once(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     """Start workers that know no scenes, and wait shortly for those that have closed their output."""
     monkeypatch.setattr(UserSolver, "command", lambda self: [sys.executable, str(HERE / "bare.py"), self.target])
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
-    monkeypatch.setattr(worker, "ENDING", 0.1)
+    monkeypatch.setattr(worker, "EXIT_TIMEOUT", 0.1)
 
 
 @pytest.mark.usefixtures("at_once")
@@ -154,7 +154,7 @@ def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
     assert UserSolver(target, target).about() == {}, "the process has started"
     monkeypatch.setenv(VARIABLE, "0.05" if outcome is Outcome.TIMEOUT else "60")
     if target.endswith("stops_its_guard"):  # for which one waits in vain
-        monkeypatch.setattr(worker, "PATIENCE", 0.1)
+        monkeypatch.setattr(worker, "GUARD_TIMEOUT", 0.1)
     row = row_of(scene, target)
     assert told(row, outcome, said), (row.outcome, row.notes)
     worker.close_all()
@@ -192,7 +192,7 @@ def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:
 
 
 def test_an_answer_without_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(worker, "LONGEST", 100_000)
+    monkeypatch.setattr(worker, "LONGEST_ANSWER", 100_000)
     endless = [sys.executable, "-c", "import sys\nwhile True: sys.stdout.write('x' * 1000)"]
     with pytest.raises(worker.WorkerDied, match="its answer is longer than 100000 bytes"):
         worker.ask(endless, os.environ, {}, 30.0)
@@ -204,10 +204,10 @@ def test_a_command_that_is_not_there_is_named() -> None:
 
 
 def test_what_a_solver_says_fits_a_line() -> None:
-    assert words("a\n b\tc") == "a b c"
-    assert words("x" * 500) == "x" * 400 + " ..."
-    assert words("\udc80\x00\x1b") == r"\udc80\x00\x1b"
-    assert words("Spannung in N/mm², σ") == "Spannung in N/mm², σ"
+    assert one_line("a\n b\tc") == "a b c"
+    assert one_line("x" * 500) == "x" * 400 + " ..."
+    assert one_line("\udc80\x00\x1b") == r"\udc80\x00\x1b"
+    assert one_line("Spannung in N/mm², σ") == "Spannung in N/mm², σ"
 
 
 @pytest.mark.long

@@ -76,7 +76,7 @@ def test_impulse_and_energy_close_the_balances(scene: Scene, rule: str) -> None:
     prepared = get_solver("dda").prepare(scene.with_values(AVERAGE | {"contact.rule": rule, "time.gg": 0.999}))
     run, record = prepared.run(), prepared.contact_record()
     assert run.outcome.value == "completed" and prepared.switches()
-    balance = opened.balanced(prepared.scene, record.velocity)  # type: ignore[attr-defined]
+    balance = opened.impulse_of_momentum(prepared.scene, record.velocity)  # type: ignore[attr-defined]
     assert record.impulse == pytest.approx(balance, rel=1e-9, abs=1e-9 * np.max(balance))
     assert float(imbalance(record)) < 1e-10
     switched = np.max(np.abs(record.energies["switching"]))

@@ -10,7 +10,7 @@ from validation.runs.history import Array
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
-from validation.solvers.user import UNITS, _judged
+from validation.solvers.user import UNITS, _run_of_columns
 
 COLUMNS = ("displacement", "contact_pressure")
 SI = {  # how much of it makes one s, one m, one Pa: written down here once more
@@ -49,7 +49,7 @@ def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float
     if column == "time":
         size = 1.0  # the instants are the scene's own
     scene, factor = scene.with_values(VARIANTS[variant] | (SIDEWAYS if column in ASIDE else {})), SI[column][unit]
-    run = _judged(scene, columns_of(scene, {column: size * factor}))
+    run = _run_of_columns(scene, columns_of(scene, {column: size * factor}))
     assert run.outcome is Outcome.WRONG_UNITS
     assert run.notes == (f"wrong units: {column} is {factor:g} times what is expected in SI, {unit}?",)
 
@@ -58,7 +58,7 @@ def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float
 @pytest.mark.parametrize("column", COLUMNS)
 def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, object]) -> None:
     scene = scene.with_values(values)
-    run = _judged(scene, columns_of(scene, {column: -1.0}))
+    run = _run_of_columns(scene, columns_of(scene, {column: -1.0}))
     assert run.outcome is Outcome.WRONG_UNITS and run.notes[0].startswith(f"wrong sign: {column} is the negative of")
     assert "downwards is negative, compression positive" in run.notes[0]
 
@@ -66,12 +66,12 @@ def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, obje
 @pytest.mark.parametrize("width", [0.4, 1.6, 2.0, 7.0])
 def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width: float) -> None:
     scene = scene.with_values({"block.width": width, "block.height": 1.5})
-    run = _judged(scene, columns_of(scene, {"contact_pressure": width}))
+    run = _run_of_columns(scene, columns_of(scene, {"contact_pressure": width}))
     assert run.outcome is Outcome.WRONG_UNITS
     words = f"wrong units: contact_pressure is {width:g} times what is expected, the length of the base: a force?"
     assert run.notes == (words,)
     # a displacement off by the same factor is bad, but no force
-    assert _judged(scene, columns_of(scene, {"displacement": width})).outcome is Outcome.COMPLETED
+    assert _run_of_columns(scene, columns_of(scene, {"displacement": width})).outcome is Outcome.COMPLETED
 
 
 @pytest.mark.parametrize(
@@ -87,12 +87,12 @@ def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width:
     ids=str,
 )
 def test_a_bad_answer_in_si_is_no_slip_of_units(scene: Scene, times: dict[str, float]) -> None:
-    assert _judged(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
+    assert _run_of_columns(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
 
 
 def test_a_base_of_one_metre_makes_force_and_pressure_one(scene: Scene) -> None:
     scene = scene.with_values({"block.side": 1.0})
-    assert _judged(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+    assert _run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED
 
 
 def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> None:
@@ -100,16 +100,16 @@ def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> No
     columns = columns_of(scene)
     noise = np.random.default_rng(3).standard_normal(scene.time.steps)
     size = np.linalg.norm(columns["displacement"]) / np.linalg.norm(noise)
-    assert _judged(scene, columns | {"displacement": 1e3 * size * noise}).outcome is Outcome.COMPLETED
+    assert _run_of_columns(scene, columns | {"displacement": 1e3 * size * noise}).outcome is Outcome.COMPLETED
 
 
 def test_time_is_judged_before_the_columns(scene: Scene) -> None:
-    run = _judged(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
+    run = _run_of_columns(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
     assert "time is 1000 times" in run.notes[0]
     late = columns_of(scene) | {"time": columns_of(scene)["time"] + scene.time.step}
-    assert _judged(scene, late).outcome is Outcome.WRONG_SHAPE
+    assert _run_of_columns(scene, late).outcome is Outcome.WRONG_SHAPE
 
 
 def test_a_column_has_no_base_that_makes_a_pressure_a_force() -> None:
     scene = load_scene("field-column").with_values({"run.columns": ["displacement", "displacement_1"]})
-    assert _judged(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+    assert _run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED

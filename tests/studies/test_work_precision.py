@@ -18,10 +18,11 @@ from validation.cli.app import app
 from validation.engine.run import finish, run_study
 from validation.errors import InputError
 from validation.runs.results import Results
+from validation.studies.bands import fitted_order
 from validation.studies.work import record as work_record
 from validation.studies.work import study as work_study
 from validation.studies.work.points import cheapest, floor, front, points
-from validation.studies.work.study import WORK_PRECISION, order
+from validation.studies.work.study import WORK_PRECISION
 
 ROOT = Path(__file__).parents[2]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
@@ -80,8 +81,8 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
 
 def test_orders_carry_their_sign():
     sizes = [1.0, 0.5, 0.25, 0.125]
-    assert order(sizes, [s**2 for s in sizes]) == pytest.approx(2)
-    assert order(sizes, [1 / s for s in sizes]) == pytest.approx(-1)
+    assert fitted_order(sizes, [s**2 for s in sizes]) == pytest.approx(2)
+    assert fitted_order(sizes, [1 / s for s in sizes]) == pytest.approx(-1)
 
 
 @pytest.mark.long

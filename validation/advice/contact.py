@@ -137,7 +137,7 @@ def needed(
     probe
         Function of p that returns how deep the exact block goes [m], None where there is no answer.
     """
-    static = abs(opened.pushing(scene)) / (2 * penetration)
+    static = abs(opened.resultant_load(scene)) / (2 * penetration)
     landed = landing.springs_for(scene, speed, penetration) if speed else 0.0
     p = max(static, landed) or scene.contact.stiffness  # without load and speed any springs do
     enough, depth = p, probe(p) if probe else None

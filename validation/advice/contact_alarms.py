@@ -159,7 +159,7 @@ def _drag(seen: Seen) -> Iterator[Alarm]:
 def _pulling(seen: Seen) -> Iterator[Alarm]:
     scene = seen.scene
     pull = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
-    load = abs(opened.pushing(scene)) or contact.impact_force(scene, scene.block.velocity)
+    load = abs(opened.resultant_load(scene)) or contact.impact_force(scene, scene.block.velocity)
     if pull > NOTABLE * load:
         share = f", {100 * pull / load:.3g} % of the load" if load else ""
         yield seen.alarm(PULLING, f"the band lets the contact pull with up to {pull:.3g} N{share}", pull=pull)

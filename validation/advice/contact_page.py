@@ -252,7 +252,7 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
     why = "Asked for" if asked["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
         f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
-        f"landing at {found['landing_speed']:.4g} m/s under {abs(opened.pushing(scene)):.4g} N."
+        f"landing at {found['landing_speed']:.4g} m/s under {abs(opened.resultant_load(scene)):.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     ratio = need["stiffness"] / scene.block.young
@@ -273,7 +273,7 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
 
 def _at_rest(scene: Scene, stiffness: float) -> float:
     """Return how far springs give way under the load at rest [m]."""
-    return abs(opened.pushing(scene)) / (2 * stiffness)
+    return abs(opened.resultant_load(scene)) / (2 * stiffness)
 
 
 def _step_lines(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:

@@ -15,8 +15,12 @@ if TYPE_CHECKING:
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
 
-PASSED, GATE_FAILED, BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 0, 1, 2, 3, 130
-SLOW = 2.0  # seconds after which progress is shown
+PASSED = 0
+GATE_FAILED = 1
+BAD_INPUT = 2
+NUMERICAL_FAILURE = 3
+INTERRUPTED = 130
+PROGRESS_DELAY = 2.0  # s of work before progress is shown
 app: typer.Typer = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="rich",
@@ -127,7 +131,7 @@ def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
 
 @contextmanager
 def _progress(
-    title: str, shown: bool = True, *, between_calls: bool = False
+    title: str, visible: bool = True, *, between_calls: bool = False
 ) -> Iterator[Callable[[int, int, str], None]]:
     """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds.
 
@@ -151,14 +155,14 @@ def _progress(
     )
     task = bar.add_task(title, label="")
 
-    def show(done: int, total: int, label: str) -> None:
-        if shown and time.monotonic() - start > SLOW and not bar.live.is_started:
+    def show(completed: int, total: int, label: str) -> None:
+        if visible and time.monotonic() - start > PROGRESS_DELAY and not bar.live.is_started:
             bar.start()
-        bar.update(task, completed=done, total=total, label=label)
+        bar.update(task, completed=completed, total=total, label=label)
 
-    timer = threading.Timer(SLOW, bar.start)
+    timer = threading.Timer(PROGRESS_DELAY, bar.start)
     timer.daemon = True
-    if shown and between_calls:
+    if visible and between_calls:
         timer.start()
     try:
         yield show

@@ -14,7 +14,7 @@ from validation.cli.printing.output import echo
 if TYPE_CHECKING:
     from validation.compare.diagnosis import Answer
 
-SHOWN = 6  # lines of the ranking
+RANKING_LINES = 6
 
 
 @app.command()
@@ -67,10 +67,10 @@ def compare(
         raise typer.Exit(1)
 
 
-def _listed(one: dict[str, Any]) -> str:
+def _listed(alternative: dict[str, Any]) -> str:
     """Return causes with their numbers."""
-    values = one["values"]
-    return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in one["causes"])
+    values = alternative["values"]
+    return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])
 
 
 def _print(answer: Answer) -> None:
@@ -84,8 +84,9 @@ def _print(answer: Answer) -> None:
         for name in answer.causes:
             number = f"{answer.values[name]:.5g}" if name in answer.values else ""
             echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
-    for one in answer.alike:
-        echo(f"\n{_listed(one)} would give the same history here; to tell them apart, try {one['further_scene']}")
+    for alternative in answer.alike:
+        further = alternative["further_scene"]
+        echo(f"\n{_listed(alternative)} would give the same history here; to tell them apart, try {further}")
     if answer.evidence:
         echo("\nevidence")
         for stage in answer.evidence:
@@ -94,9 +95,9 @@ def _print(answer: Answer) -> None:
     if answer.opened:
         echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
     echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
-    for row in answer.ranking[:SHOWN]:
-        soft = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
-        name = row["name"] or ("exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}")
-        echo(f"  {row['model']:<10} {name:<24} {per_cent(row['misfit']):>10} {soft:>14}")
+    for row in answer.ranking[:RANKING_LINES]:
+        compliance = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
+        scheme = "exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}"
+        echo(f"  {row['model']:<10} {row['name'] or scheme:<24} {per_cent(row['misfit']):>10} {compliance:>14}")
     for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
         echo(line)

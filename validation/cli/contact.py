@@ -60,11 +60,11 @@ def contact(
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
         probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
-        found = contact_page.answer(case, rows, error, penetration, probe)
+        contact_answer = contact_page.answer(case, rows, error, penetration, probe)
     if as_json:
-        echo(json.dumps(contact_page.plain(found | {"absent": absent}), indent=1, allow_nan=False))
+        echo(json.dumps(contact_page.plain(contact_answer | {"absent": absent}), indent=1, allow_nan=False))
     else:
-        echo("\n".join(contact_page.page(case, found, absent)))
+        echo("\n".join(contact_page.page(case, contact_answer, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
@@ -100,9 +100,10 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
 
-    rows, absent = {}, {}
-    for done, (name, scene) in enumerate(scenes.items()):
-        progress(done, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
+    rows: dict[str, Row] = {}
+    absent: dict[str, str] = {}
+    for number, (name, scene) in enumerate(scenes.items()):
+        progress(number, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
         row, _ = execute(Case(scene, name), "", "contact")
         if name == own():
             refuse_bad_input(scene.name, name, row)

@@ -29,11 +29,11 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
     """
     from validation.advice.spectra import damping as analyse
 
-    found = analyse(one_case(scene, assignments), references=True)
+    analysis = analyse(one_case(scene, assignments), references=True)
     if as_json:
-        echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+        echo(json.dumps(analysis.as_dict(), indent=1, allow_nan=False))
     else:
-        _print_damping(found)
+        _print_damping(analysis)
 
 
 @app.command()
@@ -77,9 +77,8 @@ def advise(
     from validation.errors import InputError
 
     if (damping is None) == (fmax is None):
-        raise InputError(
-            f"--damping, --fmax: one of them must be given, got {'neither' if damping is None else 'both'}"
-        )
+        number = "neither" if damping is None else "both"
+        raise InputError(f"--damping, --fmax: one of them must be given, got {number}")
     if damping is None:
         _advise_wave(one_case(scene, assignments), float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:
@@ -90,33 +89,41 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
     """Say what the present blocks and step do to a wave, and which would do."""
     from validation.advice.wave_advice import advise_wave
 
-    found = advise_wave(case, fmax, *limits)
+    wave_advice = advise_wave(case, fmax, *limits)
     if as_json:
-        echo(json.dumps(found.as_dict(), indent=1, allow_nan=False))
+        echo(json.dumps(wave_advice.as_dict(), indent=1, allow_nan=False))
         return
-    echo(f"{broken(found.sentence)}\n{broken(found.advice)}\n")
+    echo(f"{broken(wave_advice.sentence)}\n{broken(wave_advice.advice)}\n")
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
-    for name, passage in (("present", found.present), ("advised", found.advised)):
-        if passage is not None:
-            shares = f"{100 * passage.loss:.4g} %", f"{passage.delay:+.4g}", f"{100 * passage.damping + 0.0:.4g} %"
-            rows.append((name, ", ".join(f"{h:.5g}" for h in passage.heights), f"{passage.step:.6g}", *shares))
+    for name, passage in (("present", wave_advice.present), ("advised", wave_advice.advised)):
+        if passage is None:
+            continue
+        row = (
+            name,
+            ", ".join(f"{height:.5g}" for height in passage.heights),
+            f"{passage.step:.6g}",
+            f"{100 * passage.loss:.4g} %",
+            f"{passage.delay:+.4g}",
+            f"{100 * passage.damping + 0.0:.4g} %",
+        )
+        rows.append(row)
     print_table(rows)
 
 
 def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) -> None:
     """Find the time step, discount or scheme that gives a target damping ratio."""
-    from validation.advice.advice import advise as solve
+    from validation.advice.advice import advise as solve_for_damping
     from validation.advice.advice import expected_errors
 
-    found = solve(case, damping, solve_for)
-    errors = [expected_errors(case, solution) for solution in found.solutions]
+    advice = solve_for_damping(case, damping, solve_for)
+    errors = [expected_errors(case, solution) for solution in advice.solutions]
     if as_json:
-        data = found.as_dict()
+        data = advice.as_dict()
         for solution, error in zip(data["solutions"], errors, strict=True):
             solution["errors"] = error
         echo(json.dumps(data, indent=1, allow_nan=False))
     else:
-        _print_advice(found, errors)
+        _print_advice(advice, errors)
 
 
 @app.command()
@@ -147,10 +154,10 @@ def claims(
         write_atomically(out, lambda stream: stream.write(text.encode()))
 
 
-def _print_damping(found: Damping) -> None:
-    rate = "" if found.gg_rate is None else f", c = {found.gg_rate:.4g} 1/s"
-    echo(f"{broken(found.sentence)}\n\ngg = {found.gg:.6g} per step{rate}")
-    tables = any(mode.viscous for mode in found.modes)
+def _print_damping(analysis: Damping) -> None:
+    rate = "" if analysis.gg_rate is None else f", c = {analysis.gg_rate:.4g} 1/s"
+    echo(f"{broken(analysis.sentence)}\n\ngg = {analysis.gg:.6g} per step{rate}")
+    tables = any(mode.viscous for mode in analysis.modes)
     parts = ("algorithmic", "kinetic", "viscous") if tables else ("algorithmic", "kinetic")
     heads = ("mode", "w [rad/s]", "w dt", "xi [%]", *parts, "|lambda|", "w/w' - 1")
     rows = [
@@ -162,25 +169,25 @@ def _print_damping(found: Damping) -> None:
             f"{mode.spectral_radius:.6g}",
             "-" if mode.period_elongation is None else f"{mode.period_elongation:.3g}",
         )
-        for mode in found.modes
+        for mode in analysis.modes
     ]
     rows += [
         (f"{name}, first", f"{values['frequency']:.6g}", "", _percent(values["damping"]), *[""] * (len(parts) + 2))
-        for name, values in found.references.items()
+        for name, values in analysis.references.items()
     ]
     print_table([heads, *rows])
-    if found.alias is not None:
-        first = found.references["bar"]["frequency"] or 0.0
-        said = (
-            f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = {math.pi / found.step:.6g} "
-            f"rad/s; samples every dt show {found.alias:.6g} rad/s instead"
+    if analysis.alias is not None:
+        first = analysis.references["bar"]["frequency"] or 0.0
+        alias_note = (
+            f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = "
+            f"{math.pi / analysis.step:.6g} rad/s; samples every dt show {analysis.alias:.6g} rad/s instead"
         )
-        echo(f"\n{broken(said)}")
+        echo(f"\n{broken(alias_note)}")
 
 
-def _print_advice(found: Advice, errors: list[dict[str, Any]]) -> None:
-    echo(broken(found.sentence))
-    for solution, error in zip(found.solutions, errors, strict=True):
+def _print_advice(advice: Advice, errors: list[dict[str, Any]]) -> None:
+    echo(broken(advice.sentence))
+    for solution, error in zip(advice.solutions, errors, strict=True):
         echo(f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}")
         echo(in_columns(_facts(solution, error), terminal_width()))
 
@@ -200,9 +207,11 @@ def _facts(solution: Solution, error: dict[str, Any]) -> list[tuple[str, ...]]:
         facts.append(("contact mode", runs(solution.contact)))
     for name in ("fem", "continuum"):
         values = error.get(name, {})
-        said = ", ".join(f"{q} {100 * v:.3g} %" for q, v in values.items() if isinstance(v, float))
-        window = f" over {error['window']:.4g} s (relative L2)" if said else ""
-        facts.append((f"differs from {name} by", (said or "; ".join(map(str, values.values()))) + window))
+        differences = [f"{key} {100 * value:.3g} %" for key, value in values.items() if isinstance(value, float)]
+        text = "; ".join(map(str, values.values()))
+        if differences:
+            text = f"{', '.join(differences)} over {error['window']:.4g} s (relative L2)"
+        facts.append((f"differs from {name} by", text))
     return [(f"  {key}", value) for key, value in facts]
 
 

@@ -13,7 +13,7 @@ import typer
 from validation.cli import compare, contact, damping, gallery, judge, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import echo, prepare, silence
-from validation.cli.signals import caught, end
+from validation.cli.signals import end, interruptible
 from validation.errors import InputError
 from validation.runs.text import printable
 
@@ -49,17 +49,17 @@ OUT_OF_RANGE = (
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
-def _place(name: str | None) -> int:
+def _position(name: str | None) -> int:
     return FIRST.index(name) if name in FIRST else len(FIRST)
 
 
 for command in app.registered_commands:  # typer keeps the line breaks of a docstring, which are not those of a terminal
     paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
-app.registered_commands.sort(key=lambda command: _place(command.name or getattr(command.callback, "__name__", None)))
+app.registered_commands.sort(key=lambda command: _position(command.name or getattr(command.callback, "__name__", None)))
 
 
-@caught()
+@interruptible()
 def main() -> None:
     """Run the command line; bad input is one line and status 2, an interruption 130, or 128 and the signal."""
     prepare()
@@ -67,11 +67,11 @@ def main() -> None:
         # Where numbers leave the range a library's warning is no text for a terminal, and our own ends the command.
         warnings.filterwarnings("ignore", category=RuntimeWarning)
         warnings.filterwarnings("error", category=RuntimeWarning, module=r"(dda|fem_reference|validation)(\.|$)")
-        status = _guarded(lambda: command_line()(standalone_mode=False))
+        status = _exit_status(lambda: command_line()(standalone_mode=False))
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
-        _guarded(sys.stdout.flush)
+        _exit_status(sys.stdout.flush)
         end()
-    sys.exit(_guarded(sys.stdout.flush) or status)
+    sys.exit(_exit_status(sys.stdout.flush) or status)
 
 
 @cache
@@ -80,39 +80,39 @@ def command_line() -> Callable[..., object]:
     return typer.main.get_command(app)
 
 
-def _guarded(act: Callable[[], object]) -> int:
+def _exit_status(command: Callable[[], object]) -> int:
     """Return the status of a command, or of an error, which is one line."""
     try:
-        status = act()
+        status = command()
         return status if isinstance(status, int) else PASSED
     except InputError as error:
-        return _said(f"error: {printable(str(error))}")
+        return _print_error(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
         message: str = error.format_message()  # type: ignore[attr-defined]
         if not message:  # no command: typer has printed none of its help
             echo(_help())
             return BAD_INPUT
-        return _said(f"error: {printable(message)} (see dda-validate --help)")
+        return _print_error(f"error: {printable(message)} (see dda-validate --help)")
     except (KeyboardInterrupt, typer.Abort) as stop:
         if isinstance(stop.__cause__, EOFError):  # typer takes it for the end of an answer; nothing is asked here
             raise stop.__cause__ from None
         return INTERRUPTED
     except MemoryError:
-        return _said(
+        return _print_error(
             "error: there is not enough memory; take fewer steps, points, elements or worker processes (--jobs)"
         )
     except (ArithmeticError, RuntimeWarning) as error:
-        return _said(f"error: {OUT_OF_RANGE} ({_last(error)})")
+        return _print_error(f"error: {OUT_OF_RANGE} ({_last_argument(error)})")
     except (RuntimeError, ValueError) as error:
         if not _is_numerical(error):
             raise
-        return _said(f"error: {OUT_OF_RANGE} ({_last(error)})")
+        return _print_error(f"error: {OUT_OF_RANGE} ({_last_argument(error)})")
     except BrokenPipeError:  # what decides a status has been said before
         silence()
         return PASSED
     except OSError as error:
         silence()
-        return _said(f"error: {error.filename or 'standard output'}: {error.strerror or error}")
+        return _print_error(f"error: {error.filename or 'standard output'}: {error.strerror or error}")
 
 
 def _help() -> str:
@@ -128,11 +128,12 @@ def _is_numerical(error: Exception) -> bool:
     )
 
 
-def _last(error: BaseException) -> str:
+def _last_argument(error: BaseException) -> str:
     """Return what an error says in the end: errors of the system come with their number."""
-    return printable(str(error.args[-1] if error.args else type(error).__name__))
+    last = error.args[-1] if error.args else type(error).__name__
+    return printable(str(last))
 
 
-def _said(line: str) -> int:
+def _print_error(line: str) -> int:
     echo(line, err=True)
     return BAD_INPUT

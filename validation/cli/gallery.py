@@ -28,8 +28,8 @@ def gallery(
     from validation.gallery.site import build, size
     from validation.runs.results import Results
 
-    kept = Results(results)
+    store = Results(results)
     with _progress("gallery") as progress:
-        page = build(kept, out, progress)
-    print_unread(kept)
+        page = build(store, out, progress)
+    print_unread(store)
     echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

@@ -58,9 +58,11 @@ def judge(
     my_solver:solve[/bold]
     """
     with _progress("judge") as progress:
-        judged, program = _judged(target, solver, scene, assignments, progress)
-        place = out or (Path(target) if solver is None else None)
-        written = [] if place is None else _written(judged, program, place, progress)
+        judged, program = _judge_target(target, solver, scene, assignments, progress)
+        directory = out
+        if directory is None and solver is None:
+            directory = Path(target)
+        written = [] if directory is None else _write_page(judged, program, directory, progress)
     if as_json:
         echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
     else:
@@ -69,7 +71,7 @@ def judge(
         raise typer.Exit(GATE_FAILED)
 
 
-def _judged(
+def _judge_target(
     target: str, solver: str | None, scene: str | None, assignments: list[str] | None, progress: Any
 ) -> tuple[Judged, str]:
     from validation.errors import InputError
@@ -80,38 +82,41 @@ def _judged(
     if solver is not None:
         if scene is not None:
             raise InputError(f"--scene: goes with a submission, got it with --solver {solver}; name the scene first")
-        return _of_solver(target, solver, assignments, progress)
+        return _judge_solver(target, solver, assignments, progress)
     if assignments and scene is None:
         raise InputError("--set: goes with --scene or --solver, got it with a problem of the pack")
-    own = None if scene is None else problem_of(one_case(scene, assignments))
+    scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
     progress(0, 3, "reading, and the exact motion")
-    found = read_submission(Path(target), own)
-    data = found.data
+    submission = read_submission(Path(target), scene_problem)
+    data = submission.data
     about = [(field, printable(getattr(data, field))) for field in ("program", "version", "settings", "who")]
-    about += [("not reported", ", ".join(data.not_reported))] if data.not_reported else []
+    if data.not_reported:
+        about.append(("not reported", ", ".join(data.not_reported)))
     name = printable(f"{data.program} {data.version}")
-    return _with_cause(found.problem, found.history, tuple(about), progress), name
+    return _judge_history(submission.problem, submission.history, tuple(about), progress), name
 
 
-def _of_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[Judged, str]:
+def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[Judged, str]:
     from validation.engine.measure import completed
     from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
     from validation.solvers.registry import get_solver
     from validation.solvers.user import SAME_AS, UserSolver
 
-    case = one_case(PREFIX + target if target in PROBLEMS else target, assignments)
-    asked: Problem = problem(target) if target in PROBLEMS and not assignments else problem_of(case)
-    chosen = get_solver(solver)
+    of_pack = target in PROBLEMS
+    source = PREFIX + target if of_pack else target
+    case = one_case(source, assignments)
+    posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
+    adapter = get_solver(solver)
     progress(0, 3, f"{case.name} {solver}")
-    run = completed(chosen, case)
-    history = _history(run, case.name, solver)
-    if not isinstance(chosen, UserSolver):
-        return _with_cause(asked, history, (("solver", solver),), progress), solver
+    run = completed(adapter, case)
+    history = _completed_history(run, case.name, solver)
+    if not isinstance(adapter, UserSolver):
+        return _judge_history(posed_problem, history, (("solver", solver),), progress), solver
     warnings = [f"It is {note}: the suite's own solver was judged." for note in run.notes if note.startswith(SAME_AS)]
     if sum(run.seconds.values()) < REPEATED_WITHIN:
-        warnings += _not_repeatable(history, completed(chosen, case).history)
-    about = (("solver", solver), *chosen.about().items())
-    return _with_cause(asked, history, about, progress, warnings), solver
+        warnings += _not_repeatable(history, completed(adapter, case).history)
+    about = (("solver", solver), *adapter.about().items())
+    return _judge_history(posed_problem, history, about, progress, warnings), solver
 
 
 def _not_repeatable(history: History, again: History | None) -> list[str]:
@@ -128,7 +133,7 @@ def _not_repeatable(history: History, again: History | None) -> list[str]:
     return [f"Not repeatable: a second run differs {size} (relative L2); the verdict may change from run to run."]
 
 
-def _history(run: Run, case: str, solver: str) -> History:
+def _completed_history(run: Run, case: str, solver: str) -> History:
     """Return the history of a run, or end the command with what it ended in."""
     from validation.errors import InputError
     from validation.runs.run import Outcome
@@ -144,7 +149,7 @@ def _history(run: Run, case: str, solver: str) -> History:
     return run.history
 
 
-def _with_cause(
+def _judge_history(
     problem: Problem,
     history: History,
     about: tuple[tuple[str, str], ...],
@@ -158,23 +163,23 @@ def _with_cause(
     from validation.report.chapters.judged import Judged
 
     progress(1, 3, "the exact motion and the bands")
-    held: Standard = standard(problem)
-    found = judgement_of(problem, history, held)
-    why = None
-    if found.word is Word.FAIL:
+    bands: Standard = standard(problem)
+    judgement = judgement_of(problem, history, bands)
+    identified_cause = None
+    if judgement.word is Word.FAIL:
         from validation.problems.cause import cause
 
         progress(2, 3, "the cause")
-        why = cause(problem, history, held)
-    if is_identical(history, held.exact):
+        identified_cause = cause(problem, history, bands)
+    if is_identical(history, bands.exact):
         warnings = [
             *warnings,
             "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back.",
         ]
-    return Judged(problem, history, held, found, why, about, tuple(warnings))
+    return Judged(problem, history, bands, judgement, identified_cause, about, tuple(warnings))
 
 
-def _written(judged: Judged, program: str, place: Path, progress: Any) -> list[Path]:
+def _write_page(judged: Judged, program: str, place: Path, progress: Any) -> list[Path]:
     from validation.errors import InputError
     from validation.gallery.judged import write_judged
 
@@ -192,15 +197,15 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
 
     columns = [
         {
-            "column": united(one.name),
-            "verdict": str(one.word),
-            "error": one.error if one.error is None or one.error < float("inf") else "inf",
-            "allowed": one.band,
-            "until_s": one.until,
-            "within_until_s": one.within,
-            "reason": one.reason,
+            "column": united(column.name),
+            "verdict": str(column.word),
+            "error": column.error if column.error is None or column.error < float("inf") else "inf",
+            "allowed": column.band,
+            "until_s": column.until,
+            "within_until_s": column.within,
+            "reason": column.reason,
         }
-        for one in judged.judgement.columns
+        for column in judged.judgement.columns
     ]
     why = judged.cause
     return {
@@ -216,9 +221,9 @@ def as_data(judged: Judged, program: str) -> dict[str, Any]:
     }
 
 
-def _cause_data(why: Cause) -> dict[str, Any]:
-    told = {"sentence": why.sentence, "ids": list(why.ids), "values": why.values}
-    return told | ({"would_tell": why.would_tell} if why.would_tell else {})
+def _cause_data(cause: Cause) -> dict[str, Any]:
+    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
 
 
 def _print(judged: Judged, program: str, written: list[Path]) -> None:
@@ -239,8 +244,10 @@ def _print(judged: Judged, program: str, written: list[Path]) -> None:
         if judged.cause.would_tell:
             echo(f"what would tell: {judged.cause.would_tell}")
     echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
-    for one in judged.judgement.columns:
-        why = datum(one, judged.held) or one.reason
-        echo(f"  {united(one.name):<25} {one.word:<12} {per_cent(one.error):>11} {per_cent(one.band):>8}  {why}")
+    for column in judged.judgement.columns:
+        why = datum(column, judged.held) or column.reason
+        error = per_cent(column.error)
+        allowed = per_cent(column.band)
+        echo(f"  {united(column.name):<25} {column.word:<12} {error:>11} {allowed:>8}  {why}")
     for path in written:
         echo(f"wrote {path}")

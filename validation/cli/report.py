@@ -29,17 +29,17 @@ def report(
 
     if out.suffix.lower() != ".pdf":
         raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
-    kept = Results(results)
-    page = build(kept, out)
-    print_unread(kept)
+    store = Results(results)
+    page = build(store, out)
+    print_unread(store)
     echo(f"wrote {page}")
 
 
-def print_unread(kept: Results) -> None:
+def print_unread(results: Results) -> None:
     """Say which studies this version cannot read, and why."""
     from validation.report.book import ordered_studies, unread_studies
 
-    for study, reason in unread_studies(kept, ordered_studies(kept)).items():
+    for study, reason in unread_studies(results, ordered_studies(results)).items():
         echo(f"note: {study} is left out: {reason}", err=True)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import time
@@ -15,10 +16,9 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from validation.cli.printing.answer import Ran
-    from validation.engine.measured import Judged
+    from validation.cli.printing.answer import RunAnswer
+    from validation.engine.measured import JudgedStudy
     from validation.gates.gate import Verdict
-    from validation.runs.records import Judged as Kept
     from validation.runs.results import Results
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
@@ -46,7 +46,7 @@ from validation.cli.app import (
 from validation.cli.printing.output import echo
 from validation.cli.signals import promise_rows
 
-FEW = 12  # gates of a scene that are shown one by one unasked
+GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
 @app.command("list")
@@ -107,33 +107,52 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.cli.printing.output import heard
+    from validation.cli.printing.answer import RunAnswer, as_data
+    from validation.cli.printing.output import tolerate_closed_pipe
+    from validation.cli.printing.tables import after_run
+    from validation.engine.measured import complaints, missing_gates
+    from validation.errors import InputError
+    from validation.gates.changes import read_verdicts
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.solvers.registry import is_solver, solver_names
+    from validation.studies.catalogue import STUDIES, resolve
+    from validation.studies.field.programs import known
 
-    _one_of({"--verbose": verbose, "--json": as_json, "--quiet": quiet})
+    output_options = {"--verbose": verbose, "--json": as_json, "--quiet": quiet}
+    exclusive = [option for option, is_set in output_options.items() if is_set]
+    if len(exclusive) > 1:
+        raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other, got both")
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
-    kept, required = Results(results), require or []
-    before = _checked_baseline(kept, required, summary, baseline)
-    runs, seconds = _judged(studies, kept, Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler), not quiet)
-    ran = _answered(runs, seconds, kept, required, summary, before)
-    with heard():
+    store = Results(results)
+    required = require or []
+    # What would be refused at the end is refused before anything runs.
+    adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
+    for name in required:
+        if not is_solver(name) and name not in adapters:
+            raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
+    if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
+        raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
+    store.check()
+    before = None if baseline is None else read_verdicts(baseline)
+
+    machine = Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler)
+    runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
+    names = [judged.study.name for judged in runs]
+    records = list(itertools.chain.from_iterable(map(store.verdicts, names)))
+    changes = after_run(records, names, summary, before)
+    worse = None if changes is None else any(change.worse for change in changes)
+    messages = [*complaints(runs), *missing_gates(runs, required)]
+    verdicts = list(itertools.chain.from_iterable(judged.verdicts for judged in runs))
+    status = _status(verdicts, required, any(judged.refused for judged in runs), worse, messages)
+    answer = RunAnswer(runs, seconds, store, messages, changes, frozenset(names) - set(STUDIES), status)
+    with tolerate_closed_pipe():
         if as_json:
-            _print_data(ran)
+            echo(json.dumps(as_data(answer), indent=1, allow_nan=False))
         elif not quiet:
-            _print_answer(ran, verbose)
-    raise typer.Exit(ran.status)
-
-
-def _one_of(options: dict[str, bool]) -> None:
-    """Refuse options that exclude each other."""
-    from validation.errors import InputError
-
-    given = [name for name, is_set in options.items() if is_set]
-    if len(given) > 1:
-        raise InputError(f"{given[0]}, {given[1]}: exclude each other, got both")
+            _print_answer(answer, verbose)
+    raise typer.Exit(status)
 
 
 @dataclass(frozen=True)
@@ -146,96 +165,53 @@ class Machine:
     scheduler: str | None
 
 
-def _judged(studies: Sequence[Study], kept: Results, machine: Machine, shown: bool) -> tuple[list[Judged], list[float]]:
+def _run_studies(
+    studies: Sequence[Study], results: Results, machine: Machine, show_progress: bool
+) -> tuple[list[JudgedStudy], list[float]]:
     """Run the studies one after the other; return what was judged and the seconds of each."""
     from validation.cli.printing.tables import outcomes
     from validation.engine.cluster import executor
-    from validation.engine.measured import Judged
+    from validation.engine.measured import JudgedStudy
     from validation.engine.run import run_study
 
-    runs, seconds = [], []
+    runs: list[JudgedStudy] = []
+    seconds: list[float] = []
     with executor(machine.scheduler) as pool:
         for study in studies:
             start = time.monotonic()
-            with _progress(study.name, shown) as progress:
+            with _progress(study.name, show_progress) as progress:
                 verdicts = run_study(
                     study,
-                    kept,
+                    results,
                     full=machine.full,
                     ranks=machine.ranks,
                     jobs=machine.jobs,
                     executor=pool,
                     progress=progress,
                 )
-            runs.append(Judged(study, verdicts, outcomes(kept, study.name)))
+            runs.append(JudgedStudy(study, verdicts, outcomes(results, study.name)))
             seconds.append(time.monotonic() - start)
     return runs, seconds
 
 
-def _answered(
-    runs: Sequence[Judged],
-    seconds: Sequence[float],
-    kept: Results,
-    required: list[str],
-    summary: Path | None,
-    before: Sequence[Kept] | None,
-) -> Ran:
-    """Write the summary, compare with the baseline, and return all there is to say with the exit status."""
-    from validation.cli.printing.answer import Ran
-    from validation.cli.printing.tables import after_run
-    from validation.engine.measured import complaints, wanting
-    from validation.studies.catalogue import STUDIES
-
-    names = [run.study.name for run in runs]
-    since = after_run([v for name in names for v in kept.verdicts(name)], names, summary, before)
-    worse = None if since is None else any(change.worse for change in since)
-    messages = [*complaints(runs), *wanting(runs, required)]
-    verdicts = [verdict for run in runs for verdict in run.verdicts]
-    status = _status(verdicts, required, any(run.refused for run in runs), worse, messages)
-    return Ran(runs, seconds, kept, messages, since, frozenset(names) - set(STUDIES), status)
-
-
-def _print_data(ran: Ran) -> None:
-    from validation.cli.printing.answer import as_data
-
-    echo(json.dumps(as_data(ran), indent=1, allow_nan=False))
-
-
-def _print_answer(ran: Ran, verbose: bool) -> None:
+def _print_answer(answer: RunAnswer, verbose: bool) -> None:
     """Print every gate where there are few or all are asked for, then the answer, then what to do with a scene."""
     from validation.cli.printing import tables
     from validation.cli.printing.answer import lines
     from validation.cli.printing.output import width
     from validation.scenes.scene import scene_names
 
-    if ran.verdicts and (verbose or (ran.own and len(ran.verdicts) <= FEW)):
-        tables.print_verdicts(ran.verdicts, ran.results, ran.names)
+    if answer.verdicts and (verbose or (answer.user_scenes and len(answer.verdicts) <= GATES_LISTED)):
+        tables.print_verdicts(answer.verdicts, answer.results, answer.names)
     if verbose:
-        tables.print_ends(ran.results, ran.names)
-    tables.print_lines(lines(ran, width()))
-    if ran.changes is not None:
-        tables.print_changes(list(ran.changes))
-    for name in [run.study.name for run in ran.runs if run.study.name in ran.own and not run.verdicts]:
-        tables.print_differences(ran.results, name, name not in scene_names())
-
-
-def _checked_baseline(
-    kept: Results, required: list[str], summary: Path | None, baseline: Path | None
-) -> list[Kept] | None:
-    """Check before anything runs what would be refused at the end; return the baseline's verdicts."""
-    from validation.errors import InputError
-    from validation.gates.changes import read_verdicts
-    from validation.solvers.registry import is_solver, solver_names
-    from validation.studies.field.programs import known
-
-    adapted = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
-    for name in required:
-        if not is_solver(name) and name not in adapted:
-            raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
-    if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
-        raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
-    kept.check()
-    return None if baseline is None else read_verdicts(baseline)
+        tables.print_ends(answer.results, answer.names)
+    tables.print_lines(lines(answer, width()))
+    if answer.changes is not None:
+        tables.print_changes(list(answer.changes))
+    for judged in answer.runs:
+        name = judged.study.name
+        if name in answer.user_scenes and not judged.verdicts:
+            tables.print_differences(answer.results, name, name not in scene_names())
 
 
 @app.command()
@@ -263,32 +239,34 @@ def solve(
     from validation.runs.run import Outcome
     from validation.solvers.registry import FULL, distributed, get_solver
 
-    chosen = get_solver(solver)
-    if ranks > 1 and not chosen.distributed:
-        raise InputError(f"--ranks: goes with {', '.join(distributed())}, got {solver!r}")
-    chosen = chosen if ranks == 1 else chosen.option(str(ranks))
-    case, solver = one_case(scene, assignments), solver if ranks == 1 else f"{solver}:{ranks}"
+    adapter = get_solver(solver)
+    if ranks > 1:
+        if not adapter.distributed:
+            raise InputError(f"--ranks: goes with {', '.join(distributed())}, got {solver!r}")
+        adapter = adapter.option(str(ranks))
+        solver = f"{solver}:{ranks}"
+    case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
-    done = _solved(chosen, case, full or solver.endswith(FULL), fields)
-    refuse_bad_input(case.name, solver, done)
-    if csv is not None and done.outcome is Outcome.COMPLETED and done.history is not None:
-        write_csv(done.history, csv)
-    if done.outcome is Outcome.NOT_RUN:
-        raise InputError(f"NOT RUN: {'; '.join(done.notes)}")
-    for note in done.notes:
+    ended = _run_case(adapter, case, full or solver.endswith(FULL), fields)
+    refuse_bad_input(case.name, solver, ended)
+    if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
+        write_csv(ended.history, csv)
+    if ended.outcome is Outcome.NOT_RUN:
+        raise InputError(f"NOT RUN: {'; '.join(ended.notes)}")
+    for note in ended.notes:
         echo(f"note: {note}", err=True)
-    if done.outcome is not Outcome.COMPLETED:
-        echo(f"{case.name} {solver}: {done.outcome}: {done.outcome.sentence}")
+    if ended.outcome is not Outcome.COMPLETED:
+        echo(f"{case.name} {solver}: {ended.outcome}: {ended.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
-    _print_run(case, solver, done)
+    _print_run(case, solver, ended)
 
 
 class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _solved(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run:
+def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run:
     """Run a case; a file of fields takes its name only when the run has completed."""
     from validation.engine.measure import completed
     from validation.errors import InputError
@@ -298,17 +276,17 @@ def _solved(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run
     if fields is None:
         return completed(solver, case, full)
     with suppress(_Abandoned), atomic_path(fields) as part:
-        done = completed(solver, case, full, part)
-        if done.outcome is not Outcome.COMPLETED:
+        run = completed(solver, case, full, part)
+        if run.outcome is not Outcome.COMPLETED:
             raise _Abandoned
         if part.stat().st_size == 0:
             raise InputError(f"--fields: {solver.name} has written none, got {str(fields)!r}")
-    return done
+    return run
 
 
-def _print_run(case: Scene, solver: str, done: Run) -> None:
-    work = ", ".join(f"{count} {name}" for name, count in done.work.items())
-    last = {name: float(values[-1]) for name, values in done.history.columns.items()} if done.history else {}
+def _print_run(case: Scene, solver: str, run: Run) -> None:
+    work = ", ".join(f"{count} {name}" for name, count in run.work.items())
+    last = {name: float(values[-1]) for name, values in run.history.columns.items()} if run.history else {}
     ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
     echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 

@@ -13,13 +13,13 @@ from typing import NoReturn
 
 from validation.cli.app import INTERRUPTED
 
-CAUGHT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-PATIENCE = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
-LAST_WORDS = b"interrupted\n"
-ROWS_KEPT = b"interrupted: finished rows are kept; run the same command again to continue\n"
+HANDLED_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+GRACE_PERIOD = 1.0  # s for the orderly end, which a library's long call or a swallowed interruption may put off
+INTERRUPTED_MESSAGE = b"interrupted\n"
+RESUMABLE_MESSAGE = b"interrupted: finished rows are kept; run the same command again to continue\n"
 _received: list[int] = []
-_unsaid = [LAST_WORDS]
-_saying = threading.RLock()
+_pending_messages = [INTERRUPTED_MESSAGE]
+_message_lock = threading.RLock()
 _watchers: list[threading.Thread] = []
 
 
@@ -29,21 +29,22 @@ def end() -> NoReturn:
     Past the stream, which another thread may be holding, and past the pool's own exit, which may wait for a worker
     that is gone.
     """
-    with _saying, suppress(OSError):
-        while _unsaid:
-            os.write(2, _unsaid.pop())
-    os._exit(128 + _received[0] if _received else INTERRUPTED)
+    with _message_lock, suppress(OSError):
+        while _pending_messages:
+            os.write(2, _pending_messages.pop())
+    status = 128 + _received[0] if _received else INTERRUPTED
+    os._exit(status)
 
 
 def promise_rows() -> None:
     """Have an interruption say from now on that finished rows are kept: the command keeps each as soon as it ends."""
-    if _unsaid:
-        _unsaid[:] = [ROWS_KEPT]
+    if _pending_messages:
+        _pending_messages[:] = [RESUMABLE_MESSAGE]
 
 
 @contextmanager
-def caught() -> Iterator[None]:
-    """Turn the first signal into a KeyboardInterrupt; a second one, or `PATIENCE` seconds, ends the process.
+def interruptible() -> Iterator[None]:
+    """Turn the first signal into a KeyboardInterrupt; a second one, or `GRACE_PERIOD` seconds, ends the process.
 
     What a signal's owner has chosen to ignore (nohup) stays ignored. Threads other than the main one, which Python
     lets set no handlers, are left as they are.
@@ -52,11 +53,13 @@ def caught() -> Iterator[None]:
         yield
         return
     _received.clear()
-    _unsaid[:] = [LAST_WORDS]
-    before, hook = {number: signal.getsignal(number) for number in CAUGHT}, sys.unraisablehook
-    with _watched():
-        for number in (n for n, handler in before.items() if handler is not signal.SIG_IGN):
-            signal.signal(number, _handler(os.getpid()))
+    _pending_messages[:] = [INTERRUPTED_MESSAGE]
+    before = {number: signal.getsignal(number) for number in HANDLED_SIGNALS}
+    hook = sys.unraisablehook
+    with _signal_watcher():
+        for number, handler in before.items():
+            if handler is not signal.SIG_IGN:
+                signal.signal(number, _handler(os.getpid()))
         sys.unraisablehook = _unraisable(hook)
         try:
             yield
@@ -71,12 +74,12 @@ def caught() -> Iterator[None]:
 
 
 @contextmanager
-def _watched() -> Iterator[None]:
+def _signal_watcher() -> Iterator[None]:
     """Have a thread that hears of signals even while the main thread is in a library's long call."""
-    heard, told = os.pipe()
-    os.set_blocking(told, False)
-    previous = signal.set_wakeup_fd(told, warn_on_full_buffer=False)
-    watcher = threading.Thread(target=_watch, args=(heard,), daemon=True)
+    read_end, write_end = os.pipe()
+    os.set_blocking(write_end, False)
+    previous = signal.set_wakeup_fd(write_end, warn_on_full_buffer=False)
+    watcher = threading.Thread(target=_watch, args=(read_end,), daemon=True)
     watcher.start()
     _watchers.append(watcher)
     try:
@@ -84,18 +87,18 @@ def _watched() -> Iterator[None]:
     finally:
         _watchers.remove(watcher)
         signal.set_wakeup_fd(previous)
-        os.close(told)
+        os.close(write_end)
         watcher.join()
 
 
-def _watch(heard: int) -> None:
+def _watch(read_end: int) -> None:
     """End the process a while after a signal, wherever its main thread is."""
-    while numbers := os.read(heard, 1):
-        if numbers[0] in CAUGHT:
-            threading.Event().wait(PATIENCE)
+    while numbers := os.read(read_end, 1):
+        if numbers[0] in HANDLED_SIGNALS:
+            threading.Event().wait(GRACE_PERIOD)
             _received.append(numbers[0])
             end()
-    os.close(heard)
+    os.close(read_end)
 
 
 def _handler(owner: int) -> Callable[[int, FrameType | None], None]:
@@ -115,18 +118,18 @@ def _handler(owner: int) -> Callable[[int, FrameType | None], None]:
 def _unraisable(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[sys.UnraisableHookArgs], None]:
     """Return a hook that ends the process where an interruption came in a place that raises nothing."""
 
-    def told(raised: sys.UnraisableHookArgs) -> None:
+    def handle(raised: sys.UnraisableHookArgs) -> None:
         if _received:
             end()
         hook(raised)
 
-    return told
+    return handle
 
 
-def _forked() -> None:
+def _detach_fork() -> None:
     """Keep a fork's signals from its parent's watcher."""
     if _watchers and threading.current_thread() is threading.main_thread():
         signal.set_wakeup_fd(-1)
 
 
-os.register_at_fork(after_in_child=_forked)
+os.register_at_fork(after_in_child=_detach_fork)

@@ -20,14 +20,15 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
-    from validation.cli.printing.output import heard
+    from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import print_changes
     from validation.gates.changes import changes, read_verdicts
 
-    found = changes(read_verdicts(before), read_verdicts(after))
-    with heard():
-        print_changes(found)
-    raise typer.Exit(GATE_FAILED if any(change.worse for change in found) else PASSED)
+    differences = changes(read_verdicts(before), read_verdicts(after))
+    with tolerate_closed_pipe():
+        print_changes(differences)
+    status = GATE_FAILED if any(change.worse for change in differences) else PASSED
+    raise typer.Exit(status)
 
 
 @app.command("export-pack")

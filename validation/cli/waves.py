@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,6 +24,8 @@ FigureOption = Annotated[
 ]
 FigureEndings = (".svg", ".pdf", ".png")
 PEAKS = 3  # that are printed
+EXACT = "exact in time"
+CONTINUA = ("continuum", "layers")  # solvers that are exact in space too: of a block, of a column
 
 
 @app.command()
@@ -55,9 +58,6 @@ def response(
     _print_peaks(case, answers)
 
 
-EXACT, TRUTHS = "exact in time", ("continuum", "layers")  # of a block, of a column
-
-
 def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
     """Return the frequencies of a sweep [Hz], or refuse its ends."""
     import numpy as np
@@ -80,12 +80,12 @@ def check_figure(path: Path | None) -> None:
         raise InputError(f"--figure: must end in {', '.join(FigureEndings)}, got {path.name!r}")
 
 
-def _write(found: Response, path: Path) -> None:
+def _write(response: Response, path: Path) -> None:
     """Write the table with all digits."""
     from validation.advice.response import HEADER
     from validation.runs.files import write_atomically
 
-    lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in found.table().tolist())]
+    lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
     write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
     echo(f"wrote {path}: {len(lines) - 1} frequencies")
 
@@ -99,16 +99,20 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
     from validation.report.figures.response import ResponseCurve, response_figure, save_as
     from validation.solvers.registry import get_solver
 
-    shown = dict(answers)
-    truth = next((name for name in TRUTHS if get_solver(name).refusal(case) is None), None)
-    if truth is not None:
-        shown[truth] = answer(case, answers[EXACT].frequency, truth)
+    drawn = dict(answers)
+    continuum = next((name for name in CONTINUA if get_solver(name).refusal(case) is None), None)
+    if continuum is not None:
+        drawn[continuum] = answer(case, answers[EXACT].frequency, continuum)
     curves = []
-    for name, found in shown.items():
-        seen = (found.frequency <= 0.5 / case.time.step) | found.exact | (name == truth)
-        columns = {c: tuple(np.where(seen, part, np.nan) for part in polar(v)) for c, v in found.columns.items()}
-        label = {EXACT: f"{found.solver}, exact in time", truth: "continuum"}.get(name, f"{name} as stepped")
-        curves.append(ResponseCurve(label, found.solver, name == EXACT, found.frequency, columns))  # type: ignore[arg-type]
+    for name, response in drawn.items():
+        # Beyond half the sampling rate the steps show the alias of a lower frequency.
+        is_drawn = (response.frequency <= 0.5 / case.time.step) | response.exact | (name == continuum)
+        columns = {}
+        for column, values in response.columns.items():
+            amplitude, phase = polar(values)
+            columns[column] = (np.where(is_drawn, amplitude, np.nan), np.where(is_drawn, phase, np.nan))
+        label = {EXACT: f"{response.solver}, exact in time", continuum: "continuum"}.get(name, f"{name} as stepped")
+        curves.append(ResponseCurve(label, response.solver, name == EXACT, response.frequency, columns))
     echo(f"wrote {save_as(response_figure(curves, logarithmic, answers[EXACT].base), path)}")
 
 
@@ -117,28 +121,27 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     from validation.cli.damping import print_table
     from validation.runs.history import DISPLACEMENT, PRESSURE
 
-    found = answers[EXACT]
-    load = "per metre of base motion" if found.base else "under the scene's loads"
-    echo(f"{case.name}, {found.solver}: {len(found.frequency)} frequencies, {load}; no step is run")
-    unit = "/m" if found.base else ""
+    exact_response = answers[EXACT]
+    load = "per metre of base motion" if exact_response.base else "under the scene's loads"
+    echo(f"{case.name}, {exact_response.solver}: {len(exact_response.frequency)} frequencies, {load}; no step is run")
+    unit = "/m" if exact_response.base else ""
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
     rows: list[tuple[str, ...]] = [heads]
     for name, answer in answers.items():
         label = name if name == EXACT else "as stepped"
-        sampled = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
-        columns = [_peaks_below(answer, column, sampled)[:PEAKS] for column in (DISPLACEMENT, PRESSURE)]
-        for i in range(max(map(len, columns), default=0)):
-            cells = [(f"{p[i][0]:.6g}", f"{p[i][1]:.6g}") if i < len(p) else ("", "") for p in columns]
-            rows.append((label, *cells[0], *cells[1]))
-    print_table(rows if len(rows) > 1 else [("no peak in this range",)])
-    if found.frequency[-1] > limit:
+        highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
+        peak_cells: list[list[tuple[str, str]]] = []
+        for column in (DISPLACEMENT, PRESSURE):
+            peaks = [peak for peak in answer.peaks(column) if peak[0] <= highest][:PEAKS]
+            peak_cells.append([(f"{frequency:.6g}", f"{amplitude:.6g}") for frequency, amplitude in peaks])
+        for displacement, pressure in itertools.zip_longest(*peak_cells, fillvalue=("", "")):
+            rows.append((label, *displacement, *pressure))
+    if len(rows) == 1:
+        rows = [("no peak in this range",)]
+    print_table(rows)
+    if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
-
-
-def _peaks_below(answer: Response, column: str, limit: float) -> list[tuple[float, float]]:
-    """Return the peaks of a column up to a frequency [Hz]."""
-    return [peak for peak in answer.peaks(column) if peak[0] <= limit]
 
 
 @app.command()
@@ -176,15 +179,16 @@ def rayleigh(
     from validation.advice import rayleigh as advice
 
     check_figure(figure)
-    scheme, points = _scheme(scene, assignments, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg}), []
+    scheme = _scheme(scene, assignments, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg})
+    points: list[tuple[float, float]] = []
     if ratios or a0 is not None or a1 is not None:
         points = advice.points(ratios or [], a0, a1)
         scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
     ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
     tables = None if scene is None else one_case(scene, assignments).damping
     if tables is not None and tables.present:
-        own = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
-        echo(f"note: the scene's own damping tables, {own}, come on top of what the step hides")
+        rayleigh_terms = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
+        echo(f"note: the scene's own damping tables, {rayleigh_terms}, come on top of what the step hides")
     if tables is not None and tables.kinetic == "adaptive":
         echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
@@ -194,18 +198,18 @@ def rayleigh(
         _draw_ratios(scheme, band, figure)
 
 
-def _scheme(scene: str | None, assignments: list[str] | None, given: dict[str, float | None]) -> Stepping:
+def _scheme(scene: str | None, assignments: list[str] | None, options: dict[str, float | None]) -> Stepping:
     """Return the scheme of a scene, or of the options, which go before it."""
     from dataclasses import asdict
 
     from validation.advice.rayleigh import scheme_of
     from validation.gates.waves import Stepping
 
-    own = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
-    return scheme_of(own | {name: value for name, value in given.items() if value is not None})
+    scene_scheme = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
+    return scheme_of(scene_scheme | {name: value for name, value in options.items() if value is not None})
 
 
-def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
+def _back(target: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
     """Say which scheme hides a wanted damping, and return the best one.
 
     Two ratios may belong to a scheme although none has them to leading order.
@@ -219,9 +223,9 @@ def _back(wanted: Rayleigh, points: list[tuple[float, float]], scheme: Stepping,
     from validation.errors import InputError
 
     leading = None
-    echo(f"wanted: a0 = {wanted.a0:.6g} 1/s, a1 = {wanted.a1:.6g} s")
+    echo(f"wanted: a0 = {target.a0:.6g} 1/s, a1 = {target.a1:.6g} s")
     try:
-        leading = settings(wanted, scheme, keep_step)
+        leading = settings(target, scheme, keep_step)
         echo(f"to leading order: {leading.words}")
     except InputError as error:
         if not points:
@@ -249,7 +253,8 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     from validation.advice.rayleigh import hidden, matched, ratio
     from validation.cli.damping import print_table
 
-    leading, fitted = hidden(scheme), matched(scheme, *band)
+    leading = hidden(scheme)
+    fitted = matched(scheme, *band)
     echo(f"\n{scheme.words} hides the Rayleigh damping")
     rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
     for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,10 +22,10 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
     from validation.runs.results import Results
     from validation.studies.work.points import table
 
-    kept = Results(results)
-    if study not in kept.studies():
+    store = Results(results)
+    if study not in store.studies():
         raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
-    return table(kept, kept.whole(study))
+    return table(store, store.whole(study))
 
 
 @app.command()
@@ -40,7 +41,7 @@ def rows(
     from validation.runs.files import write_atomically
 
     lines = _table(study, results)
-    names = list(dict.fromkeys(name for line in lines for name in line))
+    names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, names, lineterminator="\n")
     writer.writeheader()
@@ -75,21 +76,22 @@ def plot(
             name = f"{line['scene'].partition('[')[0]} {line['solver']}"
             series.setdefault(name, []).append((float(pair[0]), float(pair[1])))  # type: ignore[arg-type]
     if not series:
-        _refuse_unknown({"--x": x, "--y": y}, list(dict.fromkeys(name for line in lines for name in line)), study)
+        names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
+        _refuse_unknown({"--x": x, "--y": y}, names, study)
         raise InputError(f"--x, --y: must be columns with positive numbers in common rows, got {x} and {y}")
     echo(f"wrote {save(columns_figure((x, y), series), out)}")
 
 
-def _refuse_unknown(axes: dict[str, str], known: list[str], study: str) -> None:
+def _refuse_unknown(axes: dict[str, str], columns: list[str], study: str) -> None:
     """Refuse a column that the table does not have; the few that are most like it are named, not all hundred."""
     import difflib
 
     from validation.errors import InputError
 
     for option, name in axes.items():
-        if name not in known:
-            alike = difflib.get_close_matches(name, known, n=3, cutoff=0.4) or known[:3]
-            every = f"dda-validate rows {study} --csv rows.csv writes all {len(known)}"
+        if name not in columns:
+            alike = difflib.get_close_matches(name, columns, n=3, cutoff=0.4) or columns[:3]
+            every = f"dda-validate rows {study} --csv rows.csv writes all {len(columns)}"
             raise InputError(
                 f"{option}: must be a column of the table, such as {', '.join(alike)}, got {name!r}; {every}"
             )
@@ -116,7 +118,7 @@ def record(
 
     if update and not reason.strip():
         raise InputError('--reason: must say why the record changes, got nothing; add --reason "..."')
-    then = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
+    recorded = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
     promise_rows()
     finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
     if update:
@@ -124,10 +126,10 @@ def record(
         echo(f"wrote {work_record.PATH}")
         return
     try:
-        found = work_record.compare(finished, study_cases(), then)
+        ratios = work_record.compare(finished, study_cases(), recorded)
     except ValueError as error:
         raise InputError(f"{work_record.PATH}: {error}") from None
-    said = ", ".join(f"{part} {value:.3f}" for part, value in found.items())
-    echo(f"worst ratio to the record: {said}")
-    if not all(value <= 1 + work_record.SLACK[part] for part, value in found.items()):
+    listed_ratios = ", ".join(f"{part} {value:.3f}" for part, value in ratios.items())
+    echo(f"worst ratio to the record: {listed_ratios}")
+    if not all(value <= 1 + work_record.SLACK[part] for part, value in ratios.items()):
         raise typer.Exit(GATE_FAILED)

@@ -67,26 +67,27 @@ class Case:
     def _read(self, solver: Solver) -> dict[str, Any]:
         """Return the part of the scene that the solver reads, files by their content."""
         data = self.scene.model_dump(mode="json", by_alias=True)
-        read: dict[str, Any] = {section: dict(data[section] or {}) for section in solver.sections}
+        table_data: dict[str, Any] = {section: dict(data[section] or {}) for section in solver.sections}
         for section, _, key in (name.partition(".") for name in solver.unread):
-            read[section].pop(key, None)
-        read["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
-        del read["run"]["solvers"]  # which others run decides nothing
+            table_data[section].pop(key, None)
+        table_data["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
+        del table_data["run"]["solvers"]  # which others run decides nothing
         if self.scene.fem.mesh and "fem" in solver.sections:
-            read["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
-        load, drive = self.scene.stated_load, self.scene.stated_input
+            table_data["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
+        load = self.scene.stated_load
         if load and load.base_motion:
-            read["base_motion"] = _file_digest(Path(load.base_motion), "record of the base's motion")
-        if drive and drive.record:
-            read["record"] = _file_digest(Path(drive.record), "record of the input")
-        return read
+            table_data["base_motion"] = _file_digest(Path(load.base_motion), "record of the base's motion")
+        excitation = self.scene.stated_input
+        if excitation and excitation.record:
+            table_data["record"] = _file_digest(Path(excitation.record), "record of the input")
+        return table_data
 
 
-def _file_digest(path: Path, what: str) -> str:
+def _file_digest(path: Path, role: str) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise InputError(f"{path}: {what} cannot be read: {error.strerror}") from None
+        raise InputError(f"{path}: {role} cannot be read: {error.strerror}") from None
 
 
 @functools.cache
@@ -108,10 +109,10 @@ def source_digest(module: str) -> str:
 @functools.cache
 def library_versions() -> dict[str, str]:
     """Return the versions of the libraries that rows are computed with."""
-    found = {}
+    versions = {}
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
+            versions[name] = "not installed"
+    return versions

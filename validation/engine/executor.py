@@ -19,13 +19,25 @@ from validation.runs.text import error_text
 from validation.runs.threads import limit_process
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
-LOOK = 0.25  # s between two looks whether the parent lives
+PARENT_CHECK_INTERVAL = 0.25  # s
 
 
 def executed(
     pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
 ) -> Iterator[tuple[Row, History | None]]:
-    """Run the pending cases, in this process where one worker or one case is all there is."""
+    """Run the pending cases, in this process where one worker or one case is all there is.
+
+    Parameters
+    ----------
+    pending
+        The cases by key.
+    study
+        Whose name the rows get; a study of timings runs its cases one after the other in this process.
+    jobs
+        Worker processes; ignored where an executor is given.
+    executor
+        That of a cluster, or None.
+    """
     if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
         for key, case in pending.items():
             yield _checked(case, key, study.name)
@@ -34,7 +46,8 @@ def executed(
     with _pool(executor, min(jobs, len(pending))) as pool:
         futures = {pool.submit(_checked, case, key, study.name): key for key, case in pending.items()}
         for future in as_completed(futures):
-            error, key = future.exception(), futures[future]
+            error = future.exception()
+            key = futures[future]
             if isinstance(error, BrokenExecutor):
                 lost.append(key)
             elif error is not None:  # on its way there or back: what a worker runs never raises
@@ -42,7 +55,7 @@ def executed(
             else:
                 yield future.result()
     for key in lost:
-        yield _alone(pending[key], key, study)
+        yield _in_own_process(pending[key], key, study)
 
 
 def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
@@ -58,7 +71,7 @@ def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         return failed_row(case, key, study, error_text(error)), None
 
 
-def _alone(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
+def _in_own_process(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with _pool(None, 1) as pool:
         try:
@@ -74,7 +87,8 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool, wait = ProcessPoolExecutor(jobs, initializer=_bound, initargs=(os.getpid(),)), True
+    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(),))
+    wait = True
     try:
         yield pool
     except KeyboardInterrupt:
@@ -87,21 +101,23 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _bound(parent: int) -> None:
+def _initialize_worker(parent: int) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
     limit_process()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     control(DEATH_SIGNAL, signal.SIGKILL)  # at once, where the system can
-    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+    threading.Thread(target=_end_with_parent, args=(parent,), daemon=True).start()
 
 
-def _end_with(parent: int) -> None:
+def _end_with_parent(parent: int) -> None:
     """End this process when its parent has ended, or the server that started it in the parent's name."""
-    own, known, pause = os.getppid(), multiprocessing.parent_process(), threading.Event()
-    if own != parent and multiprocessing.get_start_method() != "forkserver":  # it ended before this thread began
+    starter = os.getppid()  # the parent, or the server of processes that forked this one
+    process = multiprocessing.parent_process()
+    if starter != parent and multiprocessing.get_start_method() != "forkserver":  # it ended before this thread began
         os._exit(1)
-    while os.getppid() == own and (known is None or known.is_alive()):
-        pause.wait(LOOK)
+    pause = threading.Event()
+    while os.getppid() == starter and (process is None or process.is_alive()):
+        pause.wait(PARENT_CHECK_INTERVAL)
     os._exit(1)

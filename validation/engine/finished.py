@@ -62,7 +62,8 @@ class Finished:
 
     def _derive(self, recipe: Derived) -> Row:
         """Compute a derived row; whatever happens in it ends as a named outcome."""
-        scene, name = recipe.scene, recipe.name
+        scene = recipe.scene
+        name = recipe.name
         for need in recipe.needs:
             row = self.rows.get(need)
             if row is None or row.outcome is not Outcome.COMPLETED:

@@ -24,15 +24,23 @@ ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 
 def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[ComparisonRecord]:
-    """Yield the pair metrics of every solver against every later one in the order of references, or of `pairs`."""
+    """Yield the pair metrics of the solvers of each scene.
+
+    Parameters
+    ----------
+    finished
+        The finished cases.
+    pairs
+        Solver and reference of each comparison; None: every solver against every later one in the order of references.
+    """
     solvers: dict[str, list[str]] = {}
     for scene, solver in finished.rows:
         solvers.setdefault(scene, []).append(solver)
     for scene, names in solvers.items():
-        asked = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
-        needed = dict.fromkeys(solver for pair in asked for solver in pair)
+        solver_pairs = list(itertools.combinations(_ordered(names), 2)) if pairs is None else pairs
+        needed = dict.fromkeys(itertools.chain.from_iterable(solver_pairs))
         histories = {s: history for s in needed if (history := finished.history(scene, s)) is not None}
-        for solver, reference in asked:
+        for solver, reference in solver_pairs:
             if solver in histories and reference in histories:
                 yield _comparison(finished, scene, solver, reference, histories)
 
@@ -45,8 +53,9 @@ def _ordered(solvers: Iterable[str]) -> list[str]:
 def _comparison(
     finished: Finished, scene: str, solver: str, reference: str, histories: Mapping[str, History]
 ) -> ComparisonRecord:
-    history, against, static = histories[solver], histories[reference], finished.rows[scene, solver].metrics
-    values = {m: plain(_paired(m, history, against, static)) for m in PAIRS}
+    history = histories[solver]
+    metrics = finished.rows[scene, solver].metrics
+    values = {metric: plain(_paired(metric, history, histories[reference], metrics)) for metric in PAIRS}
     return {
         "scene": scene,
         "solver": solver,
@@ -97,7 +106,19 @@ def reads(gate: Gate, derived: Mapping[tuple[str, str], Derived]) -> Iterator[tu
 
 
 def evaluate(gate: Gate, finished: Finished) -> Verdict:
-    """Measure what a gate asks for and judge it."""
+    """Measure what a gate asks for and judge it.
+
+    Parameters
+    ----------
+    gate
+        Case, solvers, metric and band.
+    finished
+        The finished cases of the study, and what is derived from them.
+
+    Returns
+    -------
+    NOT RUN where a case is absent, FAIL where one did not complete, else what value and band say.
+    """
     names = gate.cases
     for name in names:
         row = finished.row(*name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -16,7 +16,8 @@ from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
 from validation.runs.history import History
-from validation.runs.results import KEPT
+from validation.runs.modes import Mode
+from validation.runs.results import WITH_HISTORY
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
@@ -33,6 +34,13 @@ Part = TypeVar("Part")
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     """Run a case; whatever happens in it ends as a named outcome.
 
+    Parameters
+    ----------
+    case
+        Scene, solver and what is measured.
+    key, study
+        Under which the row is kept, and the study that asks for it.
+
     Returns
     -------
     The row with the metrics of the run itself, and the history where there is one.
@@ -46,39 +54,43 @@ def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
 
 def failed_row(case: Case, key: str, study: str, note: str) -> Row:
     """Return the row of a case that ended by an error."""
-    made = origin.of_row(case.make_solver())
-    return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,), provenance=made)
+    provenance = origin.of_row(case.make_solver())
+    return Row(key, study, case.scene.name, case.solver, Outcome.RAISED, {}, notes=(note,), provenance=provenance)
 
 
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    solver, scene = case.make_solver(), case.scene
+    solver = case.make_solver()
+    scene = case.scene
     prepared, run = attempt(solver, scene, case.full)
     run = _repeated(checked(run, scene), solver, case)
     failed: list[str] = []
-    measured: dict[str, Value] = {}
+    metrics: dict[str, Value] = {}
     if prepared is not None:
         if scene.time.allow_unstable:
-            run = stability.named(run, prepared, scene)
+            run = stability.with_growth_outcome(run, prepared, scene)
         with np.errstate(all="ignore"):
-            measured = _measure(prepared, solver, case, run, failed)
+            metrics = _measure(prepared, solver, case, run, failed)
+    estimate = run.estimate
+    if estimate is not None and not math.isfinite(estimate):
+        estimate = None
     row = Row(
         key=key,
         study=study,
         scene=scene.name,
         solver=case.solver,
         outcome=run.outcome,
-        metrics=measured,
+        metrics=metrics,
         work=dict(run.work),
         seconds={k: round(v, 6) for k, v in run.seconds.items()},
         notes=tuple(map(printable, (*run.notes, *failed))),
-        estimate=run.estimate if run.estimate is not None and math.isfinite(run.estimate) else None,
+        estimate=estimate,
         provenance=origin.of_row(solver),
     )
     row.line()  # what cannot be kept is found here
-    return row, _asked(run.history, scene) if run.outcome in KEPT else None
+    return row, _requested_columns(run.history, scene) if run.outcome in WITH_HISTORY else None
 
 
-def _asked(history: History | None, scene: Scene) -> History | None:
+def _requested_columns(history: History | None, scene: Scene) -> History | None:
     """Return a history with the columns that the scene asks for and no others, which nobody has checked."""
     if history is None:
         return None
@@ -103,15 +115,29 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
 
 @np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of
 def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> tuple[Prepared | None, Run]:
-    """Prepare and run a scene, and turn the solver's errors into outcomes; what was prepared, None if nothing was."""
+    """Prepare and run a scene, and turn the solver's errors into outcomes.
+
+    Parameters
+    ----------
+    solver, scene
+        The solver and a scene without a sweep.
+    full
+        Switch the numerical savings off.
+    fields
+        File for displacement and stress fields; none is written where None.
+
+    Returns
+    -------
+    The prepared scene, None where the solver did not come so far, and the run.
+    """
     prepared: Prepared | None = None
     try:
         if reason := solver.refusal(scene):
             return None, Run(Outcome.NOT_APPLICABLE, notes=(reason,))
         memory.check(scene, solver)
-        asked, absent = _narrowed(solver, scene)
+        narrowed_scene, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
-        prepared = solver.prepare(asked, full)
+        prepared = solver.prepare(narrowed_scene, full)
         run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
@@ -125,15 +151,15 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
 
 
 def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-    """Return the checked run of a scene, whatever its outcome."""
+    """Return the checked run of a scene, whatever its outcome; the parameters are those of `attempt`."""
     with one_thread():
         return checked(attempt(solver, scene, full, fields)[1], scene)
 
 
 def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
     """Return the scene with the columns that a solver has, and the others; the scene itself where it has none."""
-    known = solver.columns()
-    absent = [name for name in scene.run.columns if known is not None and name not in known]
+    solver_columns = solver.columns()
+    absent = [name for name in scene.run.columns if solver_columns is not None and name not in solver_columns]
     if not absent or len(absent) == len(scene.run.columns):
         return scene, []
     return scene.with_values({"run.columns": [name for name in scene.run.columns if name not in absent]}), absent
@@ -143,48 +169,50 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     parts = _measures(case, run)
     needs = frozenset[str]().union(*(metric.needs for metric in measured_by(parts, case.only)))
-    linear, history = features.linear(case.scene), run.history or History(np.zeros(0), {})
-    static = _reported(prepared.static, None, failed) if linear and STATIC in needs else None
-    assumed = prepared.assumed_static() if linear and static is None and STATIC in needs else static or {}
-    seen = Measurable(
-        history,
+    if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
+        needs -= {STATIC, MODES, DIAGNOSTICS}
+    static = _reported(prepared.static, None, failed) if STATIC in needs else None
+    assumed_static: Mapping[str, float] = static or {}
+    if static is None and STATIC in needs:
+        assumed_static = prepared.assumed_static()
+    modes: tuple[Mode, ...] = _reported(prepared.modes, (), failed) if MODES in needs else ()
+    diagnostics: Mapping[str, float] = _reported(prepared.diagnostics, {}, failed) if DIAGNOSTICS in needs else {}
+    switches = _reported(prepared.switches, None, failed) if SWITCHES in needs else None
+    contact_record = _reported(prepared.contact_record, None, failed) if CONTACT in needs else None
+    measurable = Measurable(
+        run.history or History(np.zeros(0), {}),
         case.scene.time.step,
-        assumed,
-        _reported(prepared.modes, (), failed) if linear and MODES in needs else (),
+        assumed_static,
+        modes,
         static is not None,
-        _reported(prepared.diagnostics, {}, failed) if linear and DIAGNOSTICS in needs else {},
+        diagnostics,
         run.outcome,
-        _reported(prepared.switches, None, failed) if SWITCHES in needs else None,
-        _reported(prepared.contact_record, None, failed) if CONTACT in needs else None,
+        switches,
+        contact_record,
         lambda: horizon.shadow(solver, case.scene, case.full),
         lambda: stability.limit(solver, case.scene),
     )
-    return _solo(seen, parts, case.only, failed)
-
-
-def _solo(seen: Measurable, parts: set[str], only: Collection[str] | None, failed: list[str]) -> dict[str, Value]:
-    """Return the metrics of the parts that are asked for; a part whose arithmetic fails is noted and has none."""
-    found: dict[str, Value] = {}
+    metrics: dict[str, Value] = {}
     for part in sorted(parts):
         try:
-            found |= solo(seen, (part,), only)
+            metrics |= solo(measurable, (part,), case.only)
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {error_text(error)}")
-    return found
+    return metrics
 
 
 def _measures(case: Case, run: Run) -> set[str]:
     """Return the parts of the study's measures that this run has."""
-    asked = set(case.measures)
+    measures = set(case.measures)
     if run.history is None or run.outcome is not Outcome.COMPLETED:
-        asked -= {"history", "modes", "energy"}
+        measures -= {"history", "modes", "energy"}
     if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-        asked -= {"stability"}
-    if "history" in asked and features.UNILATERAL in features.of(case.scene):
-        asked |= {"switches"}
+        measures -= {"stability"}
+    if "history" in measures and features.UNILATERAL in features.of(case.scene):
+        measures |= {"switches"}
         if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
-            asked |= {"horizon"}
-    return asked if "history" in asked else asked - {"modes"}
+            measures |= {"horizon"}
+    return measures if "history" in measures else measures - {"modes"}
 
 
 def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:

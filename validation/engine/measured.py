@@ -15,7 +15,7 @@ NEUTRAL = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)  # said by name; a gate that
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedStudy:
     """A study as it was run: its verdicts, and how its cases ended by (scene, solver)."""
 
     study: Study
@@ -44,31 +44,34 @@ def covers(name: str, solver: str) -> bool:
     return name in (solver, solver.removesuffix(FULL)) or (is_solver(name) and solver.startswith(f"{name}:"))
 
 
-def complaints(runs: Sequence[Judged]) -> Iterator[str]:
+def complaints(runs: Sequence[JudgedStudy]) -> Iterator[str]:
     """Yield a sentence for each study of which a case ended badly, nothing was measured or no gate was judged."""
     for run in runs:
-        name, words = run.study.name, [verdict.status for verdict in run.verdicts]
+        name = run.study.name
+        statuses = [verdict.status for verdict in run.verdicts]
         if run.failed:
             first = " ".join(run.failed[0])
             more = f" and {len(run.failed) - 1} more" if len(run.failed) > 1 else ""
             yield f"{name}: ended without a measurement: {first}{more}"
         if not any(outcome in MEASURED for outcome in run.outcomes.values()):
             yield f"{name}: no case was measured"
-        if words and all(word is Status.NOT_RUN for word in words):
-            yield f"{name}: none of its {len(words)} gates was judged, all are NOT RUN"
+        if statuses and all(status is Status.NOT_RUN for status in statuses):
+            yield f"{name}: none of its {len(statuses)} gates was judged, all are NOT RUN"
 
 
-def wanting(runs: Sequence[Judged], required: Sequence[str]) -> Iterator[str]:
+def missing_gates(runs: Sequence[JudgedStudy], required: Sequence[str]) -> Iterator[str]:
     """Yield a sentence for each required solver that gates were not run for, or that no gate has judged."""
     for name in required:
-        asked = [verdict.status for run in runs for verdict in run.verdicts if run.concerns(verdict, name)]
-        if missing := asked.count(Status.NOT_RUN):
-            yield f"--require {name}: {missing} of {len(asked)} gates on it are NOT RUN"
-        elif not asked:
+        statuses: list[Status] = []
+        for run in runs:
+            statuses += [verdict.status for verdict in run.verdicts if run.concerns(verdict, name)]
+        if missing := statuses.count(Status.NOT_RUN):
+            yield f"--require {name}: {missing} of {len(statuses)} gates on it are NOT RUN"
+        elif not statuses:
             yield f"--require {name}: no gate on it was judged"
 
 
-def unjudged(runs: Sequence[Judged]) -> Iterator[str]:
+def unjudged(runs: Sequence[JudgedStudy]) -> Iterator[str]:
     """Yield a remark for each study without gates."""
     for run in runs:
         if not run.verdicts:

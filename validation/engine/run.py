@@ -34,7 +34,7 @@ from validation.scenes.scene import Scene
 
 Progress = Callable[[int, int, str], None]
 # What was not installed then may be installed now; memory, time and files that were wanting may be there.
-AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
+RUN_AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 
 
 def run_study(
@@ -69,11 +69,11 @@ def run_study(
     cases = study.cases(full, ranks)
     finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
     scenes = list({case.scene.name: case.scene for case in cases}.values())
-    told = _annotated(study, scenes, finished)
-    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), told)
+    annotations = _annotated(study, scenes, finished)
+    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), annotations)
     verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
     results.write_json(f"studies/{study.name}.json", manifest)
-    results.write_verdicts(study.name, [_record(verdict, study, told["alarms"]) for verdict in verdicts])
+    results.write_verdicts(study.name, [_record(verdict, study, annotations["alarms"]) for verdict in verdicts])
     return verdicts
 
 
@@ -86,36 +86,42 @@ def finish(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Finished:
-    """Take finished cases from the results directory and run the others, each kept as soon as it ends."""
+    """Take finished cases from the results directory and run the others, each kept as soon as it ends.
+
+    Parameters
+    ----------
+    cases, study
+        The cases, and the study whose names their rows get.
+    results, jobs, executor, progress
+        As in `run_study`.
+    """
     keyed = [(case, case.key()) for case in cases]
-    known = {} if study.timed else _kept(keyed, results)
-    pending = {key: case for case, key in keyed if key not in known}
-    done = len(keyed) - len(pending)
-    for row, history in executed(pending, study, jobs, executor):
+    rows_by_key = {} if study.timed else _valid_rows(keyed, results)
+    pending = {key: case for case, key in keyed if key not in rows_by_key}
+    restored = len(keyed) - len(pending)
+    for number, (row, history) in enumerate(executed(pending, study, jobs, executor), start=restored + 1):
         results.append(row, history)
-        known[row.key] = row
-        done += 1
+        rows_by_key[row.key] = row
         if progress:
-            progress(done, len(keyed), f"{row.scene} {row.solver}")
-    rows = {(case.scene.name, case.solver): _named(known[key], case, study) for case, key in keyed}
+            progress(number, len(keyed), f"{row.scene} {row.solver}")
+    rows = {(case.scene.name, case.solver): _relabelled(rows_by_key[key], case, study) for case, key in keyed}
     return Finished(rows, results, study.recipes())
 
 
-def _kept(keyed: Sequence[tuple[Case, str]], results: Results) -> dict[str, Row]:
+def _valid_rows(keyed: Sequence[tuple[Case, str]], results: Results) -> dict[str, Row]:
     """Return the rows of the results directory that need not be made again."""
     rows = results.rows()
-    found = {key: (case, rows[key]) for case, key in keyed if key in rows}
-    return {key: row for key, (case, row) in found.items() if _served(case, row, results)}
+    return {key: rows[key] for case, key in keyed if key in rows and _is_valid(rows[key], case, results)}
 
 
-def _served(case: Case, row: Row, results: Results) -> bool:
+def _is_valid(row: Row, case: Case, results: Results) -> bool:
     """Whether a kept row stands for its case: it says what made it, and its history is whole."""
-    if row.outcome in AGAIN or not row.provenance or not case.make_solver().cached:
+    if row.outcome in RUN_AGAIN or not row.provenance or not case.make_solver().cached:
         return False
     return results.sound(row, case.scene.time.steps, columns_of(case))
 
 
-def _named(row: Row, case: Case, study: Study) -> Row:
+def _relabelled(row: Row, case: Case, study: Study) -> Row:
     """Give a row that another scene or study has brought the names of this one."""
     return replace(row, scene=case.scene.name, study=study.name, solver=case.solver)
 
@@ -132,12 +138,12 @@ def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Ann
                 study.annotate([scene], finished)
             except Exception as error:
                 failed[scene.name] = error_text(error)
-    found = study.annotate([scene for scene in scenes if scene.name not in failed], finished)
-    own: list[AlarmRecord] = [
+    annotations = study.annotate([scene for scene in scenes if scene.name not in failed], finished)
+    unexamined: list[AlarmRecord] = [
         {"kind": "not examined", "scene": name, "sentence": f"alarms and damping budget: {why}", "values": {}}
         for name, why in failed.items()
     ]
-    return {"alarms": [*found["alarms"], *own], "budgets": found["budgets"]}
+    return {"alarms": [*annotations["alarms"], *unexamined], "budgets": annotations["budgets"]}
 
 
 def _record(verdict: Verdict, study: Study, alarms: Sequence[AlarmRecord]) -> VerdictRecord:
@@ -170,7 +176,7 @@ def _manifest(
     cases: Sequence[Case],
     finished: Finished,
     comparisons: list[ComparisonRecord],
-    told: Annotations,
+    annotations: Annotations,
 ) -> Manifest:
     return {
         "study": study.name,
@@ -180,7 +186,7 @@ def _manifest(
         "comparisons": comparisons,
         "derived": [_derived_record(finished, *name) for name in finished.derived],
         "data": dict(study.data()),
-        "budgets": told["budgets"],
-        "alarms": told["alarms"],
+        "budgets": annotations["budgets"],
+        "alarms": annotations["alarms"],
         "provenance": of_rows(finished.rows.values()),
     }

@@ -26,32 +26,40 @@ def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
         return {}
 
 
-def named(run: Run, prepared: Prepared, scene: Scene) -> Run:
-    """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted."""
+def with_growth_outcome(run: Run, prepared: Prepared, scene: Scene) -> Run:
+    """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted.
+
+    Parameters
+    ----------
+    run
+        The run; one that ended otherwise than by its growth is returned as it is.
+    prepared, scene
+        The model, which predicts the growth of a step, and the scene that was run.
+    """
     if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW, Outcome.UNBOUNDED) or run.history is None:
         return run
     radius = _diagnostics(prepared).get("predicted_radius", 0.0)
     if not radius > 1 + ROUNDING:
         return run
-    seen = growth(first_column(run.history))
-    if seen is None:
-        return _unseen(run, scene, radius)
+    measured_growth = growth(first_column(run.history))
+    if measured_growth is None:
+        return _too_short_to_measure(run, scene, radius)
     # A slower mode may hold so much more of the motion that it leads until the last step.
-    radius = min((radius, *(mode.spectral_radius for mode in prepared.modes())), key=lambda r: abs(r - seen))
-    said = f"predicted growth {radius:.9g} per step, measured {seen:.9g}"
-    if abs(seen / radius - 1) > AGREED:
-        return replace(run, outcome=Outcome.MISPREDICTED, notes=(*run.notes, said))
+    radius = min((radius, *(mode.spectral_radius for mode in prepared.modes())), key=lambda r: abs(r - measured_growth))
+    note = f"predicted growth {radius:.9g} per step, measured {measured_growth:.9g}"
+    if abs(measured_growth / radius - 1) > AGREED:
+        return replace(run, outcome=Outcome.MISPREDICTED, notes=(*run.notes, note))
     ended = Outcome.OVERFLOW if run.outcome is Outcome.OVERFLOW else Outcome.UNSTABLE
-    return replace(run, outcome=ended, notes=(*run.notes, said))
+    return replace(run, outcome=ended, notes=(*run.notes, note))
 
 
-def _unseen(run: Run, scene: Scene, radius: float) -> Run:
+def _too_short_to_measure(run: Run, scene: Scene, radius: float) -> Run:
     """Name a run that should grow and has not grown enough to measure how fast."""
-    slow = scene.time.steps * math.log10(radius) < 3 * math.log10(DEVELOPED)
-    still = run.history is None or not np.any(first_column(run.history))
-    outcome = run.outcome if slow or still or run.outcome is Outcome.OVERFLOW else Outcome.MISPREDICTED
-    said = f"predicted growth {radius:.9g} per step; too few steps to measure growth"
-    return replace(run, outcome=outcome, notes=(*run.notes, said))
+    is_slow = scene.time.steps * math.log10(radius) < 3 * math.log10(DEVELOPED)
+    is_at_rest = run.history is None or not np.any(first_column(run.history))
+    outcome = run.outcome if is_slow or is_at_rest or run.outcome is Outcome.OVERFLOW else Outcome.MISPREDICTED
+    note = f"predicted growth {radius:.9g} per step; too few steps to measure growth"
+    return replace(run, outcome=outcome, notes=(*run.notes, note))
 
 
 def limit(solver: Solver, scene: Scene) -> Value:
@@ -65,15 +73,19 @@ def limit(solver: Solver, scene: Scene) -> Value:
         return NOT_REPORTED
 
     def grows(value: float) -> bool:
-        tried = solver.prepare(scene.with_values({"time.step": value / omega}))
-        return bool(tried.diagnostics()["spectral_radius"] > 1 + ROUNDING)
+        prepared = solver.prepare(scene.with_values({"time.step": value / omega}))
+        return bool(prepared.diagnostics()["spectral_radius"] > 1 + ROUNDING)
 
-    low, high = 1e-2, 1e3
+    low = 1e-2
+    high = 1e3
     if grows(low) or not grows(high):
         return UNDEFINED
     for _ in range(BISECTIONS):
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if grows(middle) else (middle, high)
+        if grows(middle):
+            high = middle
+        else:
+            low = middle
         if high / low < 1 + 1e-8:
             break
     return math.sqrt(low * high)

@@ -73,11 +73,14 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        stated = [load_scene(scene) if isinstance(scene, str) else scene for scene in self.scenes]
-        scenes = [case for scene in stated for case in scene.expand()]
-        named = {scene.name: scene for scene in scenes}
-        pairs = [(scene, solver) for scene in scenes for solver in self.solvers or scene.run.solvers]
-        pairs += [(named[name], solver) for name, solver in self.extra if name in named]
+        pairs: list[tuple[Scene, str]] = []
+        scenes_by_name: dict[str, Scene] = {}
+        for declared in self.scenes:
+            scene = load_scene(declared) if isinstance(declared, str) else declared
+            for case in scene.expand():
+                scenes_by_name[case.name] = case
+                pairs += [(case, solver) for solver in self.solvers or case.run.solvers]
+        pairs += [(scenes_by_name[name], solver) for name, solver in self.extra if name in scenes_by_name]
         repeats = REPEATS if self.timed else 0
         return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 
@@ -88,4 +91,7 @@ class Study:
     def needs(self, gate: Gate) -> list[tuple[str, str]]:
         """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
         recipes = self.recipes()
-        return [need for name in gate.cases for need in (recipes[name].needs if name in recipes else (name,))]
+        needs: list[tuple[str, str]] = []
+        for name in gate.cases:
+            needs += recipes[name].needs if name in recipes else (name,)
+        return needs

@@ -6,6 +6,7 @@ It imports nothing heavy, since every pytest of every project that has this pack
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import textwrap
@@ -16,9 +17,9 @@ import pytest
 
 from .siblings import shadowed
 
-TOLD = "dda-validation"  # the property of a report that holds what a gate said of a user's solver, as JSON
+STATEMENT = "dda-validation"  # the property of a report that holds what a gate said of a user's solver, as JSON
 FAILED = "failed gates"  # how pytest counts them; the block at the end tells them, once, in the place of its own list
-WIDE = 110  # columns of the block
+BLOCK_WIDTH = 110  # characters
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -49,8 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
         from validation.solvers.registry import is_solver
 
         if not is_solver(user):
-            known = "module:attribute, or a name that `dda-validate list` shows"
-            raise pytest.UsageError(f"--dda-solver: must be {known}, got {user!r}")
+            rule = "module:attribute, or a name that `dda-validate list` shows"
+            raise pytest.UsageError(f"--dda-solver: must be {rule}, got {user!r}")
         os.environ["DDA_VALIDATE_TIMEOUT"] = str(config.getoption("--dda-timeout"))
         if not hasattr(config, "workerinput"):  # the workers of pytest-xdist need not try it again
             _check_loads(user)
@@ -80,13 +81,13 @@ def tell(request: pytest.FixtureRequest) -> Callable[[Mapping[str, object]], Non
     The fixture `record_property` of pytest does the same, with a warning for each gate under --junitxml.
     """
     properties = request.node.user_properties
-    return lambda said: properties.append((TOLD, json.dumps(said)))
+    return lambda statement: properties.append((STATEMENT, json.dumps(statement)))
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] | None:
     """Count the failing gates of a user's solver apart: the block at the end tells them by what they mean."""
-    return (FAILED, "F", "FAILED") if report.failed and _told(report) else None
+    return (FAILED, "F", "FAILED") if report.failed and _statements(report) else None
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -96,22 +97,24 @@ def pytest_terminal_summary(
     """Write what the gates tell of a user's solver, after everything else."""
     yield
     user = config.getoption("--dda-solver", None)
-    reports = [report for found in terminalreporter.stats.values() for report in found]
-    said = [told for report in reports if isinstance(report, pytest.TestReport) for told in _told(report)]
-    if user is None or not said:
+    statements: list[str] = []
+    for report in itertools.chain.from_iterable(terminalreporter.stats.values()):
+        if isinstance(report, pytest.TestReport):
+            statements += _statements(report)
+    if user is None or not statements:
         return
     from validation.studies.own_solver.block import block
     from validation.studies.own_solver.session import Told
 
     terminalreporter.write_sep("=", f"{user}: what the gates tell")
-    for line in block([Told(**json.loads(text)) for text in said], every=config.getoption("verbose") > 0):
+    for line in block([Told(**json.loads(text)) for text in statements], every=config.getoption("verbose") > 0):
         for part in line.split("\n"):
             indent = " " * (len(part) - len(part.lstrip()) + 4)
-            for row in textwrap.wrap(part, WIDE, subsequent_indent=indent, drop_whitespace=True) or [""]:
+            for row in textwrap.wrap(part, BLOCK_WIDTH, subsequent_indent=indent, drop_whitespace=True) or [""]:
                 terminalreporter.write_line(row)
 
 
-def _told(report: pytest.TestReport) -> list[str]:
+def _statements(report: pytest.TestReport) -> list[str]:
     """Return what a report says of a gate of a user's solver: one text, or nothing."""
     properties = report.user_properties if report.when == "call" else []
-    return [str(value) for name, value in properties if name == TOLD]
+    return [str(value) for name, value in properties if name == STATEMENT]

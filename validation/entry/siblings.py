@@ -17,24 +17,24 @@ HOME = next(folder for folder in Path(__file__).resolve().parents if (folder / "
 def shadowed() -> str | None:
     """Return None, or the sentence on a folder or file that stands in the way of one of our packages."""
     for name in PACKAGES:
-        place = _place(name)
-        if place is not None and place != HOME / name:
+        location = _location(name)
+        if location is not None and location != HOME / name:
             return (
-                f"{place} is in the way of the package {name} of dda-validation, which is in {HOME}; "
+                f"{location} is in the way of the package {name} of dda-validation, which is in {HOME}; "
                 "rename it, or take its directory from PYTHONPATH and run from another one"
             )
     return None
 
 
-def _place(name: str) -> Path | None:
+def _location(name: str) -> Path | None:
     """Return the folder, or the file of a single module, that an import of a package takes; None where it fails."""
     spec = sys.modules[name].__spec__ if name in sys.modules else importlib.util.find_spec(name)
     if spec is None:
         return None
     # A folder without __init__.py counts: it hides a package that an editable install finds after Python's path.
     folders = spec.submodule_search_locations
-    place = next(iter(folders), None) if folders is not None else spec.origin
-    return None if place is None else Path(place).resolve()
+    location = next(iter(folders), None) if folders is not None else spec.origin
+    return None if location is None else Path(location).resolve()
 
 
 def check() -> None:

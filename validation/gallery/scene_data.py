@@ -14,7 +14,7 @@ from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.text import bounded, cell
 from validation.report.figures.curves import COLUMNS, is_sparse, style_of
 from validation.runs.history import History
-from validation.runs.results import KEPT, Results
+from validation.runs.results import WITH_HISTORY, Results
 from validation.runs.row import Value
 from validation.runs.run import Outcome
 
@@ -43,7 +43,7 @@ METRICS = (
 
 def lines(case: GalleryCase) -> int:
     """Return how many curves a case may have, as its rows tell without its histories."""
-    return sum(row.outcome in KEPT for row in case.rows.values()) * len(case.scene.run.columns)
+    return sum(row.outcome in WITH_HISTORY for row in case.rows.values()) * len(case.scene.run.columns)
 
 
 def drawn(scene: GalleryScene, most: int) -> list[GalleryCase]:

@@ -10,10 +10,10 @@ from pathlib import Path
 from validation.errors import InputError
 from validation.gates.gate import value_text
 from validation.runs import strict
-from validation.runs.records import Baseline, Judged, VerdictRecord
+from validation.runs.records import Baseline, BaselineVerdict, VerdictRecord
 from validation.runs.text import printable
 
-Record = Judged
+Record = BaselineVerdict
 Edges = tuple[float, float]
 # Of the larger edge: one that is the difference of two predicted histories (`closed_forms.mesh_error`) has a thousandth
 # of their size or less, and their rounding of 1e-12 to 1e-11 after thousands of steps is the processor's.
@@ -74,7 +74,7 @@ class Change:
         return "band" if self.rebanded else "value"
 
 
-def read_verdicts(source: Path | str) -> list[Judged]:
+def read_verdicts(source: Path | str) -> list[BaselineVerdict]:
     """Return the verdicts of a ``verdicts.json`` or of a results directory.
 
     Raises
@@ -85,7 +85,7 @@ def read_verdicts(source: Path | str) -> list[Judged]:
     path = Path(source)
     path = path / "verdicts.json" if path.is_dir() else path
     try:
-        found: list[Judged] = strict.read(path, Baseline, ADVICE, "a list of verdicts")
+        found: list[BaselineVerdict] = strict.read(path, Baseline, ADVICE, "a list of verdicts")
     except FileNotFoundError:
         raise InputError(f"{path}: cannot be read: there is no such file; {ADVICE}") from None
     return found

@@ -16,8 +16,13 @@ from validation.metrics.values import QUANTITIES, UNITS, finite
 from validation.runs.history import History
 from validation.runs.row import Value
 
-HISTORY, STATIC, MODES, DIAGNOSTICS, REFERENCE = "history", "static", "modes", "diagnostics", "reference"
-SWITCHES, CONTACT = "switches", "contact"
+HISTORY = "history"
+STATIC = "static"
+MODES = "modes"
+DIAGNOSTICS = "diagnostics"
+REFERENCE = "reference"
+SWITCHES = "switches"
+CONTACT = "contact"
 LINEAR = frozenset({STATIC, MODES, DIAGNOSTICS})  # what a solver can report of a linear scene only
 
 
@@ -39,21 +44,22 @@ class Metric:
 
 
 def _of_columns() -> Iterator[Metric]:
-    own, still = frozenset({HISTORY}), frozenset({HISTORY, STATIC})
+    of_history = frozenset({HISTORY})
+    about_static = frozenset({HISTORY, STATIC})
     for name, column in QUANTITIES.items():
         parts: tuple[tuple[str, str, frozenset[str], Callable[..., Value]], ...] = (
-            ("static", UNITS[name], still, columns.static),
-            ("final", UNITS[name], own, columns.final),
-            ("peak", UNITS[name], still, columns.peak),
-            ("peak_time", "s", still, columns.peak_time),
-            ("settling_step", "step", still, columns.settling),
-            ("fine_settling_step", "step", still, columns.fine_settling),
-            ("minimum", UNITS[name], own, columns.minimum),
+            ("static", UNITS[name], about_static, columns.static),
+            ("final", UNITS[name], of_history, columns.final),
+            ("peak", UNITS[name], about_static, columns.peak),
+            ("peak_time", "s", about_static, columns.peak_time),
+            ("settling_step", "step", about_static, columns.settling),
+            ("fine_settling_step", "step", about_static, columns.fine_settling),
+            ("minimum", UNITS[name], of_history, columns.minimum),
         )
         for part, unit, needs, function in parts:
             yield Metric(f"{name}.{part}", unit, _first_line(function), needs, partial(function, column=column))
     for part, function in (("minimum_time", columns.minimum_time), ("tension_time", columns.tension_time)):
-        yield Metric(f"pressure.{part}", "s", _first_line(function), own, function)
+        yield Metric(f"pressure.{part}", "s", _first_line(function), of_history, function)
 
 
 def _first_line(function: Callable[..., Value]) -> str:
@@ -61,8 +67,9 @@ def _first_line(function: Callable[..., Value]) -> str:
 
 
 def _of_modes() -> Iterator[Metric]:
-    operator, seen = frozenset({MODES}), frozenset({HISTORY, STATIC})
-    named = {
+    of_operator = frozenset({MODES})
+    about_static = frozenset({HISTORY, STATIC})
+    parts = {
         "frequency": ("rad/s", "natural circular frequency"),
         "damping": ("1", "damping ratio of the step's operator"),
         "numerical_frequency": ("rad/s", "undamped frequency of the step's operator"),
@@ -70,21 +77,21 @@ def _of_modes() -> Iterator[Metric]:
         "least_root": ("1", "real part of the eigenvalue nearest to -1"),
     }
     for part in ("frequency", "damping", "numerical_frequency", "spectral_radius"):
-        unit, says = named[part]
+        unit, says = parts[part]
         function = partial(modes.first_axial, part=part)
-        yield Metric(f"mode1.{part}", unit, f"first axial mode: {says}", operator, function, "modes")
+        yield Metric(f"mode1.{part}", unit, f"first axial mode: {says}", of_operator, function, "modes")
     for part in ("frequency", "damping"):
         says = f"{part} of the displacement's strongest oscillation"
         function = partial(modes.measured, part=part)
-        yield Metric(f"mode1.measured_{part}", named[part][0], says, seen, function, "modes")
+        yield Metric(f"mode1.measured_{part}", parts[part][0], says, about_static, function, "modes")
     for part in ("frequency", "damping", "spectral_radius", "least_root"):
-        unit, says = named[part]
+        unit, says = parts[part]
         function = partial(modes.contact, part=part)
-        yield Metric(f"contact.{part}", unit, f"contact mode: {says}", operator, function, "modes")
+        yield Metric(f"contact.{part}", unit, f"contact mode: {says}", of_operator, function, "modes")
 
 
 def _of_stability() -> Iterator[Metric]:
-    asked = frozenset({DIAGNOSTICS})
+    of_diagnostics = frozenset({DIAGNOSTICS})
     for name, key, says in (
         ("radius", "predicted_radius", "spectral radius in closed form"),
         ("radius_seen", "spectral_radius", "spectral radius of the step itself"),
@@ -92,27 +99,26 @@ def _of_stability() -> Iterator[Metric]:
         ("residual", "scaled_residual", "scaled residual of one solution"),
         ("omega", "largest_omega", "largest w dt"),
     ):
-        yield Metric(f"stability.{name}", "1", says, asked, partial(growth.diagnosed, key=key), "stability")
+        yield Metric(f"stability.{name}", "1", says, of_diagnostics, partial(growth.diagnosed, key=key), "stability")
     rate = "growth factor per step of an unstable run"
     yield Metric("stability.growth", "1", rate, frozenset({HISTORY}), growth.growth_of_run, "stability")
     largest = "largest w dt without growth (stability limit)"
-    yield Metric("stability.limit", "1", largest, asked, growth.limit, "limit")
+    yield Metric("stability.limit", "1", largest, of_diagnostics, growth.limit, "limit")
     change = "largest relative change of a mode's energy over the run"
     yield Metric("energy.drift", "1", change, frozenset({HISTORY, STATIC, MODES}), growth.drift, "energy")
 
 
 def _of_switches() -> Iterator[Metric]:
-    asked = frozenset({SWITCHES})
-    yield Metric("switches.count", "1", "openings and closings after t = 0", asked, contact.count, "switches")
+    of_switches = frozenset({SWITCHES})
+    yield Metric("switches.count", "1", "openings and closings after t = 0", of_switches, contact.count, "switches")
     for part, opens in (("first_opening", True), ("first_closing", False)):
         says = f"time of the {part.replace('_', ' ')} after t = 0"
-        yield Metric(f"switches.{part}", "s", says, asked, partial(contact.first, opens=opens), "switches")
+        yield Metric(f"switches.{part}", "s", says, of_switches, partial(contact.first, opens=opens), "switches")
     for part, opens in (("second_opening", True), ("second_closing", False)):
         says = f"time of the {part.replace('_', ' ')} after t = 0, corners that switch together as one"
-        yield Metric(f"switches.{part}", "s", says, asked, partial(contact.second, opens=opens), "switches")
+        yield Metric(f"switches.{part}", "s", says, of_switches, partial(contact.second, opens=opens), "switches")
     for name, unit, says, function in contact.parts():
-        seen = partial(contact.reported, part=function)
-        yield Metric(name, unit, says, frozenset({CONTACT}), seen, "switches")
+        yield Metric(name, unit, says, frozenset({CONTACT}), partial(contact.reported, part=function), "switches")
     changes = _first_line(contact.state_changes)
     yield Metric("contact.state_changes", "1", changes, frozenset({HISTORY}), contact.state_changes, "switches")
     says = _first_line(contact.horizon)
@@ -149,14 +155,14 @@ CATALOGUE = SOLO | PAIRS
 
 def is_count(metric: str) -> bool:
     """Whether a metric counts something: its zero is none, and not a small number."""
-    known = CATALOGUE.get(metric)
-    return metric in COUNTS or (known is not None and known.unit == "step")
+    entry = CATALOGUE.get(metric)
+    return metric in COUNTS or (entry is not None and entry.unit == "step")
 
 
 def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
     """Return the metrics of one run that the parts of a study's `measures` ask for, or those of them that are named."""
-    found = [metric for metric in (*SOLO.values(), KIND) if metric.measure in measures]
-    return found if only is None else [metric for metric in found if metric.id in only]
+    metrics = [metric for metric in (*SOLO.values(), KIND) if metric.measure in measures]
+    return metrics if only is None else [metric for metric in metrics if metric.id in only]
 
 
 def solo(

@@ -47,8 +47,8 @@ def _at_first_peak(m: Measurable, column: str, values: Array | None) -> Value:
     x = m.column(column)
     if x is None or values is None:
         return NOT_REPORTED
-    found = first_peak(x, m.static[column]) if column in m.static else None
-    return UNDEFINED if found is None else float(values[found])
+    index = first_peak(x, m.static[column]) if column in m.static else None
+    return UNDEFINED if index is None else float(values[index])
 
 
 def settling(m: Measurable, column: str) -> Value:
@@ -83,28 +83,29 @@ def first_peak(x: Array, static: float) -> int | None:
     if not beyond.any():
         return None
     start = int(np.argmax(beyond))
-    back = np.nonzero(~beyond[start:])[0]
-    if not len(back):
+    returns = np.nonzero(~beyond[start:])[0]
+    if not len(returns):
         return None
-    return start + int(np.argmax(np.abs(x[start : start + int(back[0])])))
+    return start + int(np.argmax(np.abs(x[start : start + int(returns[0])])))
 
 
 def minimum_time(m: Measurable) -> Value:
     """Time of the largest tension in a locked contact [s]; undefined where there is none."""
-    x, pulls = m.column(PRESSURE), _pulls(m)
-    if x is None or pulls is None:
+    x = m.column(PRESSURE)
+    in_tension = _in_tension(m)
+    if x is None or in_tension is None:
         return NOT_REPORTED
-    return float(m.history.time[np.argmin(x)]) if pulls.any() else UNDEFINED
+    return float(m.history.time[np.argmin(x)]) if in_tension.any() else UNDEFINED
 
 
 def tension_time(m: Measurable) -> Value:
     """Total time a locked contact is in tension [s]; undefined where there is none."""
-    pulls = _pulls(m)
-    if pulls is None:
+    in_tension = _in_tension(m)
+    if in_tension is None:
         return NOT_REPORTED
-    return float(m.step * pulls.sum()) if pulls.any() else UNDEFINED
+    return float(m.step * in_tension.sum()) if in_tension.any() else UNDEFINED
 
 
-def _pulls(m: Measurable) -> np.ndarray | None:
+def _in_tension(m: Measurable) -> np.ndarray | None:
     x = m.column(PRESSURE)
     return None if x is None else x < -NOISE * largest(x)

@@ -19,7 +19,7 @@ Part = Callable[[ContactRecord], Value]
 
 def count(m: Measurable) -> Value:
     """Openings and closings after t = 0, of all corners."""
-    return NOT_REPORTED if m.switches is None else float(sum(one.opens is not None for one in m.switches))
+    return NOT_REPORTED if m.switches is None else float(sum(switch.opens is not None for switch in m.switches))
 
 
 def first(m: Measurable, opens: bool) -> Value:
@@ -117,8 +117,8 @@ def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float])
     """Return a number of the restitutions of the single contacts, undefined where none begins and ends in the run."""
     if record.rebounds is None:
         return NOT_REPORTED
-    found = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
-    return float(part(found)) if found else UNDEFINED
+    restitutions = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
+    return float(part(restitutions)) if restitutions else UNDEFINED
 
 
 def slip(record: ContactRecord) -> Value:
@@ -154,9 +154,9 @@ def total(record: ContactRecord) -> Array | None:
     return np.asarray(sum(record.energies[name] for name in STORED), dtype=np.float64)
 
 
-def given(record: ContactRecord) -> Value:
+def input_energy(record: ContactRecord) -> Value:
     """Kinetic energy at the start and what the loads put in until they stand still."""
-    return record.given
+    return record.input_energy
 
 
 def rise(record: ContactRecord) -> Value:
@@ -164,7 +164,9 @@ def rise(record: ContactRecord) -> Value:
     energy = total(record)
     if energy is None:
         return NOT_REPORTED
-    return max(0.0, float(energy.max()) - record.start_energy) / record.given if record.given else UNDEFINED
+    return (
+        max(0.0, float(energy.max()) - record.start_energy) / record.input_energy if record.input_energy else UNDEFINED
+    )
 
 
 def switching(record: ContactRecord) -> Value:
@@ -172,7 +174,7 @@ def switching(record: ContactRecord) -> Value:
     lost = record.energies.get(LOST[2])
     if lost is None:
         return NOT_REPORTED
-    return -float(lost[-1]) / record.given if record.given else UNDEFINED
+    return -float(lost[-1]) / record.input_energy if record.input_energy else UNDEFINED
 
 
 def imbalance(record: ContactRecord) -> Value:
@@ -193,12 +195,12 @@ def horizon(m: Measurable) -> Value:
     if shadow is None or not len(m.history.time):
         return NOT_REPORTED
     n = min(len(shadow.time), len(m.history.time))
-    apart = np.zeros(n, bool)
+    disagrees = np.zeros(n, bool)
     for name, values in m.history.columns.items():
         if name in ("displacement", "contact_pressure") and name in shadow.columns:
-            apart |= ~(np.abs(values[:n] - shadow.columns[name][:n]) <= AGREED * largest(values))
-    met = np.flatnonzero(apart)
-    return float(m.history.time[met[0] - 1 if len(met) else n - 1]) if not (len(met) and met[0] == 0) else 0.0
+            disagrees |= ~(np.abs(values[:n] - shadow.columns[name][:n]) <= AGREED * largest(values))
+    agreed_steps = int(np.argmax(disagrees)) if disagrees.any() else n
+    return float(m.history.time[agreed_steps - 1]) if agreed_steps > 0 else 0.0
 
 
 PARTS: tuple[tuple[str, str, Part], ...] = (
@@ -214,7 +216,7 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.slip_rate", "m/s", slip_rate),
     ("contact.landing_speed", "m/s", landing_speed),
     ("contact.restitution", "1", restitution),
-    ("energy.given", "J", given),
+    ("energy.given", "J", input_energy),
     ("energy.rise", "1", rise),
     ("energy.switching_gain", "1", switching),
     ("energy.imbalance", "1", imbalance),

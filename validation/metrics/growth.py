@@ -10,7 +10,7 @@ from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.history import Array, History
 from validation.runs.row import Value
-from validation.runs.run import Outcome, Told
+from validation.runs.run import Outcome, WordWithSentence
 
 WINDOW = 4000  # steps at either end of a run in which the amplitudes of its modes are fitted
 ROUNDING = 1e-9  # |radius - 1| within which a mode neither grows nor decays: a double root doubles the lost digits
@@ -19,7 +19,7 @@ AGREED = 1e-2  # relative difference between growth seen and predicted: several 
 GROWN = (Outcome.UNSTABLE, Outcome.OVERFLOW, Outcome.MISPREDICTED, Outcome.UNBOUNDED)
 
 
-class Stability(Told):
+class Stability(WordWithSentence):
     """What the largest eigenvalue of a step makes of a run; `sentence` says it in words."""
 
     STABLE = "stable", "Every mode decays: the spectral radius is below one."
@@ -71,13 +71,14 @@ def growth(values: Array) -> float | None:
 
 def _largest_root(y: Array) -> float:
     """Modulus of the largest root of the last values; a growing mode has one outside the unit circle, or a pair."""
-    order, n = 2, np.arange(len(y))[-6:]
+    order = 2
+    n = np.arange(len(y))[-6:]
     rate = float(np.max(np.abs(y)) / np.max(np.abs(y[:-1])))
     scaled = y[n] * rate ** (n[-1] - n).astype(float)
     hankel = np.lib.stride_tricks.sliding_window_view(scaled, order + 1)
-    left, size, _ = np.linalg.svd(hankel.T, full_matrices=False)
-    kept = left[:, : min(order, int(np.sum(size > 1e-11 * size[0])))]
-    roots = np.linalg.eigvals(np.linalg.lstsq(kept[:-1], kept[1:], rcond=None)[0])
+    vectors, singular_values, _ = np.linalg.svd(hankel.T, full_matrices=False)
+    signal_space = vectors[:, : min(order, int(np.sum(singular_values > 1e-11 * singular_values[0])))]
+    roots = np.linalg.eigvals(np.linalg.lstsq(signal_space[:-1], signal_space[1:], rcond=None)[0])
     return rate * float(np.max(np.abs(roots)))
 
 

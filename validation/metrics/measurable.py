@@ -41,10 +41,11 @@ class Measurable:
     @cached_property
     def pole(self) -> Pole | str:
         """Strongest oscillating pole of the displacement about its static value."""
-        x, static = self.history.columns.get(DISPLACEMENT), self.static.get(DISPLACEMENT)
+        x = self.history.columns.get(DISPLACEMENT)
+        static = self.static.get(DISPLACEMENT)
         if x is None or static is None:
             return NOT_REPORTED
         if static == 0 or not np.all(np.isfinite(x)):
             return UNDEFINED
-        found = poles(x / static - 1, self.step)
-        return found[0] if found else UNDEFINED
+        strongest_first = poles(x / static - 1, self.step)
+        return strongest_first[0] if strongest_first else UNDEFINED

@@ -25,7 +25,8 @@ def operator_damping(eigenvalues: tuple[complex, complex]) -> Value:
         return float(-logarithm.real / abs(logarithm))
     if first.real <= 0 or second.real <= 0:
         return UNDEFINED
-    a, b = math.log(first.real), math.log(second.real)
+    a = math.log(first.real)
+    b = math.log(second.real)
     return -(a + b) / (2 * math.sqrt(a * b)) if a * b > 0 else UNDEFINED
 
 

@@ -52,7 +52,8 @@ def scaled(p: Pairing, quantity: str) -> Value:
 
     A wave that has not arrived leaves nothing to divide by.
     """
-    static, both = p.metrics.get(f"{quantity}.static"), p.columns(QUANTITIES[quantity])
+    static = p.metrics.get(f"{quantity}.static")
+    both = p.columns(QUANTITIES[quantity])
     if not isinstance(static, float) or both is None:
         return NOT_REPORTED
     value, exact = both

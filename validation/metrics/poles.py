@@ -17,8 +17,8 @@ LONGEST = 400  # samples: enough for a pencil, small enough for its singular val
 LEAST = 6  # samples
 TURN = 1.0  # rad between two samples, at most: far from pi
 STOPPED = 240.0  # dB that a filter takes from what would be read as a slower power: below the rounding of a signal
-HELD = 1e-6  # of the maximum
-STILL = 1e-4  # of a power from 1: a constant
+LARGEST_MISFIT = 1e-6  # of the maximum
+CONSTANT_WITHIN = 1e-4  # of a power from 1
 ROUGH = 0.1  # of the maximum: what the powers may leave of a signal of which they say something
 
 
@@ -47,17 +47,17 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
     Notes
     -----
     xi = -Re(ln z) / |ln z| and w' dt = |ln z| for a complex pair; real poles carry no xi and are left out. A signal
-    that the poles do not give back to `HELD` of its maximum holds more modes than can be told apart: no poles.
+    that the poles do not give back to `LARGEST_MISFIT` holds more modes than can be told apart: no poles.
     """
     y, thin = _window(signal, order, tolerance)
     if len(y) < LEAST or not np.any(y) or not np.all(np.isfinite(y)):  # over a tiny static value numbers overflow
         return []
     size = float(np.max(np.abs(y)))
     z, c, misfit = _fit(y / size, order, tolerance)
-    if misfit > HELD:
+    if misfit > LARGEST_MISFIT:
         return []
-    found = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-9]
-    return sorted(found, key=lambda pole: -pole.amplitude)
+    oscillating = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-9]
+    return sorted(oscillating, key=lambda pole: -pole.amplitude)
 
 
 @dataclass(frozen=True)
@@ -85,12 +85,16 @@ def swing(signal: Array, step: float, order: int = 7) -> Swing:
     if len(y) < 2 * order + 2 or size == 0:
         return Swing(None, None)
     z, c, misfit = _fit(y / size, order, 1e-11)
-    still = [k for k in range(len(z)) if abs(z[k] - 1) < STILL and abs(z[k].imag) < 1e-9]
-    tail = float(np.mean(signal[-max(2, len(signal) // 10) :]))
-    static = float(np.sum(c[still].real)) * size if still and misfit < ROUGH else (tail if misfit >= ROUGH else None)
-    least = max(misfit, 1e-6)
-    found = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-6]
-    strong = [pole for pole in found if pole.amplitude > least * size]
+    constant = [k for k in range(len(z)) if abs(z[k] - 1) < CONSTANT_WITHIN and abs(z[k].imag) < 1e-9]
+    final_mean = float(np.mean(signal[-max(2, len(signal) // 10) :]))
+    static = None
+    if misfit >= ROUGH:
+        static = final_mean
+    elif constant:
+        static = float(np.sum(c[constant].real)) * size
+    smallest_share = max(misfit, 1e-6)
+    oscillating = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-6]
+    strong = [pole for pole in oscillating if pole.amplitude > smallest_share * size]
     return Swing(static, max(strong, key=lambda pole: pole.amplitude, default=None))
 
 
@@ -102,21 +106,23 @@ def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, 
     coefficients only, and what would turn by more than pi between two samples, and be read as a slower power, is gone.
     """
     y = signal[:LONGEST]
-    most = len(signal) // LONGEST
-    if most < 2 or not np.any(y) or not np.all(np.isfinite(signal[: LONGEST * most])):
+    longest_stride = len(signal) // LONGEST
+    if longest_stride < 2 or not np.any(y) or not np.all(np.isfinite(signal[: LONGEST * longest_stride])):
         return y, 1
     z, c, _ = _fit(y / float(np.max(np.abs(y))), order, tolerance)
     turns = np.angle(z) * (z.imag > 1e-9)
     strongest = float(turns[np.argmax(np.abs(c) * (turns > 0))]) if np.any(turns > 0) else 0.0
-    thin = max(1, min(most, int(TURN / strongest))) if strongest > 0 else 1
-    return (signal[: LONGEST * thin], 1) if thin == 1 else (_low(signal[: LONGEST * thin], thin), thin)
+    thin = max(1, min(longest_stride, int(TURN / strongest))) if strongest > 0 else 1
+    y = signal[: LONGEST * thin]
+    return y if thin == 1 else _low_pass(y, thin), thin
 
 
-def _low(signal: Array, thin: int) -> Array:
+def _low_pass(signal: Array, thin: int) -> Array:
     """Return every k-th sample of a signal whose powers up to `TURN` between these pass and those beyond pi do not."""
     from scipy.signal import fftconvolve, firwin, kaiserord
 
-    passes, stops = TURN / np.pi, 1.0  # of pi between two of the samples that are left
+    passes = TURN / np.pi  # of pi between two of the samples that are left
+    stops = 1.0  # the same
     taps, beta = kaiserord(STOPPED, (stops - passes) / thin)
     low = firwin(taps | 1, (passes + stops) / 2 / thin, window=("kaiser", beta))
     return np.asarray(fftconvolve(signal, low, mode="valid")[::thin])

@@ -9,7 +9,8 @@ import numpy as np
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 
-UNDEFINED, NOT_REPORTED = "undefined", "not reported"  # no meaning here; the solver does not give it
+UNDEFINED = "undefined"  # it has no meaning here
+NOT_REPORTED = "not reported"  # the solver does not give it
 ALIAS = "alias"  # a frequency beyond pi / dt, of which samples every dt show another
 QUANTITIES = {
     "displacement": DISPLACEMENT,
@@ -49,6 +50,11 @@ def ratio(value: Value, reference: Value) -> Value:
 def finite(value: Value) -> Value:
     """Replace what is not a finite number by its name."""
     return value if not isinstance(value, float) or math.isfinite(value) else UNDEFINED
+
+
+def or_nan(value: Value) -> float:
+    """Return a number, NaN for what is none."""
+    return value if isinstance(value, float) else math.nan
 
 
 def as_number(value: Value) -> float:

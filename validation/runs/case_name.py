@@ -24,11 +24,11 @@ class CaseName:
     @classmethod
     def parse(cls, text: str) -> CaseName:
         """Return the name that a text states; brackets that hold no ``key=value`` belong to the scene's name."""
-        found = _CASE.fullmatch(text)
-        if found is None:
+        match = _CASE.fullmatch(text)
+        if match is None:
             return cls(text)
-        pairs = (part.partition("=") for part in _NEXT.split(found["values"]))
-        return cls(found["scene"], {key: value for key, _, value in pairs})
+        pairs = (part.partition("=") for part in _NEXT.split(match["values"]))
+        return cls(match["scene"], {key: value for key, _, value in pairs})
 
 
 def scene_of(case: str) -> str:

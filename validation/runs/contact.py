@@ -48,7 +48,7 @@ class ContactRecord:
         The contacts that begin within the run, in the order of their beginning.
     energies
         Name among `STORED` and `LOST` to the energy at each step [J], shape (steps,).
-    start_energy, given
+    start_energy, input_energy
         Kinetic energy at t = 0 [J]; that energy and what the loads put in statically, as the scale of changes [J].
     solves, cuts
         Solves of the open-close iteration and cuts of each step [-], shape (steps,).
@@ -64,7 +64,7 @@ class ContactRecord:
     open_share: Array
     start_velocity: float
     start_energy: float
-    given: float
+    input_energy: float
     velocity: Array | None = None
     rebounds: tuple[Rebound, ...] | None = None
     energies: Mapping[str, Array] = field(default_factory=dict)
@@ -88,10 +88,10 @@ def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:
     """
     closed = gap <= 0
     edges = [*(np.flatnonzero(np.diff(closed)) + 1), len(gap)]
-    found = []
+    rebounds = []
     for first, last in itertools.pairwise(edges):
         if closed[first] and first >= 2 and not closed[first - 2] and gap[first - 1] < gap[first - 2]:
             free = last + 2 < len(gap) and not closed[last : last + 3].any()
             after = float(gap[last + 2] - gap[last + 1]) / step if free else None
-            found.append((int(first), Rebound(float(gap[first - 2] - gap[first - 1]) / step, after)))
-    return found
+            rebounds.append((int(first), Rebound(float(gap[first - 2] - gap[first - 1]) / step, after)))
+    return rebounds

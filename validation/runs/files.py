@@ -52,27 +52,28 @@ def atomic_directory(out: Path) -> Iterator[Path]:
     InputError
         The directory cannot be made or replaced.
     """
-    place = out.absolute()
-    beside: Path | None = None
+    target = out.absolute()
+    temporary: Path | None = None
     try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}."))
-        new, old = beside / "new", beside / "old"
+        target.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+        new = temporary / "new"
+        old = temporary / "old"
         new.mkdir()
         yield new
-        if place.exists():
-            os.replace(place, old)
+        if target.exists():
+            os.replace(target, old)
         try:
-            os.replace(new, place)
+            os.replace(new, target)
         except OSError:
             if old.exists():
-                os.replace(old, place)
+                os.replace(old, target)
             raise
     except OSError as error:
         raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
     finally:
-        if beside is not None:
-            shutil.rmtree(beside, ignore_errors=True)
+        if temporary is not None:
+            shutil.rmtree(temporary, ignore_errors=True)
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:

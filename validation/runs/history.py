@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"
+DISPLACEMENT = "displacement"
+PRESSURE = "contact_pressure"
 
 
 @dataclass(frozen=True)

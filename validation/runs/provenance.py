@@ -42,12 +42,12 @@ def _commit() -> str:
     A checkout of another project that this package lies in, as in a virtual environment there, says nothing of it.
     """
     top = _git("rev-parse", "--show-toplevel")
-    if top is None or not _own(Path(top)):
+    if top is None or not _is_source_root(Path(top)):
         return "unknown (not a git checkout)"
     return _git("describe", "--always", "--abbrev=12", "--dirty=+") or "unknown (no commit yet)"
 
 
-def _own(top: Path) -> bool:
+def _is_source_root(top: Path) -> bool:
     """Whether a directory is the root of this distribution's sources, these among them."""
     try:
         project = tomllib.loads((top / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -60,12 +60,12 @@ def _git(*words: str) -> str | None:
     """Return what git says in the directory of the sources, None where it says nothing."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             ["git", *words], cwd=ROOM, env=environment, capture_output=True, text=True, timeout=5, check=True
         )
     except (OSError, ValueError, subprocess.SubprocessError):  # a path that is no text is a ValueError
         return None
-    return done.stdout.strip() or None
+    return process.stdout.strip() or None
 
 
 def _processor() -> str:

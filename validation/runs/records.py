@@ -105,7 +105,7 @@ Word = Annotated[str, Field(pattern="^(PASS|FAIL|NOT RUN)$")]
 Band = Annotated[list[float], Field(min_length=2, max_length=2), AfterValidator(_ordered)]
 
 
-class Judged(TypedDict):
+class BaselineVerdict(TypedDict):
     """What two runs are compared by, gate by gate."""
 
     id: str
@@ -115,7 +115,7 @@ class Judged(TypedDict):
     verdict: Word
 
 
-class VerdictRecord(Judged):
+class VerdictRecord(BaselineVerdict):
     """One gate's verdict; values are rounded well above the last bits, and no seconds stand in it."""
 
     scene: str
@@ -128,7 +128,7 @@ class VerdictRecord(Judged):
     alarms: list[str]
 
 
-def sound(record: Judged) -> Judged:
+def sound(record: BaselineVerdict) -> BaselineVerdict:
     """Return a verdict that its own value and band bear out; the value has four digits, two where it is small.
 
     Raises
@@ -136,10 +136,13 @@ def sound(record: Judged) -> Judged:
     ValueError
         It passes without a number, or its word is not that of its value.
     """
-    value, (low, high), word = record["value"], record["band"], record["verdict"]
+    value = record["value"]
+    low, high = record["band"]
+    word = record["verdict"]
     inside = outside = True
     if isinstance(value, int | float):
-        slack = (6e-4 if abs(value) >= 1e-9 else 6e-2) * min(abs(value), 1e300) + 1e-12
+        rounding = 6e-4 if abs(value) >= 1e-9 else 6e-2
+        slack = rounding * min(abs(value), 1e300) + 1e-12
         inside = low - slack <= value <= high + slack
         outside = not low + slack < value < high - slack
     elif word == "PASS":
@@ -149,7 +152,7 @@ def sound(record: Judged) -> Judged:
     return record
 
 
-def unique(records: list[Judged]) -> list[Judged]:
+def unique(records: list[BaselineVerdict]) -> list[BaselineVerdict]:
     """Return verdicts of which no two are of one gate.
 
     Raises
@@ -157,14 +160,14 @@ def unique(records: list[Judged]) -> list[Judged]:
     ValueError
         A study has two of one id.
     """
-    met = set()
+    gates = set()
     for record in records:
         name = (record["study"], record["id"])
-        if name in met:
+        if name in gates:
             raise ValueError(f"{record['id'][:200]} appears twice in the study {record['study'][:200]}")
-        met.add(name)
+        gates.add(name)
     return records
 
 
 Verdicts = Annotated[list[Annotated[VerdictRecord, AfterValidator(sound)]], AfterValidator(unique)]
-Baseline = Annotated[list[Annotated[Judged, AfterValidator(sound)]], AfterValidator(unique)]
+Baseline = Annotated[list[Annotated[BaselineVerdict, AfterValidator(sound)]], AfterValidator(unique)]

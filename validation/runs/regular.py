@@ -27,9 +27,9 @@ def regular(path: Path, largest: float = math.inf) -> None:
     OSError
         It is not there, or is out of reach.
     """
-    there = path.stat()
-    if not stat.S_ISREG(there.st_mode):
-        kind = next((name for is_kind, name in KINDS if is_kind(there.st_mode)), "something else")
+    status = path.stat()
+    if not stat.S_ISREG(status.st_mode):
+        kind = next((name for is_kind, name in KINDS if is_kind(status.st_mode)), "something else")
         raise InputError(f"{path}: must be a regular file, got a {kind}")
-    if there.st_size > largest:
-        raise InputError(f"{path}: must be at most {largest:.0f} bytes, got {there.st_size}")
+    if status.st_size > largest:
+        raise InputError(f"{path}: must be at most {largest:.0f} bytes, got {status.st_size}")

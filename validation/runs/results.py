@@ -28,7 +28,7 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 ADVICE = "delete it and run again"
-KEPT = (Outcome.COMPLETED, Outcome.UNSTABLE)  # outcomes whose history is kept
+WITH_HISTORY = (Outcome.COMPLETED, Outcome.UNSTABLE)  # outcomes whose history is kept
 _parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
 
 
@@ -87,11 +87,11 @@ class Results:
         columns = {"time": history.time, **history.columns}
 
         def write(stream: IO[bytes]) -> None:  # np.savez means other things by its options from version to version
-            with zipfile.ZipFile(stream, "w") as kept:
-                kept.comment = key.encode()  # a file that stands in another's place is seen
+            with zipfile.ZipFile(stream, "w") as archive:
+                archive.comment = key.encode()  # a file that stands in another's place is seen
                 for name, values in columns.items():
-                    with kept.open(f"{name}.npy", "w", force_zip64=True) as part:
-                        np.lib.format.write_array(part, np.asarray(values, np.float64), allow_pickle=False)
+                    with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                        np.lib.format.write_array(file, np.asarray(values, np.float64), allow_pickle=False)
 
         write_atomically(self._make("histories", f"{key}.npz"), write)
 
@@ -106,7 +106,7 @@ class Results:
         path = self._history_file(key)
         if not path.exists():
             return None
-        owner, columns = _kept_columns(path)
+        owner, columns = _read_columns(path)
         defect = "belongs to another case" if owner != key else _defect(columns)
         if defect:
             raise InputError(f"{path}: {defect}; {ADVICE}")
@@ -121,12 +121,17 @@ class Results:
             The file is damaged.
         """
         path = self._history_file(row.key)
-        if row.outcome not in KEPT:
+        if row.outcome not in WITH_HISTORY:
             return True
         if not path.exists():
             return False
-        owner, found = _kept_columns(path)
-        return owner == row.key and _defect(found) is None and len(found["time"]) == steps and {*columns} <= {*found}
+        owner, columns_of_file = _read_columns(path)
+        return (
+            owner == row.key
+            and _defect(columns_of_file) is None
+            and len(columns_of_file["time"]) == steps
+            and {*columns} <= {*columns_of_file}
+        )
 
     def _history_file(self, key: str) -> Path:
         return self.directory / "histories" / f"{key}.npz"
@@ -156,12 +161,12 @@ class Results:
             The file is damaged, or is that of another study.
         """
         name = f"studies/{study}.json"
-        found: Manifest | None = self.read_json(name, None, Manifest)
-        if found is None:
+        manifest: Manifest | None = self.read_json(name, None, Manifest)
+        if manifest is None:
             return {"study": study}
-        if found["study"] != study:
-            raise InputError(f"{self.directory / name}: holds the study {found['study']!r}; {ADVICE}")
-        return found
+        if manifest["study"] != study:
+            raise InputError(f"{self.directory / name}: holds the study {manifest['study']!r}; {ADVICE}")
+        return manifest
 
     def whole(self, study: str, histories: bool = False) -> Manifest:
         """Return a study's manifest where every row that it lists is here, and where asked every history.
@@ -171,15 +176,19 @@ class Results:
         InputError
             The manifest, a row or a history is lost.
         """
-        manifest, rows = self.manifest(study), self.rows()
+        manifest = self.manifest(study)
+        rows = self.rows()
         for case in manifest.get("cases", []):
             row = rows.get(case["key"])
-            gone = row is not None and row.outcome in KEPT and not self._history_file(row.key).exists()
-            if row is None or (histories and gone):
-                lost = "row" if row is None else "history"
-                raise InputError(
-                    f"{self.directory}: the {lost} of {case['scene']} {case['solver']} is missing; run {study} again"
-                )
+            if row is None:
+                part = "row"
+            elif histories and row.outcome in WITH_HISTORY and not self._history_file(row.key).exists():
+                part = "history"
+            else:
+                continue
+            raise InputError(
+                f"{self.directory}: the {part} of {case['scene']} {case['solver']} is missing; run {study} again"
+            )
         return manifest
 
     def check(self) -> None:
@@ -197,8 +206,8 @@ class Results:
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
-        return [v for v in kept if study is None or v["study"] == study]
+        records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
+        return [v for v in records if study is None or v["study"] == study]
 
     def unread_verdicts(self) -> dict[str, str]:
         """Return the studies with verdicts that are not as this version writes them, and what is wrong with the first.
@@ -208,25 +217,25 @@ class Results:
         InputError
             The file holds no list of records that name their study.
         """
-        kept: Iterable[Named] = self.read_json("verdicts.json", [], list[Named])
-        defects = {v["study"]: strict.defect_of(v, VerdictRecord) for v in reversed([*kept])}
+        records: Iterable[Named] = self.read_json("verdicts.json", [], list[Named])
+        defects = {v["study"]: strict.defect_of(v, VerdictRecord) for v in reversed([*records])}
         return {study: defect for study, defect in defects.items() if defect}
 
     def readable_verdicts(self) -> list[VerdictRecord]:
         """Return the verdicts of the studies that `unread_verdicts` does not name."""
         unread = self.unread_verdicts()
-        kept: list[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
-        return [v for v in kept if v["study"] not in unread]
+        records: list[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+        return [v for v in records if v["study"] not in unread]
 
     def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
-        with self._alone():
-            kept: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
-            others = [v for v in kept if v["study"] != study]
+        with self._locked():
+            records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+            others = [v for v in records if v["study"] != study]
             self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
 
     @contextmanager
-    def _alone(self) -> Iterator[None]:
+    def _locked(self) -> Iterator[None]:
         """Hold the directory's lock, where the system has locks; it falls with the process that holds it."""
         try:
             import fcntl
@@ -245,15 +254,15 @@ class Results:
             os.close(handle)
 
 
-def _kept_columns(path: Path) -> tuple[str, dict[str, Array]]:
+def _read_columns(path: Path) -> tuple[str, dict[str, Array]]:
     """Return the key that a history was kept under, and its columns."""
     try:
-        with zipfile.ZipFile(path) as kept:
+        with zipfile.ZipFile(path) as archive:
             columns = {}
-            for name in kept.namelist():
-                with kept.open(name) as part:
-                    columns[name.removesuffix(".npy")] = np.lib.format.read_array(part, allow_pickle=False)
-            return kept.comment.decode(errors="replace"), columns
+            for name in archive.namelist():
+                with archive.open(name) as file:
+                    columns[name.removesuffix(".npy")] = np.lib.format.read_array(file, allow_pickle=False)
+            return archive.comment.decode(errors="replace"), columns
     except Exception:  # what a damaged file may raise is no closed list
         raise InputError(f"{path}: cannot be read as a history; {ADVICE}") from None
 

@@ -45,13 +45,15 @@ class Row:
             data = json.loads(line)
             if data.pop("digest") != _digest(data):
                 return None
-            own = {name: value for name, value in data.items() if name in FIELDS}  # another version may say more
-            return cls(**own | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
+            known_fields = {
+                name: value for name, value in data.items() if name in FIELDS
+            }  # another version may say more
+            return cls(**known_fields | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return None
 
 
-FIELDS = frozenset(one.name for one in fields(Row))
+FIELDS = frozenset(field.name for field in fields(Row))
 
 
 def _digest(data: Mapping[str, Any]) -> str:

@@ -10,7 +10,7 @@ from typing import Self
 from validation.runs.history import Array, History
 
 
-class Told(enum.StrEnum):
+class WordWithSentence(enum.StrEnum):
     """A word with its `sentence` for a table or a report."""
 
     _value_: str
@@ -19,11 +19,12 @@ class Told(enum.StrEnum):
     def __new__(cls, word: str, sentence: str = "") -> Self:
         """Make the word, by which it is found and written; who looks one up gives no sentence."""
         member = str.__new__(cls, word)
-        member._value_, member.sentence = word, sentence
+        member._value_ = word
+        member.sentence = sentence
         return member
 
 
-class Outcome(Told):
+class Outcome(WordWithSentence):
     """How a run ended; `sentence` says it in words."""
 
     COMPLETED = "completed", "The run reached its last step with finite numbers."

@@ -29,7 +29,7 @@ def loads(text: str) -> Any:
         raise ValueError("nested too deeply") from None
 
 
-def read(path: Path, kind: Any, advice: str, what: str = "what a run writes") -> Any:
+def read(path: Path, kind: Any, advice: str, content: str = "what a run writes") -> Any:
     """Return the data of a JSON file whose content is of a type, as it stands in the file.
 
     Raises
@@ -40,7 +40,7 @@ def read(path: Path, kind: Any, advice: str, what: str = "what a run writes") ->
         It cannot be read, or is of another type; the line ends with the advice.
     """
     try:
-        found = loads(path.read_text(encoding="utf-8"))
+        data = loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise
     except OSError as error:
@@ -49,9 +49,9 @@ def read(path: Path, kind: Any, advice: str, what: str = "what a run writes") ->
         raise InputError(f"{path}: must be UTF-8 text, got bytes that are not; {advice}") from None
     except ValueError as error:
         raise InputError(f"{path}: must be JSON: {error}; {advice}") from None
-    if defect := defect_of(found, kind):
-        raise InputError(f"{path}: must be {what}: {defect}; {advice}")
-    return found
+    if defect := defect_of(data, kind):
+        raise InputError(f"{path}: must be {content}: {defect}; {advice}")
+    return data
 
 
 def defect_of(data: object, kind: Any) -> str | None:

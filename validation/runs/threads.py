@@ -27,7 +27,7 @@ VARIABLES = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
-ONE = {"OMP_NUM_THREADS": "1", "VECLIB_MAXIMUM_THREADS": "1"}  # the first is read by all but the last library
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "VECLIB_MAXIMUM_THREADS": "1"}  # the first is read by all but the last library
 
 
 def user_decides() -> bool:
@@ -37,14 +37,14 @@ def user_decides() -> bool:
 
 def environment() -> dict[str, str]:
     """Return the environment of a process that we start."""
-    return dict(os.environ) if user_decides() else {**os.environ, **ONE}
+    return dict(os.environ) if user_decides() else {**os.environ, **ONE_THREAD}
 
 
 def limit_process() -> None:
     """Limit this process, which is ours, and those that it starts, for good."""
     if user_decides():
         return
-    os.environ.update(ONE)
+    os.environ.update(ONE_THREAD)
     if "numpy" in sys.modules:  # forked from a process that has numpy, which reads the environment no more
         loaded_libraries().limit(limits=1, user_api="blas")
 

@@ -20,7 +20,7 @@ from validation.solvers import opened
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
-from validation.solvers.translation import check_columns, flips, naming, no_fields, to_run
+from validation.solvers.translation import check_columns, naming, no_fields, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -40,8 +40,10 @@ class NewmarkBar(Prepared):
     """A bar under the scheme of its scene; there is nothing to save."""
 
     def __init__(self, scene: Scene, name: str) -> None:
-        self.scene, self.name = scene, name
-        self.bar, self.scheme = bar_of(scene), scheme_of(scene)
+        self.scene = scene
+        self.name = name
+        self.bar = bar_of(scene)
+        self.scheme = scheme_of(scene)
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
@@ -80,7 +82,9 @@ class OpeningBar(Prepared):
     def __init__(self, scene: Scene, name: str) -> None:
         from fem_reference.exact.opening_bar import OpeningBar as Exact
 
-        self.scene, self.name, self.scheme = scene, name, scheme_of(scene)
+        self.scene = scene
+        self.name = name
+        self.scheme = scheme_of(scene)
         with naming(scene):
             self.bar = Exact.of(problem_of(scene), scene.contact.gap, scene.block.velocity)
 
@@ -89,34 +93,35 @@ class OpeningBar(Prepared):
         no_fields(self.name, self.scene, fields)
         check_columns(self.scene, OPENING_COLUMNS)
         with naming(self.scene), np.errstate(over="ignore", invalid="ignore"):
-            found = self.bar.solve(self.scheme, self.scene.time.steps)
-        self.found = found
-        force = found.contact_pressure * self.bar.width / 2
-        values = (found.displacement, found.contact_pressure, found.gap, found.gap, force, force)
+            result = self.bar.solve(self.scheme, self.scene.time.steps)
+        self.result = result
+        force = result.contact_pressure * self.bar.width / 2
+        values = (result.displacement, result.contact_pressure, result.gap, result.gap, force, force)
         columns = dict(zip(OPENING_COLUMNS, values, strict=True))
-        history = History(found.time, {name: columns[name] for name in self.scene.run.columns})
-        seconds = {"setup": found.setup_seconds, "stepping": found.stepping_seconds}
+        history = History(result.time, {name: columns[name] for name in self.scene.run.columns})
+        seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
         notes = ("exact in space: a bar on a spring that carries no tension",)
-        return Run(Outcome.COMPLETED, history, {"steps": len(found.time)}, seconds, notes)
+        return Run(Outcome.COMPLETED, history, {"steps": len(result.time)}, seconds, notes)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base between the steps."""
-        return flips({"base": self.found.closed}, self.found.time)
+        return switches_between_steps({"base": self.result.closed}, self.result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
-        found, step = self.found, self.scheme.step
-        force = found.contact_pressure * self.bar.width
+        result = self.result
+        step = self.scheme.step
+        force = result.contact_pressure * self.bar.width
         return opened.record(
             self.scene,
-            time=found.time,
+            time=result.time,
             force=force,
-            impulse=opened.summed(force, step, self.scheme.delta),
-            penetration=np.maximum(0.0, -found.gap),
-            gap=np.maximum(0.0, found.gap),
-            open_share=1 - found.closed,
-            velocity=found.velocity,
-            rebounds=opened.rebounds(np.array([found.gap]), step),
+            impulse=opened.impulse_of_force(force, step, self.scheme.delta),
+            penetration=np.maximum(0.0, -result.gap),
+            gap=np.maximum(0.0, result.gap),
+            open_share=1 - result.closed,
+            velocity=result.velocity,
+            rebounds=opened.rebounds(np.array([result.gap]), step),
         )
 
 
@@ -128,7 +133,8 @@ class ExactBar(Solver):
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
-    role, rank = Role.REFERENCE, 5.0
+    role = Role.REFERENCE
+    rank = 5.0
     line: LineStyle | None = LineStyle("#000000", (), 0.8, 3)
 
     def columns(self) -> tuple[str, ...] | None:
@@ -162,11 +168,15 @@ class ContinuousBar(NewmarkBar):
 
         The rate of a mode is c = -ln(gg) / dt + a0 + a1 w^2.
         """
-        step, d, every = self.scene.time.step, self.scene.damping, super().modes()
-        rate = d.mass - math.log(self.scene.time.discount) / step
-        halves = [(rate + d.stiffness * m.frequency**2) / 2 for m in every]
-        factors = [_factors(m.frequency, half, step) for m, half in zip(every, halves, strict=True)]
-        return tuple(Mode(m.frequency, m.share, pair, None, True) for m, pair in zip(every, factors, strict=True))
+        step = self.scene.time.step
+        damping = self.scene.damping
+        rate = damping.mass - math.log(self.scene.time.discount) / step
+        exact_modes = []
+        for mode in super().modes():
+            half_rate = (rate + damping.stiffness * mode.frequency**2) / 2
+            factors = _factors(mode.frequency, half_rate, step)
+            exact_modes.append(Mode(mode.frequency, mode.share, factors, None, True))
+        return tuple(exact_modes)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time."""
@@ -184,7 +194,8 @@ class Continuum(ExactBar):
 
     name = "continuum"
     handles = frozenset({features.SUB_BLOCKS, features.DAMPING})
-    role, rank = Role.TRUTH, 6.0
+    role = Role.TRUTH
+    rank = 6.0
     line = LineStyle("#999999", (), 0.7, 1)
 
     def applicable(self, scene: Scene) -> str | None:

@@ -221,7 +221,9 @@ class PreparedByFunction(Prepared):
     """A scene for a solver that is one function, with what else it overrides."""
 
     def __init__(self, solver: Solver, scene: Scene, full: bool) -> None:
-        self.solver, self.scene, self.full = solver, scene, full
+        self.solver = solver
+        self.scene = scene
+        self.full = full
 
     def run(self, fields: Path | None = None) -> Run:
         """Call the solver's function."""

@@ -15,7 +15,7 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import dda_limit
+from validation.solvers.blocks.closed import block_of, dda_limit
 from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -39,19 +39,19 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
     """Return the two-block model of a scene."""
     import dda
 
-    b, q = scene.block, scene.load
-    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    b = scene.block
+    q = scene.load
     contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
-    return dda.TwoBlockModel(
-        block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene), q.slope
-    )
+    loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene), q.slope
+    return dda.TwoBlockModel(block_of(scene), contact, *loads)
 
 
 def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
     import dda
 
-    t, d = scene.time, scene.damping
+    t = scene.time
+    d = scene.damping
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
@@ -62,9 +62,11 @@ class OneBlock(Prepared):
     """A whole block on its springs."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene, self.full = scene, full
+        self.scene = scene
+        self.full = full
         with naming(scene):
-            self.model, self.scheme = model_of(scene), scheme_of(scene)
+            self.model = model_of(scene)
+            self.scheme = scheme_of(scene)
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene; DDA has no fields."""
@@ -73,9 +75,9 @@ class OneBlock(Prepared):
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, dda.COLUMNS)
         with naming(self.scene):
-            return to_run(self.scene, self.solved(self.scene.time.steps, self.scene.run.columns))
+            return to_run(self.scene, self.solve_steps(self.scene.time.steps, self.scene.run.columns))
 
-    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+    def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
         import dda
 
@@ -95,9 +97,9 @@ class OneBlock(Prepared):
 
     def modes(self) -> tuple[Mode, ...]:
         """Return the modes that the load reaches, of sub-blocks the lowest."""
-        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in self.found_modes())
+        return tuple(Mode(m.frequency, m.share, m.eigenvalues, m.contact_share) for m in self.package_modes())
 
-    def found_modes(self) -> Sequence[dda.Mode]:
+    def package_modes(self) -> Sequence[dda.Mode]:
         """Return the modes as DDA gives them."""
         import dda
 
@@ -123,7 +125,8 @@ class AdaptiveBlock(Prepared):
     """A whole block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene, self.block = scene, OneBlock(scene, full)
+        self.scene = scene
+        self.block = OneBlock(scene, full)
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the whole block."""
@@ -135,11 +138,13 @@ class AdaptiveBlock(Prepared):
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS))
-        t, own = self.scene.time, self.block
-        columns, floor = self.scene.run.columns, self.scene.damping.floor
+        t = self.scene.time
+        block = self.block
+        columns = self.scene.run.columns
+        floor = self.scene.damping.floor
         with naming(self.scene):
-            found = dda.solve_adaptive(own.model, own.scheme, t.steps, columns, floor, own.full)
-        return to_run(self.scene, found)
+            result = dda.solve_adaptive(block.model, block.scheme, t.steps, columns, floor, block.full)
+        return to_run(self.scene, result)
 
 
 class SubBlocks(OneBlock):
@@ -153,7 +158,7 @@ class SubBlocks(OneBlock):
         with naming(scene):
             self.system = dda.subdivided(self.model, *b.subdivide or (1, 1), b.glue_ratio * b.young, b.pattern)
 
-    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+    def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
         import dda
 
@@ -171,7 +176,7 @@ class SubBlocks(OneBlock):
 
         return dda.static_system(self.system)
 
-    def found_modes(self) -> Sequence[dda.Mode]:
+    def package_modes(self) -> Sequence[dda.Mode]:
         """Return the lowest modes as DDA gives them."""
         import dda
 
@@ -203,7 +208,8 @@ class DDA(Solver):
     )
     sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
-    role, rank = Role.JUDGED, 0.0
+    role = Role.JUDGED
+    rank = 0.0
     line: LineStyle | None = LineStyle("#d55e00", (), 1.1, 5)
 
     def columns(self) -> tuple[str, ...] | None:
@@ -214,16 +220,16 @@ class DDA(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or which features do not go together."""
-        own = set(features.of(scene))
-        if features.ROTATION in own:
+        scene_features = set(features.of(scene))
+        if features.ROTATION in scene_features:
             return rotation_apart(scene)
-        if features.SUB_BLOCKS in own and (apart := own & NOT_OF_SUB_BLOCKS):
-            return f"it does not handle {min(apart)} together with {features.SUB_BLOCKS}"
-        if features.FRICTION in own and features.LAGGED not in own and scene.contact.band[1]:
-            return "a corner that pulls within its band rubs under lagged rules only"
-        if {features.CONSERVING, features.BASE_MOTION} <= own:
+        if features.SUB_BLOCKS in scene_features and (incompatible := scene_features & NOT_OF_SUB_BLOCKS):
+            return f"it does not handle {min(incompatible)} together with {features.SUB_BLOCKS}"
+        if features.FRICTION in scene_features and features.LAGGED not in scene_features and scene.contact.band[1]:
+            return "a corner in tension within its band is frictional under lagged rules only"
+        if {features.CONSERVING, features.BASE_MOTION} <= scene_features:
             return f"it does not handle {features.BASE_MOTION} together with {features.CONSERVING}"
-        if {features.SUB_BLOCKS, features.ADAPTIVE} <= own:
+        if {features.SUB_BLOCKS, features.ADAPTIVE} <= scene_features:
             return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
         return features.damping_apart(scene)
 
@@ -248,7 +254,7 @@ class DDA(Solver):
 class Printed(OneBlock):
     """A whole block stepped by the printed recursion; there is nothing to save."""
 
-    def solved(self, steps: int, columns: Sequence[str]) -> dda.Result:
+    def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
         import dda
 
@@ -264,7 +270,8 @@ class Textbook(DDA):
 
     name = "dda-textbook"
     handles = frozenset()
-    role, rank = Role.REPEAT, 1.0
+    role = Role.REPEAT
+    rank = 1.0
     line = LineStyle("#e69f00", (2.5, 2.5), 1.1, 6)
 
     def columns(self) -> tuple[str, ...] | None:

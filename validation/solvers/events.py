@@ -39,10 +39,11 @@ BLOCK_COLUMNS = (
     *(*GAPS, *FORCES, *SHEAR, *STATES),
 )
 BAR_COLUMNS = ("displacement", "contact_pressure", *GAPS, *FORCES)
-SAMPLES, IN_CONTACT = 400, 9  # instants in which peaks are sought: of the motion, at least, and of each contact
+LEAST_SAMPLES = 400  # instants of the motion in which peaks are sought
+SAMPLES_IN_CONTACT = 9  # further ones in each contact
 # of a switch: whether it opens or closes, whether it slips or sticks
 KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
-TOLD = 6  # switches that a note names
+SWITCHES_LISTED = 6  # switches that a note names
 
 
 def rectangle(scene: Scene) -> tuple[float, float] | None:
@@ -58,7 +59,9 @@ def rectangle(scene: Scene) -> tuple[float, float] | None:
 def data_of(scene: Scene) -> dict[str, float]:
     """Return what block and bar of a scene have in common: size, material, loads, gap and velocity."""
     width, height = rectangle(scene) or (0.0, 0.0)
-    b, c, q = scene.block, scene.contact, scene.load
+    b = scene.block
+    c = scene.contact
+    q = scene.load
     size = {"width": width, "height": height, "gap": c.gap, "velocity": b.velocity}
     return size | {"density": b.density, "young": b.young, "pressure": q.pressure, "gravity": q.gravity}
 
@@ -67,7 +70,9 @@ def block_of(scene: Scene) -> BlockProblem:
     """Return the block of a scene."""
     from fem_reference.events.block_model import BlockProblem
 
-    b, c, q = scene.block, scene.contact, scene.load
+    b = scene.block
+    c = scene.contact
+    q = scene.load
     return BlockProblem(
         **data_of(scene),
         stiffness=c.stiffness,
@@ -107,46 +112,53 @@ class Motion(Prepared):
     names: tuple[str, ...]  # of the columns
 
     def __init__(self, scene: Scene, name: str) -> None:
-        self.scene, self.name = scene, name
-        self.found: Sequence[events.Switch] | None = None
+        self.scene = scene
+        self.name = name
+        self.switch_events: Sequence[events.Switch] | None = None
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the motion that was run."""
-        if self.found is None:
+        if self.switch_events is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        return tuple(Switch(one.time, one.corner, *KINDS[one.kind]) for one in self.found)
+        return tuple(Switch(event.time, event.corner, *KINDS[event.kind]) for event in self.switch_events)
 
     def enclosures(self) -> list[tuple[str, str, str, float]]:
         """Return corner, kind, decimal digits of the midpoint and radius [s] of each switch that is enclosed."""
-        return [(one.corner, one.kind, one.midpoint, one.radius) for one in self.found or () if one.midpoint]
+        return [
+            (event.corner, event.kind, event.midpoint, event.radius)
+            for event in self.switch_events or ()
+            if event.midpoint
+        ]
 
     def instants(self) -> Array:
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)
 
-    def finely(self, *corners: str) -> Array:
-        """Return instants between the steps as well, at least `SAMPLES`, and in each contact, to find peaks in [s]."""
+    def sampling_instants(self, *corners: str) -> Array:
+        """Return the instants in which peaks are sought [s]: at least `LEAST_SAMPLES`, further ones in each contact."""
         t = self.scene.time
-        parts = -(-SAMPLES // t.steps)
-        even = t.step / parts * np.arange(1.0, t.steps * parts + 1)
-        spans = [span for corner in corners for span in self.spans(corner)]
-        within = [np.linspace(first, last or self.end, IN_CONTACT + 2)[1:-1] for first, last in spans]
-        return np.unique(np.concatenate([even, *within]).clip(max=self.end))
+        samples_per_step = math.ceil(LEAST_SAMPLES / t.steps)
+        samples = [t.step / samples_per_step * np.arange(1.0, t.steps * samples_per_step + 1)]
+        for corner in corners:
+            for closing, opening in self.contact_spans(corner):
+                samples.append(np.linspace(closing, opening or self.end, SAMPLES_IN_CONTACT + 2)[1:-1])
+        return np.unique(np.concatenate(samples).clip(max=self.end))
 
     @property
     def end(self) -> float:
         """Last instant [s]."""
         return float(self.instants()[-1])
 
-    def spans(self, corner: str) -> list[tuple[float, float | None]]:
+    def contact_spans(self, corner: str) -> list[tuple[float, float | None]]:
         """Return when each contact of a corner begins and ends [s]; None where it goes on."""
-        own = [one for one in self.found or () if one.corner == corner]
-        begins = [one.time for one in own if one.kind == "closes"]
-        ends = [one.time for one in own if one.kind == "opens"]
+        events = [event for event in self.switch_events or () if event.corner == corner]
+        closings = [event.time for event in events if event.kind == "closes"]
         if self.starts_closed(corner):
-            begins.insert(0, 0.0)
-        after = [time for time in ends if begins and time > begins[0]]
-        return [(begin, after[i] if i < len(after) else None) for i, begin in enumerate(begins)]
+            closings.insert(0, 0.0)
+        if not closings:
+            return []
+        openings = [event.time for event in events if event.kind == "opens" and event.time > closings[0]]
+        return [(closing, openings[i] if i < len(openings) else None) for i, closing in enumerate(closings)]
 
     def starts_closed(self, corner: str) -> bool:
         """Whether a corner is closed just after t = 0."""
@@ -161,23 +173,23 @@ class Motion(Prepared):
         began = perf_counter()
         try:
             with naming(self.scene):
-                columns = dict(zip(self.names, self.moved(), strict=True))
+                columns = dict(zip(self.names, self.solve_motion(), strict=True))
         except NoContactStateError as error:
             return Run(Outcome.NO_CONTACT_STATE, notes=(f"{error}; any other load, however near, has one",))
         except HorizonError as error:
             steps = math.floor(error.time / self.scene.time.step)
             return Run(Outcome.HORIZON, notes=(f"{error}; the scene may have {steps} steps",))
-        asked = {name: columns[name] for name in self.scene.run.columns}
-        work = {"switches": len(self.found or ()), "steps": self.scene.time.steps}
+        requested_columns = {name: columns[name] for name in self.scene.run.columns}
+        work = {"switches": len(self.switch_events or ()), "steps": self.scene.time.steps}
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
-        notes = ("exact in time", switches_in_words(self.found or ()), *self.bounds())
-        return Run(Outcome.COMPLETED, History(self.instants(), asked), work, seconds, notes)
+        notes = ("exact in time", switches_in_words(self.switch_events or ()), *self.bounds())
+        return Run(Outcome.COMPLETED, History(self.instants(), requested_columns), work, seconds, notes)
 
     def bounds(self) -> Iterable[str]:
         """Yield what is proven of the motion that was run."""
         return ()
 
-    def moved(self) -> Iterable[Array]:
+    def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns in the order of `names`."""
         raise NotImplementedError
 
@@ -191,9 +203,9 @@ def switches_in_words(switches: Sequence[events.Switch]) -> str:
     """Return the first switches with their times, and how many there are."""
     if not switches:
         return "the contact does not change after t = 0"
-    told = ", ".join(f"{one.corner} {one.kind} at {one.time:.9g} s" for one in switches[:TOLD])
-    more = f" and {len(switches) - TOLD} more" if len(switches) > TOLD else ""
-    return f"{told}{more}"
+    listed = ", ".join(f"{switch.corner} {switch.kind} at {switch.time:.9g} s" for switch in switches[:SWITCHES_LISTED])
+    more = f" and {len(switches) - SWITCHES_LISTED} more" if len(switches) > SWITCHES_LISTED else ""
+    return f"{listed}{more}"
 
 
 class BlockMotion(Motion):
@@ -206,14 +218,25 @@ class BlockMotion(Motion):
         """Whether a corner is closed just after t = 0."""
         return self.motion.closed_at_start["MN".index(corner)]
 
-    def moved(self) -> Iterable[Array]:
+    def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns."""
         from fem_reference.events.block_events import solve
 
         self.motion = solve(block_of(self.scene), self.end)
-        self.found, at = self.motion.switches, self.motion.at(self.instants())
-        u, v, r = at.displacement[:3]
-        return (v, at.contact_pressure, u, r, *at.gap, *at.normal_force, *at.shear_force, *at.slide, *at.states)
+        self.switch_events = self.motion.switches
+        state = self.motion.at(self.instants())
+        u, v, r = state.displacement[:3]
+        return (
+            v,
+            state.contact_pressure,
+            u,
+            r,
+            *state.gap,
+            *state.normal_force,
+            *state.shear_force,
+            *state.slide,
+            *state.states,
+        )
 
     def bounds(self) -> Iterable[str]:
         """Yield the proven radii of the instants and of the displacement, and what could not be told apart."""
@@ -223,44 +246,49 @@ class BlockMotion(Motion):
         radius = motion.at(self.instants()).displacement_radius[1].max()
         yield f"proven: the displacement is off by at most {radius:.1e} m, of which floats round the most"
         if motion.touches:
-            times = ", ".join(f"{time:.9g}" for time in motion.touches[:TOLD])
+            times = ", ".join(f"{time:.9g}" for time in motion.touches[:SWITCHES_LISTED])
             yield f"grazing: at {times} s a switch can be neither proven nor excluded, and none is taken"
         if motion.simultaneous:
             yield f"both corners switch within one ball {len(motion.simultaneous)} times"
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
-        if self.found is None:
+        if self.switch_events is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        t, push = self.finely(*"MN"), opened.pushing(self.scene)
-        found = self.motion.at(t)
-        velocity, start = found.velocity[1], self.scene.block.velocity
-        spans = [(first, last, i) for i, corner in enumerate("MN") for first, last in self.spans(corner)]
+        t = self.sampling_instants(*"MN")
+        push = opened.resultant_load(self.scene)
+        state = self.motion.at(t)
+        velocity = state.velocity[1]
+        start = self.scene.block.velocity
+        contacts: list[tuple[float, float | None, int]] = []
+        for i, corner in enumerate("MN"):
+            contacts += [(closing, opening, i) for closing, opening in self.contact_spans(corner)]
         return opened.record(
             self.scene,
             time=t,
-            force=found.normal_force.sum(axis=0),
+            force=state.normal_force.sum(axis=0),
             impulse=self.scene.block.mass * (velocity - start) + push * t,
-            penetration=np.maximum(0.0, -found.gap).max(axis=0),
-            gap=np.maximum(0.0, found.gap).max(axis=0),
-            open_share=1 - found.closed.mean(axis=0),
+            penetration=np.maximum(0.0, -state.gap).max(axis=0),
+            gap=np.maximum(0.0, state.gap).max(axis=0),
+            open_share=1 - state.closed.mean(axis=0),
             velocity=velocity,
-            rebounds=landings(self._rebound(*span) for span in sorted(spans, key=operator.itemgetter(0))),
-            energies=self._energies(found),
-            slip=np.abs(found.slipped).max(axis=0),
+            rebounds=landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0))),
+            energies=self._energies(state),
+            slip=np.abs(state.slipped).max(axis=0),
         )
 
-    def _energies(self, found: block_events.BlockHistory) -> dict[str, Array]:
+    def _energies(self, state: block_events.BlockHistory) -> dict[str, Array]:
         """Return the energies; the work of the base is counted as that of the loads."""
-        stored = {name: getattr(found, name) for name in STORED}
-        none = dict.fromkeys(LOST[:2], np.zeros_like(found.time))
-        return stored | none | {"switching": found.released, "friction": found.friction}
+        stored = {name: getattr(state, name) for name in STORED}
+        no_loss = dict.fromkeys(LOST[:2], np.zeros_like(state.time))
+        return stored | no_loss | {"switching": state.released, "friction": state.friction}
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
         times = [first] if last is None else [first, last]
-        rates = [float(rate) for rate in np.atleast_1d(self.motion.at(times).gap_velocity[corner])]
-        return Rebound(-rates[0], None if last is None else rates[1])
+        closing, *opening = (float(rate) for rate in self.motion.at(times).gap_velocity[corner])
+        opening_rate = opening[0] if opening else None
+        return Rebound(-closing, opening_rate)
 
 
 class BarMotion(Motion):
@@ -273,32 +301,34 @@ class BarMotion(Motion):
         """Whether the base is closed just after t = 0."""
         return self.motion.closed_at_start
 
-    def moved(self) -> Iterable[Array]:
+    def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns."""
         from fem_reference.events.bar_events import solve
 
         problem = bar_of(self.scene)
         self.motion = solve(problem, self.end)
-        self.found, at = self.motion.switches, self.motion.at(self.instants())
-        force = at.contact_pressure * problem.width / 2
-        return (at.displacement, at.contact_pressure, at.gap, at.gap, force, force)
+        self.switch_events = self.motion.switches
+        state = self.motion.at(self.instants())
+        force = state.contact_pressure * problem.width / 2
+        return (state.displacement, state.contact_pressure, state.gap, state.gap, force, force)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
-        if self.found is None:
+        if self.switch_events is None:
             raise NotReported(f"{self.name}: the scene was not run")
-        t, width = self.finely("base"), self.motion.problem.width
-        found = self.motion.at(t)
+        t = self.sampling_instants("base")
+        width = self.motion.problem.width
+        state = self.motion.at(t)
         return opened.record(
             self.scene,
             time=t,
-            force=found.contact_pressure * width,
-            impulse=found.impulse * width,
-            penetration=np.maximum(0.0, -found.gap),
-            gap=np.maximum(0.0, found.gap),
-            open_share=np.asarray(found.gap > 0, dtype=np.float64),
-            velocity=found.mean_velocity,
-            rebounds=landings(itertools.starmap(self._rebound, self.spans("base"))),
+            force=state.contact_pressure * width,
+            impulse=state.impulse * width,
+            penetration=np.maximum(0.0, -state.gap),
+            gap=np.maximum(0.0, state.gap),
+            open_share=np.asarray(state.gap > 0, dtype=np.float64),
+            velocity=state.mean_velocity,
+            rebounds=landings(itertools.starmap(self._rebound, self.contact_spans("base"))),
         )
 
     def _rebound(self, first: float, last: float | None) -> Rebound:
@@ -313,7 +343,8 @@ class BlockEvents(Solver):
     name = "block-events"
     handles = features.LOADS | features.RULES | {features.UNILATERAL, features.FRICTION, features.SLOPE}
     sources = ("fem_reference.events", "fem_reference.problem")
-    role, rank = Role.LIMIT, 5.5
+    role = Role.LIMIT
+    rank = 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
     own_columns: tuple[str, ...] | None = BLOCK_COLUMNS
 
@@ -333,7 +364,8 @@ class BarEvents(BlockEvents):
 
     name = "bar-events"
     handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
-    role, rank = Role.TRUTH, 6.5
+    role = Role.TRUTH
+    rank = 6.5
     line = LineStyle("#666666", (), 0.9, 1)
     own_columns = BAR_COLUMNS
 

@@ -20,7 +20,7 @@ from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run, to_run
+from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -41,7 +41,10 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
     """
     import fem_reference
 
-    b, f, c, q = scene.block, scene.fem, scene.contact, scene.load
+    b = scene.block
+    f = scene.fem
+    c = scene.contact
+    q = scene.load
     record = base_record(scene)
     motion = None if record is None else fem_reference.Motion(*map(tuple, (record.time, record.x, record.y)))
     with naming(scene):
@@ -74,7 +77,8 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
     import fem_reference
 
-    t, d = scene.time, scene.damping
+    t = scene.time
+    d = scene.damping
     return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
 
 
@@ -94,17 +98,21 @@ def opening_limit(problem: fem_reference.Problem, full: bool) -> StepLimit:
     return StepLimit(critical_omega, lambda: highest_closed_frequency(problem, full))
 
 
-def to_modes(found: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
+def to_modes(modes: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
     """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
-    return tuple(Mode(m.frequency, m.share, (complex(m.eigenvalues[0]), complex(m.eigenvalues[1]))) for m in found)
+    return tuple(
+        Mode(mode.frequency, mode.share, (complex(mode.eigenvalues[0]), complex(mode.eigenvalues[1]))) for mode in modes
+    )
 
 
 class Mesh(Prepared):
     """A block meshed and assembled once."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene, self.full = scene, full
-        self.problem, self.scheme = problem_of(scene), scheme_of(scene)
+        self.scene = scene
+        self.full = full
+        self.problem = problem_of(scene)
+        self.scheme = scheme_of(scene)
         self.building = 0.0  # s
 
     @cached_property
@@ -127,12 +135,13 @@ class Mesh(Prepared):
         import fem_reference
 
         check_columns(self.scene, fem_reference.COLUMNS)
-        steps, columns = self.scene.time.steps, self.scene.run.columns
+        steps = self.scene.time.steps
+        columns = self.scene.run.columns
         with naming(self.scene):
-            found = fem_reference.solve(
+            result = fem_reference.solve(
                 self.problem, self.scheme, steps, columns, full=self.full, fields=fields, model=self.model
             )
-        return to_run(self.scene, found, built=self.building)
+        return to_run(self.scene, result, built=self.building)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution."""
@@ -157,7 +166,8 @@ class Mesh(Prepared):
         from fem_reference.history.response import response
 
         check_step(self.scene, self.step_limit())
-        columns, along = (DISPLACEMENT, PRESSURE), base_direction(self.scene)
+        columns = (DISPLACEMENT, PRESSURE)
+        along = base_direction(self.scene)
         with naming(self.scene):
             return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
@@ -166,7 +176,8 @@ class AdaptiveMesh(Prepared):
     """A meshed block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene, self.mesh = scene, Mesh(scene, full)
+        self.scene = scene
+        self.mesh = Mesh(scene, full)
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the mesh."""
@@ -178,11 +189,13 @@ class AdaptiveMesh(Prepared):
 
         no_fields("fem with self-adaptive damping", self.scene, fields)
         check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
-        own, t = self.mesh, self.scene.time
-        columns, floor = self.scene.run.columns, self.scene.damping.floor
+        mesh = self.mesh
+        t = self.scene.time
+        columns = self.scene.run.columns
+        floor = self.scene.damping.floor
         with naming(self.scene):
-            found = fem_reference.solve_adaptive(own.problem, own.scheme, t.steps, columns, floor, model=own.model)
-        return to_run(self.scene, found, built=own.building)
+            result = fem_reference.solve_adaptive(mesh.problem, mesh.scheme, t.steps, columns, floor, model=mesh.model)
+        return to_run(self.scene, result, built=mesh.building)
 
 
 # J, in the order of `STORED` and `LOST`
@@ -196,8 +209,10 @@ class OpeningMesh(Prepared):
     def __init__(self, scene: Scene, full: bool) -> None:
         from fem_reference import Friction, Unilateral
 
-        self.scene, self.full = scene, full
-        self.problem, self.scheme = problem_of(scene), scheme_of(scene)
+        self.scene = scene
+        self.full = full
+        self.problem = problem_of(scene)
+        self.scheme = scheme_of(scene)
         c = scene.contact
         glue = "glued" if c.shear else "frictionless"
         with naming(scene):
@@ -215,9 +230,10 @@ class OpeningMesh(Prepared):
 
         no_fields("fem with unilateral contact", self.scene, fields)
         check_columns(self.scene, UNILATERAL_COLUMNS)
-        found = self._solved((*self.scene.run.columns, "contact_pressure"))
-        self.pressed, self.time = found.columns["contact_pressure"] > 0, found.time
-        return opened_run(self.scene, found, found.columns)
+        result = self._solved((*self.scene.run.columns, "contact_pressure"))
+        self.pressed = result.columns["contact_pressure"] > 0
+        self.time = result.time
+        return opened_run(self.scene, result, result.columns)
 
     def _solved(self, columns: tuple[str, ...]) -> UnilateralResult:
         from fem_reference.history.unilateral import solve_unilateral
@@ -228,28 +244,32 @@ class OpeningMesh(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
-        return flips({"base": self.pressed.astype(float)}, self.time)
+        return switches_between_steps({"base": self.pressed.astype(float)}, self.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did, from the same steps with their energies."""
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
-        found, scheme = self._solved(UNILATERAL_COLUMNS), self.scheme
-        seen, energies = found.columns, zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
-        force = seen["contact_pressure"] * self.scene.block.base_length
+        result = self._solved(UNILATERAL_COLUMNS)
+        scheme = self.scheme
+        columns = result.columns
+        energies = zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
+        force = columns["contact_pressure"] * self.scene.block.base_length
+        end_weight = 1.0 if self.contact.rule == "implicit" else scheme.delta
+        slip = None if self.contact.friction is None else columns["largest_slide"]
         return opened.record(
             self.scene,
-            time=found.time,
+            time=result.time,
             force=force,
-            impulse=opened.summed(force, scheme.step, 1.0 if self.contact.rule == "implicit" else scheme.delta),
-            penetration=seen["largest_penetration"],
-            gap=seen["largest_gap"],
-            slip=None if self.contact.friction is None else seen["largest_slide"],
-            open_share=seen["open_share"],
-            velocity=seen["velocity"],
-            energies={name: seen[column] for name, column in energies},
-            solves=seen["solves"],
-            cuts=seen["cuts"],
+            impulse=opened.impulse_of_force(force, scheme.step, end_weight),
+            penetration=columns["largest_penetration"],
+            gap=columns["largest_gap"],
+            slip=slip,
+            open_share=columns["open_share"],
+            velocity=columns["velocity"],
+            energies={name: columns[column] for name, column in energies},
+            solves=columns["solves"],
+            cuts=columns["cuts"],
         )
 
 
@@ -273,7 +293,8 @@ class FiniteElements(Solver):
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
-    role, rank = Role.REFERENCE, 2.0
+    role = Role.REFERENCE
+    rank = 2.0
     line: LineStyle | None = LineStyle("#0072b2", (4.0, 1.5), 1.1, 4)
 
     def columns(self) -> tuple[str, ...] | None:
@@ -281,8 +302,8 @@ class FiniteElements(Solver):
         import fem_reference
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
-        own = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
-        return tuple(dict.fromkeys((*own, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
+        locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
+        return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or what does not go together with damping."""

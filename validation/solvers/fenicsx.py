@@ -30,10 +30,12 @@ from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, 
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, mesh_limit, opening_limit, problem_of
 from validation.solvers.limits import StepLimit
 from validation.solvers.processes.worker import ask
-from validation.solvers.translation import check_columns, flips, no_fields, pulls
+from validation.solvers.translation import check_columns, no_fields, switches_between_steps, tension_note
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
-NEEDED = "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
+INSTALL_HINT = (
+    "needs FEniCSx (how to get it: apt-get install python3-dolfinx, or conda install -c conda-forge fenics-dolfinx"
+)
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
 OPENING_COLUMNS = (
@@ -62,8 +64,8 @@ ENVIRONMENT = {
 
 def candidates() -> Iterator[str]:
     """Yield interpreters that may have dolfinx: the one that is named, or this one and those on the PATH."""
-    if named := os.environ.get(VARIABLE):
-        yield named
+    if chosen := os.environ.get(VARIABLE):
+        yield chosen
         return
     yield sys.executable
     for directory in os.get_exec_path():
@@ -72,26 +74,26 @@ def candidates() -> Iterator[str]:
         except OSError:  # absent, or another user's
             continue
         for name in sorted(names):
-            if re.fullmatch(r"python3(\.\d+)?", name) and (found := shutil.which(name, path=directory)):
-                yield found
+            if re.fullmatch(r"python3(\.\d+)?", name) and (path := shutil.which(name, path=directory)):
+                yield path
 
 
 @functools.cache
 def has_dolfinx(python: str) -> bool:
     """Whether an interpreter finds dolfinx, petsc4py and mpi4py."""
     try:
-        done = subprocess.run([python, "-c", HAS_DOLFINX], capture_output=True, timeout=60)
+        process = subprocess.run([python, "-c", HAS_DOLFINX], capture_output=True, timeout=60)
     except (OSError, subprocess.SubprocessError):
         return False
-    return done.returncode == 0
+    return process.returncode == 0
 
 
 @functools.cache
 def dolfinx_version(python: str) -> str:
     """Return the version of an interpreter's dolfinx, as its package says it."""
     code = "import importlib.metadata as m; print(m.version('fenics-dolfinx'))"
-    done = subprocess.run([python, "-c", code], capture_output=True, text=True, timeout=60, check=False)
-    return done.stdout.strip() or "unknown"
+    process = subprocess.run([python, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    return process.stdout.strip() or "unknown"
 
 
 def interpreter() -> str | None:
@@ -106,11 +108,11 @@ def launcher(python: str) -> str | None:
 
 
 @functools.cache
-def _shelter() -> tempfile.TemporaryDirectory[str]:
+def _temporary_home() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory(prefix="dda-validate-fenicsx-")
 
 
-def places() -> dict[str, str]:
+def worker_directories() -> dict[str, str]:
     """Return where a worker keeps its files: compiled forms, settings, the launcher's session.
 
     They are the user's own where dolfinx can write its compiled forms there, otherwise temporary, and last as long as
@@ -124,8 +126,8 @@ def places() -> dict[str, str]:
             return temporary
     except (OSError, RuntimeError):  # a user without a home is a RuntimeError
         pass
-    shelter = _shelter().name
-    return temporary | dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), shelter)
+    home = _temporary_home().name
+    return temporary | dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), home)
 
 
 class FEniCSx(Solver):
@@ -139,7 +141,8 @@ class FEniCSx(Solver):
     distributed = True
     meshed = True
     saves = False
-    role, rank = Role.SECOND_CODE, 3.0
+    role = Role.SECOND_CODE
+    rank = 3.0
     line = LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4)
     own_columns = OPENING_COLUMNS  # those beyond the first three are of contact that opens
 
@@ -152,7 +155,8 @@ class FEniCSx(Solver):
             raise InputError(f"solver: fenicsx:N takes a number of ranks from 1 on, got {text!r}")
         self.ranks = int(text)
         if self.ranks > 1:
-            self.name, self.rank = f"fenicsx:{self.ranks}", type(self).rank + 0.5
+            self.name = f"fenicsx:{self.ranks}"
+            self.rank = type(self).rank + 0.5
         return self
 
     def applicable(self, scene: Scene) -> str | None:
@@ -167,8 +171,8 @@ class FEniCSx(Solver):
         """Return None, or what is not installed and how to get it."""
         python = interpreter()
         if python is None:
-            named = os.environ.get(VARIABLE)
-            return f"{NEEDED}; {named}, which {VARIABLE} names, has none)" if named else f"{NEEDED})"
+            chosen = os.environ.get(VARIABLE)
+            return f"{INSTALL_HINT}; {chosen}, which {VARIABLE} names, has none)" if chosen else f"{INSTALL_HINT})"
         if self.ranks > 1 and launcher(python) is None:
             return f"needs mpirun for {self.ranks} ranks (how to get it: apt-get install openmpi-bin)"
         return None
@@ -193,7 +197,8 @@ class RemoteMesh(Prepared):
     """A scene on its whole mesh, in a worker; there are no savings."""
 
     def __init__(self, solver: FEniCSx, scene: Scene) -> None:
-        self.solver, self.scene = solver, scene
+        self.solver = solver
+        self.scene = scene
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the scheme at the largest frequency of the same mesh, every point of its base closed."""
@@ -207,7 +212,8 @@ class RemoteMesh(Prepared):
         scene = self.scene
         no_fields(self.solver.name, scene, fields)
         opens = features.UNILATERAL in features.of(scene)
-        check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
+        solver_columns = OPENING_COLUMNS if opens else COLUMNS
+        check_columns(scene, solver_columns)
         if missing := self.solver.missing():
             return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:
@@ -226,13 +232,15 @@ class RemoteMesh(Prepared):
         work |= {"steps": len(answer["time"]), "ranks": self.solver.ranks}
         seconds = {part: float(answer[f"{part}_seconds"]) for part in ("setup", "stepping")}
         where = f"dolfinx {answer['version']}, {answer['memory'] / 1e6:.0f} MB at the peak over all ranks"
-        return Run(Outcome(answer["outcome"]), history, work, seconds, (where, *pulls(history)))
+        return Run(Outcome(answer["outcome"]), history, work, seconds, (where, *tension_note(history)))
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
         if "pressed" not in self.answer:
             raise NotReported("fenicsx has no switches of a locked base")
-        return flips({"base": np.asarray(self.answer["pressed"], float)}, np.asarray(self.answer["time"], float))
+        return switches_between_steps(
+            {"base": np.asarray(self.answer["pressed"], float)}, np.asarray(self.answer["time"], float)
+        )
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""
@@ -243,16 +251,24 @@ class RemoteMesh(Prepared):
     @functools.cached_property
     def answer(self) -> dict[str, Any]:
         """The worker's answer."""
-        return ask(self.solver.command(), os.environ | ENVIRONMENT | places(), request(self.scene))
+        return ask(self.solver.command(), os.environ | ENVIRONMENT | worker_directories(), request(self.scene))
 
 
 def request(scene: Scene) -> dict[str, Any]:
     """Return a scene as the worker takes it; a mesh file becomes points and cells."""
-    b, c, t, f, q = scene.block, scene.contact, scene.time, scene.fem, scene.load
-    record, moved, table = base_record(scene), None, None
+    b = scene.block
+    c = scene.contact
+    t = scene.time
+    f = scene.fem
+    q = scene.load
+    record = base_record(scene)
+    displacement_of_steps = None
+    table = None
     if record is not None:
         instants = t.step * np.arange(t.steps + 1.0)
-        moved = np.column_stack([np.interp(instants, record.time, part) for part in (record.x, record.y)]).tolist()
+        displacement_of_steps = np.column_stack(
+            [np.interp(instants, record.time, part) for part in (record.x, record.y)]
+        ).tolist()
         table = [part.tolist() for part in (record.time, record.x, record.y)]
     return {
         "vertices": b.outline,
@@ -269,7 +285,7 @@ def request(scene: Scene) -> dict[str, Any]:
         "traction": q.traction,
         "gravity": q.gravity,
         "slope": q.slope,
-        "moved": moved,
+        "moved": displacement_of_steps,
         "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
         "degree": f.degree,

@@ -48,8 +48,8 @@ def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
 def _column(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Bytes of the few diagonals of a column's matrices."""
     blocks = float(sum(layer.blocks for layer in scene.column.layer)) if scene.column else 0.0
-    each = scene.fem.degree * scene.fem.per_side if solver.meshed else 2
-    return UNKNOWN * blocks * each, "column.layer"
+    unknowns_of_block = scene.fem.degree * scene.fem.per_side if solver.meshed else 2
+    return UNKNOWN * blocks * unknowns_of_block, "column.layer"
 
 
 def _blocks(scene: Scene) -> tuple[float, str]:
@@ -69,14 +69,14 @@ def check(scene: Scene, solver: Solver) -> None:
     InputError
         With the field, the estimate and what is available.
     """
-    size, field = needed(scene, solver)
-    there = available()
-    if size > there:
+    required_bytes, field = needed(scene, solver)
+    available_bytes = available()
+    if required_bytes > available_bytes:
         section, _, key = field.partition(".")
         value = getattr(getattr(scene, section), key)
         raise InputError(
-            f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {size / GIGABYTE:.3g} GB and "
-            f"{there / GIGABYTE:.3g} GB are available, got {value}"
+            f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {required_bytes / GIGABYTE:.3g} GB and "
+            f"{available_bytes / GIGABYTE:.3g} GB are available, got {value}"
         )
 
 
@@ -89,9 +89,9 @@ def available() -> float:
 
 
 def _of_machine() -> float:
-    found = _fields(Path("/proc/meminfo")).get("MemAvailable")
-    if found is not None:
-        return found
+    available_bytes = _fields(Path("/proc/meminfo")).get("MemAvailable")
+    if available_bytes is not None:
+        return available_bytes
     try:
         return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -114,17 +114,20 @@ def _fields(path: Path) -> dict[str, float]:
 def of_groups(root: Path) -> Iterator[float]:
     """Yield what each control group of this process leaves, of version 2 and of version 1, up to the root's."""
     for controllers, group in _groups(root):
-        limits, used = ["memory.max", "memory.high"], "memory.current"
+        limits = ["memory.max", "memory.high"]
+        used = "memory.current"
         mount = root / "sys/fs/cgroup"
         if controllers:
-            limits, used, mount = ["memory.limit_in_bytes"], "memory.usage_in_bytes", mount / "memory"
+            limits = ["memory.limit_in_bytes"]
+            used = "memory.usage_in_bytes"
+            mount = mount / "memory"
         if controllers and "memory" not in controllers.split(","):
             continue
         place = mount / group.lstrip("/")
         for directory in (d for d in (place, *place.parents) if d.is_relative_to(mount)):
             limit = min((_number(directory / name) for name in limits), default=math.inf)
             if limit < UNLIMITED:
-                yield limit - _held(directory, used)
+                yield limit - _unreclaimable(directory, used)
 
 
 def _groups(root: Path) -> list[tuple[str, str]]:
@@ -137,9 +140,10 @@ def _groups(root: Path) -> list[tuple[str, str]]:
     return [(part[1], part[2]) for part in parts if len(part) == 3]
 
 
-def _held(directory: Path, used: str) -> float:
+def _unreclaimable(directory: Path, used: str) -> float:
     """Return the bytes that a group holds and cannot give back: its files' pages can be dropped."""
-    current, statistics = _number(directory / used), directory / "memory.stat"
+    current = _number(directory / used)
+    statistics = directory / "memory.stat"
     try:
         words = [line.split() for line in statistics.read_text(encoding="ascii").splitlines()]
         of = {w[0]: float(w[1]) for w in words if len(w) == 2}
@@ -167,8 +171,8 @@ def _of_process() -> Iterator[float]:
         import resource
     except ImportError:
         return
-    taken = _fields(Path("/proc/self/status"))
+    sizes_in_use = _fields(Path("/proc/self/status"))
     for limit, field in ((resource.RLIMIT_AS, "VmSize"), (resource.RLIMIT_DATA, "VmData")):
         soft = resource.getrlimit(limit)[0]
         if soft != resource.RLIM_INFINITY:
-            yield soft - taken.get(field, 0.0)
+            yield soft - sizes_in_use.get(field, 0.0)

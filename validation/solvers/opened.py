@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import operator
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 
-def pushing(scene: Scene) -> float:
+def resultant_load(scene: Scene) -> float:
     """Resultant of pressure and weight, downwards, of the weight on a slope across it [N]."""
     (x1, y1), (x2, y2) = scene.block.edge(scene.block.top)
     length = float(np.hypot(x2 - x1, y2 - y1)) - 2 * abs(scene.load.eccentricity)
@@ -25,40 +27,71 @@ def start_energy(scene: Scene) -> float:
     return scene.block.mass * scene.block.velocity**2 / 2
 
 
-def given_energy(scene: Scene) -> float:
+def energy_input(scene: Scene) -> float:
     """Kinetic energy at t = 0, and what the loads put in until they stand still: springs, strain and gap [J].
 
     m V^2 / 2 + F g0 + F^2 / (4 p) + F^2 h / (2 E a), with F their resultant and h the height of the block; on a slope
     the weight's part along it adds H^2 / (4 p_s).
     """
-    F, b = pushing(scene), scene.block
+    F = resultant_load(scene)
+    b = scene.block
     along = scene.block.mass * scene.load.gravity * math.sin(math.radians(scene.load.slope))
-    held = along**2 / (4 * scene.contact.shear) if scene.contact.shear else 0.0
+    shear_energy = along**2 / (4 * scene.contact.shear) if scene.contact.shear else 0.0
     height = float(np.ptp([y for _, y in b.outline]))
-    soft = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
-    return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * soft + held
+    compliance = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
+    return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * compliance + shear_energy
 
 
 def record(scene: Scene, **parts: Any) -> ContactRecord:
     """Return what a contact did, with the scene's own velocity and energies at the start."""
-    speed, energy, given = scene.block.velocity, start_energy(scene), given_energy(scene)
-    return ContactRecord(start_velocity=speed, start_energy=energy, given=given, **parts)
+    speed = scene.block.velocity
+    energy = start_energy(scene)
+    input_energy = energy_input(scene)
+    return ContactRecord(start_velocity=speed, start_energy=energy, input_energy=input_energy, **parts)
 
 
-def summed(force: Array, step: float, late: float) -> Array:
-    """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s]."""
+def impulse_of_force(force: Array, step: float, late: float) -> Array:
+    """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s].
+
+    Parameters
+    ----------
+    force
+        N at the end of each step [N], shape (steps,).
+    step
+        dt [s].
+    late
+        Weight of the force at a step's end: delta of Newmark's scheme, 1 of an implicit contact force.
+    """
     before = np.concatenate(([0.0], force[:-1]))
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
 
 
-def balanced(scene: Scene, velocity: Array) -> Array:
-    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s]."""
+def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s].
+
+    Parameters
+    ----------
+    scene
+        Mass, discount gg, loads F and the velocity at t = 0.
+    velocity
+        Of the centre of mass at the end of each step, upwards [m/s], shape (steps,).
+    """
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
     gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
-    return np.asarray(gained + pushing(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64)
+    return np.asarray(
+        gained + resultant_load(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64
+    )
 
 
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
-    """Return the contacts of all corners between steps, in the order of their beginning."""
-    found = [one for gap in gaps for one in rebounds_of_steps(gap, step)]
-    return tuple(rebound for _, rebound in sorted(found, key=lambda one: one[0]))
+    """Return the contacts of all corners between steps, in the order of their beginning.
+
+    Parameters
+    ----------
+    gaps
+        Gap of each corner at each step, negative where it is closed [m], shape (corners, steps).
+    step
+        dt [s].
+    """
+    timed_rebounds = itertools.chain.from_iterable(rebounds_of_steps(gap, step) for gap in gaps)
+    return tuple(rebound for _, rebound in sorted(timed_rebounds, key=operator.itemgetter(0)))

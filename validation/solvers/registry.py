@@ -41,8 +41,8 @@ GROUP = "dda_validation.solvers"  # entry points of other packages: name = "modu
 @functools.cache
 def entry_points() -> Mapping[str, str]:
     """Return the solvers that installed packages bring, name to ``module:attribute``."""
-    found = importlib.metadata.entry_points(group=GROUP)
-    return {point.name: point.value for point in sorted(found, key=lambda p: p.name) if point.name not in BUILT_IN}
+    points = importlib.metadata.entry_points(group=GROUP)
+    return {point.name: point.value for point in sorted(points, key=lambda p: p.name) if point.name not in BUILT_IN}
 
 
 def solver_names() -> list[str]:
@@ -57,7 +57,7 @@ def is_solver(name: str) -> bool:
 
 
 def _is_target(module: str, attribute: str) -> bool:
-    return all(part.isidentifier() for text in (module, attribute) for part in text.split("."))
+    return all(part.isidentifier() for part in (*module.split("."), *attribute.split(".")))
 
 
 def get_solver(name: str) -> Solver:
@@ -104,10 +104,10 @@ def distributed() -> list[str]:
     return [name for name in BUILT_IN if get_solver(name).distributed]
 
 
-def by_role(wanted: Role) -> list[str]:
+def by_role(required_role: Role) -> list[str]:
     """Return the built-in solvers of a role, the highest rank first."""
-    found = [name for name in BUILT_IN if get_solver(name).role == wanted]
-    return sorted(found, key=rank, reverse=True)
+    names = [name for name in BUILT_IN if get_solver(name).role == required_role]
+    return sorted(names, key=rank, reverse=True)
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
@@ -134,10 +134,10 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     >>> round(float(run.displacement[-1]), 6)
     -0.01
     """
-    chosen = get_solver(solver) if isinstance(solver, str) else solver
+    adapter = get_solver(solver) if isinstance(solver, str) else solver
     features.refuse_sweep(scene)
-    if reason := chosen.refusal(scene):
-        raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
-    memory.check(scene, chosen)
+    if reason := adapter.refusal(scene):
+        raise InputError(f"{scene.name}: solver {adapter.name} does not apply: {reason}")
+    memory.check(scene, adapter)
     with one_thread(), np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
-        return checked(chosen.solve(scene, full=full), scene)
+        return checked(adapter.solve(scene, full=full), scene)

@@ -52,8 +52,8 @@ def checked(run: Run, scene: Scene) -> Run:
         beyond = np.abs(values) > largest
         if beyond.any():
             step = int(np.argmax(beyond)) + 1
-            said = f"{name} exceeds {largest:.3g} m, {MARGIN:g} times what the load can do, at step {step}"
-            return _failed(run, Outcome.UNBOUNDED, said)
+            note = f"{name} exceeds {largest:.3g} m, {MARGIN:g} times what the load can do, at step {step}"
+            return _failed(run, Outcome.UNBOUNDED, note)
     return run
 
 
@@ -75,7 +75,9 @@ def reach(scene: Scene) -> float:
 
 
 def _reach_of_block(scene: Scene) -> float:
-    b, c, q = scene.block, scene.contact, scene.load
+    b = scene.block
+    c = scene.contact
+    q = scene.load
     start, end = b.edge(b.top)
     top = math.dist(start, end)
     mass = max(b.mass, TINY)
@@ -84,8 +86,8 @@ def _reach_of_block(scene: Scene) -> float:
     size = np.ptp(np.array(b.outline), axis=0)
     travel = math.hypot(*size.tolist()) * math.sqrt(b.density / b.young)
     time = scene.time.duration + scene.time.step + travel
-    moved = _base_motion(scene, time)
-    return abs(b.velocity) * time + acceleration * time * time / 2 + moved + c.gap + sum(c.band)
+    base_displacement = _base_motion(scene, time)
+    return abs(b.velocity) * time + acceleration * time * time / 2 + base_displacement + c.gap + sum(c.band)
 
 
 def _base_motion(scene: Scene, time: float) -> float:
@@ -111,9 +113,9 @@ def _reach_of_column(scene: Scene) -> float:
     step = scene.time.step
     time = scene.time.duration + step + travel
     drive = motion_at(scene, step * np.arange(scene.time.steps + 1.0))
-    pushed = float(np.max(np.abs(drive.pressure))) / mass * time * time / 2
+    pressure_displacement = float(np.max(np.abs(drive.pressure))) / mass * time * time / 2
     jumps = float(np.sum(np.abs(np.diff(drive.velocity, prepend=0.0))))
-    moved = time * jumps + float(np.max(np.abs(drive.displacement)))
+    base_displacement = time * jumps + float(np.max(np.abs(drive.displacement)))
     # A transmitting base takes in at most Z v^2 of the incident wave.
-    taken_in = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2))
-    return pushed + 2 * moved + time * math.sqrt(2 * taken_in / mass)
+    input_energy = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2))
+    return pressure_displacement + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)

@@ -30,7 +30,7 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
         "steps": scene.time.steps,
     }
     seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
-    tension = pulls(history) if scene.column is None else ()
+    tension = tension_note(history) if scene.column is None else ()
     return Run(
         Outcome.COMPLETED,
         history,
@@ -42,7 +42,17 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
 
 
 def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: float = 0.0) -> Run:
-    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name."""
+    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name.
+
+    Parameters
+    ----------
+    scene, result
+        The scene and the `Result` of a solver package.
+    columns
+        Column name to values at each step; those that the scene asks for are kept.
+    built
+        Time that was spent on the model before [s].
+    """
     history = History(result.time, {name: columns[name] for name in scene.run.columns})
     counted = ("unknowns", "nonzeros", "factorisations", "solves")
     work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
@@ -50,13 +60,21 @@ def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: f
     return Run(Outcome(result.outcome), history, work, seconds, result.notes)
 
 
-def flips(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
-    """Return the switches between the steps of contacts, 1 where closed and 0 where open, in the order of time."""
-    found = []
+def switches_between_steps(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
+    """Return the switches of contacts from step to step, in the order of time.
+
+    Parameters
+    ----------
+    closed
+        Name of a corner to its state at each step, 1 where it is closed and 0 where it is open, shape (steps,).
+    time
+        Times of the steps [s], shape (steps,).
+    """
+    switches = []
     for corner, state in closed.items():
         steps = np.flatnonzero(np.diff(state)) + 1
-        found += [Switch(float(time[n]), corner, bool(state[n] < 0.5)) for n in steps]
-    return tuple(sorted(found, key=lambda switch: switch.time))
+        switches += [Switch(float(time[n]), corner, bool(state[n] < 0.5)) for n in steps]
+    return tuple(sorted(switches, key=lambda switch: switch.time))
 
 
 @contextmanager
@@ -70,8 +88,8 @@ def naming(scene: Scene) -> Iterator[None]:
         raise InputError(f"{scene.name}: {error}") from None
 
 
-def pulls(history: History) -> tuple[str, ...]:
-    """A locked contact hides tension: say where it pulls."""
+def tension_note(history: History) -> tuple[str, ...]:
+    """A locked contact hides tension: say where it carries tension."""
     pressure = history.columns.get(PRESSURE)
     if pressure is None or not np.all(np.isfinite(pressure)) or not np.any(pressure < 0):
         return ()
@@ -79,7 +97,7 @@ def pulls(history: History) -> tuple[str, ...]:
     return (f"the locked contact carries tension: {pressure[least]:.4g} Pa at t = {history.time[least]:.4g} s",)
 
 
-def check_columns(scene: Scene, known: tuple[str, ...]) -> None:
+def check_columns(scene: Scene, solver_columns: tuple[str, ...]) -> None:
     """Refuse columns that a solver does not have.
 
     Raises
@@ -87,9 +105,9 @@ def check_columns(scene: Scene, known: tuple[str, ...]) -> None:
     InputError
         `[run] columns` names an unknown one.
     """
-    unknown = [name for name in scene.run.columns if name not in known]
+    unknown = [name for name in scene.run.columns if name not in solver_columns]
     if unknown:
-        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
+        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(solver_columns)}, got {unknown[0]!r}")
 
 
 def no_fields(name: str, scene: Scene, fields: Path | None) -> None:

@@ -28,9 +28,10 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
 from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
-from validation.solvers.translation import no_fields, pulls
+from validation.solvers.translation import no_fields, tension_note
 
-LIMIT, VARIABLE = 300.0, "DDA_VALIDATE_TIMEOUT"  # s a case beside the steps, and what sets it
+TIME_LIMIT = 300.0  # s a case beside the steps
+VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # s for each step of the scene: an interpreted loop over a small dense system takes some 0.03 ms a step, a code that
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
@@ -44,9 +45,9 @@ UNITS = {  # what a value in another unit is, over the value in SI
     "rotation": {math.degrees(1): "degrees", 1e3: "mrad"},
     PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
 }
-NEAR = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
+FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
 SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
-MOST_WORDS = 400  # characters of what a user's solver says
+LONGEST_NOTE = 400  # characters of what a user's solver says
 # The first argument is the directory of this package. It is on the path for the import of `validation` alone: neither
 # does a folder of that name beside the solver stand in the way, nor do packages beside ours hide those of Python.
 START = (
@@ -54,7 +55,7 @@ START = (
     "from validation.solvers.processes.user_worker import main; main(sys.argv[2], sys.argv[3:])"
 )
 HOME = Path(__file__).resolve().parents[2]
-ALIKE = 0.8  # correlation from which two histories are one but for their unit
+LEAST_CORRELATION = 0.8  # correlation from which two histories are one but for their unit
 
 
 class UserSolver(Solver):
@@ -63,7 +64,8 @@ class UserSolver(Solver):
     cached = False  # what it is made of cannot be known, so it always runs afresh
 
     def __init__(self, name: str, target: str) -> None:
-        self.name, self.target = name, target
+        self.name = name
+        self.target = target
 
     def refusal(self, scene: Scene) -> str | None:
         """Return None: what the solver handles is known in its own process only, which says so."""
@@ -75,7 +77,7 @@ class UserSolver(Solver):
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene; the solver sees it when it is run."""
-        return Asked(self, scene)
+        return UserScene(self, scene)
 
     def command(self) -> list[str]:
         """Return the command of the process that the solver runs in."""
@@ -94,8 +96,8 @@ class UserSolver(Solver):
         try:
             answer = ask(self.command(), environment(), {"parts": []}, base_limit())
         except (WorkerHangs, WorkerDied) as error:
-            return words(str(error))
-        return words(str(answer["raised"])) if "raised" in answer else None
+            return one_line(str(error))
+        return one_line(str(answer["raised"])) if "raised" in answer else None
 
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
@@ -103,36 +105,38 @@ class UserSolver(Solver):
             answer = ask(self.command(), environment(), {"about": list(ABOUT)}, base_limit())
         except (WorkerHangs, WorkerDied):
             return {}
-        return {name: words(str(text)) for name, text in dict(answer.get("about") or {}).items()}
+        return {name: one_line(str(text)) for name, text in dict(answer.get("about") or {}).items()}
 
 
-class Asked(Prepared):
+class UserScene(Prepared):
     """A scene for a user's solver; what it reports beside the history comes with it."""
 
     def __init__(self, solver: UserSolver, scene: Scene) -> None:
-        self.solver, self.scene = solver, scene
+        self.solver = solver
+        self.scene = scene
         self._answer: dict[str, Any] = {}
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene in the solver's own process."""
         no_fields(self.solver.name, self.scene, fields)
-        began, limit = perf_counter(), base_limit() + ALLOWANCE * self.scene.time.steps
+        start = perf_counter()
+        limit = base_limit() + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
             self._answer = ask(self.solver.command(), environment(), request, limit)
         except WorkerHangs:
-            said = f"no history within {limit:g} s, the time limit for {self.scene.time.steps} steps"
-            return Run(Outcome.TIMEOUT, notes=(said,))
+            note = f"no history within {limit:g} s, the time limit for {self.scene.time.steps} steps"
+            return Run(Outcome.TIMEOUT, notes=(note,))
         except WorkerDied as error:
-            return Run(Outcome.RAISED, notes=(words(f"crashed: {error}"),))
+            return Run(Outcome.RAISED, notes=(one_line(f"crashed: {error}"),))
         if "inapplicable" in self._answer:
-            return Run(Outcome.NOT_APPLICABLE, notes=(words(str(self._answer["inapplicable"])),))
+            return Run(Outcome.NOT_APPLICABLE, notes=(one_line(str(self._answer["inapplicable"])),))
         if "raised" in self._answer:
-            place = f" ({words(str(self._answer['at']))})" if self._answer.get("at") else ""
-            return Run(Outcome.RAISED, notes=(words(str(self._answer["raised"])) + place,))
-        seconds = {"setup": 0.0, "stepping": perf_counter() - began}
+            place = f" ({one_line(str(self._answer['at']))})" if self._answer.get("at") else ""
+            return Run(Outcome.RAISED, notes=(one_line(str(self._answer["raised"])) + place,))
+        seconds = {"setup": 0.0, "stepping": perf_counter() - start}
         columns = {name: np.asarray(x, float) for name, x in self._answer["columns"].items()}
-        return replace(_judged(self.scene, columns), seconds=seconds)
+        return replace(_run_of_columns(self.scene, columns), seconds=seconds)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution that the solver reports."""
@@ -141,7 +145,7 @@ class Asked(Prepared):
         values = {str(name): float(value) for name, value in dict(self._answer["static"]).items()}
         for name, value in values.items():
             if value != 0 and not sys.float_info.min <= abs(value) <= sys.float_info.max:
-                raise InputError(f"static: must be zero or a normal number, got {value!r} for {words(name)}")
+                raise InputError(f"static: must be zero or a normal number, got {value!r} for {one_line(name)}")
         return values
 
     def assumed_static(self) -> Mapping[str, float]:
@@ -157,53 +161,56 @@ class Asked(Prepared):
 
 def base_limit() -> float:
     """Return the time limit of a case beside what its steps add [s]."""
-    return float(os.environ.get(VARIABLE, LIMIT))
+    return float(os.environ.get(VARIABLE, TIME_LIMIT))
 
 
-def words(text: str) -> str:
+def one_line(text: str) -> str:
     """Return a user's text as one line of a note: no half characters, none that a terminal obeys, not a book."""
-    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())[: MOST_WORDS + 1]
-    said = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
-    return said if len(said) <= MOST_WORDS else f"{said[:MOST_WORDS]} ..."
+    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())[: LONGEST_NOTE + 1]
+    escaped = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
+    return escaped if len(escaped) <= LONGEST_NOTE else f"{escaped[:LONGEST_NOTE]} ..."
 
 
-def _judged(scene: Scene, columns: dict[str, Array]) -> Run:
+def _run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
     """Return the run of columns, or the outcome that names what is wrong with them."""
     steps = scene.time.steps
     required = [DISPLACEMENT] if DISPLACEMENT in scene.run.columns else list(scene.run.columns)
     if not any(name in columns for name in required):
-        got = words(", ".join(columns)) or "nothing"
-        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {got}",))
+        names = one_line(", ".join(columns)) or "nothing"
+        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {names}",))
     expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
     time = columns.pop("time", expected)
     columns = {name: values for name, values in columns.items() if name in (*UNITS, *scene.run.columns)}
     history = History(time, columns)
     for name, values in {"time": history.time, **columns}.items():
         if values.shape != (steps,):
-            zero = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
-            return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){zero}",))
-    same: tuple[str, ...] = ()
+            hint = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
+            return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){hint}",))
+    notes: tuple[str, ...] = ()
     if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
         reference = _reference(scene)
         if wrong := _wrong_units(scene, history, expected, reference):
             return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
         if reference is not None and is_identical(history, reference):
-            same = (f"{SAME_AS}{DDA.name}",)
+            notes = (f"{SAME_AS}{DDA.name}",)
         if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
     work = {"steps": steps}
-    return Run(Outcome.COMPLETED, history, work, notes=(*same, *pulls(history)))
+    return Run(Outcome.COMPLETED, history, work, notes=(*notes, *tension_note(history)))
 
 
 def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (told := factor("time", history.time, expected, scene)) is not None:
-        return told
+    if (difference := factor("time", history.time, expected, scene)) is not None:
+        return difference
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
-            sound = reference.columns[name]
-            if np.isfinite(sound).all() and (told := factor(name, values, sound, scene)) is not None:
-                return told
+            expected_values = reference.columns[name]
+            if (
+                np.isfinite(expected_values).all()
+                and (difference := factor(name, values, expected_values, scene)) is not None
+            ):
+                return difference
     return None
 
 
@@ -216,19 +223,19 @@ def _reference(scene: Scene) -> History | None:
         return None
 
 
-def factor(name: str, values: Array, sound: Array, scene: Scene) -> str | None:
+def factor(name: str, values: Array, expected: Array, scene: Scene) -> str | None:
     """Say by which known factor a column of `UNITS` differs from what is expected, if by one."""
-    sizes = norm(values), norm(sound)
-    if min(sizes) == 0 or not np.isfinite(sizes).all():
+    norms = norm(values), norm(expected)
+    if min(norms) == 0 or not np.isfinite(norms).all():
         return None
-    alike = float((values / sizes[0]) @ (sound / sizes[1]))
-    if abs(alike) < ALIKE:
+    correlation = float((values / norms[0]) @ (expected / norms[1]))
+    if abs(correlation) < LEAST_CORRELATION:
         return None
-    ratio = sizes[0] / sizes[1]
+    ratio = norms[0] / norms[1]
     for factor, unit in UNITS[name].items():
-        if abs(ratio / factor - 1) < NEAR:
+        if abs(ratio / factor - 1) < FACTOR_TOLERANCE:
             return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
-    if alike < 0:
+    if correlation < 0:
         return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
     width = 1.0 if scene.column is not None else scene.block.base_length
     if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:

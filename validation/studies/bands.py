@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
 
@@ -37,6 +40,11 @@ def near(value: float, relative: float) -> tuple[float, float]:
     return about(value, abs(value) * relative)
 
 
+def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
+    """Return the order, with its sign, fitted on all levels of a refinement: error = C size^order."""
+    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
 def decimals(value: float) -> float:
     """Half a unit of the last printed digit of a number."""
     digits = f"{value:g}".partition(".")[2]
@@ -46,5 +54,15 @@ def decimals(value: float) -> float:
 def printed(
     scene: str, pair: tuple[str, ...], metric: str, value: float, half: float, reason: str, **window: Any
 ) -> Gate:
-    """Return the gate on a number that an independent program printed: `half` a unit of its last digit."""
+    """Return the gate on a number that an independent program printed.
+
+    Parameters
+    ----------
+    scene, pair, metric
+        What is judged.
+    value, half
+        The number, and half a unit of its last digit: the half width of the band.
+    reason, window
+        Why it is so, and further fields of the gate, such as `until`.
+    """
     return Gate(scene, pair, metric, *about(value, half), reason, OTHER, half, **window)

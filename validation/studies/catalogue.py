@@ -66,30 +66,32 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     check_words(scene, source)
-    own: list[Gate] = []
+    scene_gates: list[Gate] = []
     for case in scene.expand():
-        own += [Gate(case.name, s.pair, s.metric, *s.band, s.reason) for s in case.gate]
+        for section in case.gate:
+            scene_gates.append(Gate(case.name, section.pair, section.metric, *section.band, section.reason))
     return Study(
         scene.name,
         scene.title or scene.name,
         f"The scene {scene.name}.",
         [scene],
         extra=_of_suite(scene, lambda study: study.extra, lambda pair: pair[0]),
-        gates=lambda: (*own, *_of_suite(scene, lambda study: study.gates(), lambda gate: gate.scene)),
+        gates=lambda: (*scene_gates, *_of_suite(scene, lambda study: study.gates(), lambda gate: gate.scene)),
         derived=lambda: _of_suite(scene, lambda study: study.derived(), lambda row: row.scene),
     )
 
 
-def _of_suite(scene: Scene, part: Callable[[Study], Iterable[T]], case_of: Callable[[T], str]) -> tuple[T, ...]:
+def _of_suite(scene: Scene, part_of: Callable[[Study], Iterable[T]], case_of: Callable[[T], str]) -> tuple[T, ...]:
     """Return what the suite's studies hold of the cases of a scene, where it is the built-in one unchanged."""
     if scene.name not in scene_names() or scene != load_scene(scene.name):
         return ()
     names = {case.name for case in scene.expand()}
-    found: list[T] = []
+    items: list[T] = []
     for study in map(get_study, judged_studies()):
-        if scene.name in {scene_of(of if isinstance(of, str) else of.name) for of in study.scenes}:
-            found += [item for item in part(study) if case_of(item) in names]
-    return tuple(found)
+        study_scenes = [declared if isinstance(declared, str) else declared.name for declared in study.scenes]
+        if scene.name in map(scene_of, study_scenes):
+            items += [item for item in part_of(study) if case_of(item) in names]
+    return tuple(items)
 
 
 def check_words(scene: Scene, source: str) -> None:
@@ -116,38 +118,41 @@ def check_words(scene: Scene, source: str) -> None:
 
 
 def _check_repeats(scene: Scene, source: str) -> None:
-    met = set()
+    pairs_and_metrics = set()
     for number, section in enumerate(scene.gate):
-        if (section.pair, section.metric) in met:
+        if (section.pair, section.metric) in pairs_and_metrics:
             raise InputError(
                 f"{source}: gate.{number}: must not repeat pair and metric of another gate, got "
                 f"{', '.join(section.pair)} and {section.metric}"
             )
-        met.add((section.pair, section.metric))
+        pairs_and_metrics.add((section.pair, section.metric))
 
 
-def _check_gate(section: GateSection, solvers: Sequence[str], place: str) -> None:
+def _check_gate(section: GateSection, solvers: Sequence[str], location: str) -> None:
     if section.metric not in CATALOGUE:
-        raise InputError(f"{place}.metric: must be among {', '.join(CATALOGUE)}, got {section.metric!r}")
+        raise InputError(f"{location}.metric: must be among {', '.join(CATALOGUE)}, got {section.metric!r}")
     missing = [name for name in section.pair if name not in solvers]
     if missing:
-        raise InputError(f"{place}.pair: must be solvers that run.solvers lists, got {missing[0]!r}")
+        raise InputError(f"{location}.pair: must be solvers that run.solvers lists, got {missing[0]!r}")
     if section.metric in PAIRS and len(section.pair) < 2:
         raise InputError(
-            f"{place}.pair: must name a solver and a reference for {section.metric}, got {list(section.pair)}"
+            f"{location}.pair: must name a solver and a reference for {section.metric}, got {list(section.pair)}"
         )
 
 
 def _check_linear(scene: Scene, source: str) -> None:
     """Refuse a gate on a metric of linear scenes where no case is linear: it would be dropped without a word."""
-    asked = [(number, each.metric) for number, each in enumerate(scene.gate) if CATALOGUE[each.metric].linear]
-    if not asked:
+    if not any(CATALOGUE[section.metric].linear for section in scene.gate):
         return
     cases = scene.expand()
-    if not any(map(features.linear, cases)):
-        number, metric = asked[0]
-        has = ", ".join(features.of(cases[0]))
-        raise InputError(f"{source}: gate.{number}.metric: {metric} exists for linear scenes only, got one with {has}")
+    if any(map(features.linear, cases)):
+        return
+    for number, section in enumerate(scene.gate):
+        if CATALOGUE[section.metric].linear:
+            nonlinear = (
+                f"{section.metric} exists for linear scenes only, got one with {', '.join(features.of(cases[0]))}"
+            )
+            raise InputError(f"{source}: gate.{number}.metric: {nonlinear}")
 
 
 def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:

@@ -84,8 +84,8 @@ def statics() -> Iterator[Gate]:
         "for the second mode"
     )
     for scene in cases("figures-3-4"):
-        left = closed_forms.remaining_motion(scene)
-        yield Gate(scene.name, ("dda",), "pressure.final", *near(scene.load.pressure, 2 * left + 1e-9), why)
+        remaining_motion = closed_forms.remaining_motion(scene)
+        yield Gate(scene.name, ("dda",), "pressure.final", *near(scene.load.pressure, 2 * remaining_motion + 1e-9), why)
 
 
 def settling() -> Iterator[Gate]:
@@ -105,9 +105,11 @@ def frequencies() -> Iterator[Gate]:
     )
     form = "model form, physics: one strain against a wave; ratio of the two closed forms"
     for scene in cases("figures-5-6"):
-        w_dda, w_bar = closed_forms.dda_frequency(scene), closed_forms.bar_frequency(scene)
+        w_dda = closed_forms.dda_frequency(scene)
+        w_bar = closed_forms.bar_frequency(scene)
         error = closed_forms.mesh_frequency_error(scene)
-        name, metric = scene.name, "mode1.frequency"
+        name = scene.name
+        metric = "mode1.frequency"
         yield Gate(name, ("dda",), metric, *near(w_dda, 1e-12), block)
         yield Gate(name, ("bar",), metric, *near(w_bar, 1e-12), "b tan b = 2p/E; band: rounding")
         yield Gate(name, ("fem", "bar"), metric, 0.9 * error - 2e-11, 1.1 * error + 2e-11, elements)

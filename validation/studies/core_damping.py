@@ -43,11 +43,11 @@ def solvers(scene: Scene) -> list[str]:
 
 def derived(scenes: tuple[str, ...]) -> tuple[Derived, ...]:
     """Return the derived row of every case."""
-    found = []
+    rows = []
     for scene in cases(*scenes):
         needs = tuple((scene.name, solver) for solver in solvers(scene))
-        found.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene), READS))
-    return tuple(found)
+        rows.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene), READS))
+    return tuple(rows)
 
 
 def compare(finished: Finished, scene: Scene) -> Mapping[str, Value]:
@@ -78,7 +78,8 @@ def operator_distance(scene: Scene, row: Row) -> Value:
 
 def history_distance(row: Row) -> Value:
     """Distance of the damping ratio measured on the history from the operator's."""
-    measured, xi = row.metrics.get("mode1.measured_damping"), row.metrics.get("mode1.damping")
+    measured = row.metrics.get("mode1.measured_damping")
+    xi = row.metrics.get("mode1.damping")
     return abs(measured - xi) if isinstance(measured, float) and isinstance(xi, float) else "undefined"
 
 
@@ -96,7 +97,8 @@ def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
 
 def ratio(scene: Scene) -> Iterator[Gate]:
     """Yield the gate on the damping ratio of DDA over that of the elements, where they are damped."""
-    pair, metric = ("dda", "fem"), "mode1.damping"
+    pair = ("dda", "fem")
+    metric = "mode1.damping"
     name = scene.name if scene.name in RATIOS else scene_of(scene.name)
     if name in RATIOS:
         value, half = RATIOS[name]

@@ -42,7 +42,8 @@ def gates() -> Iterator[Gate]:
         "linear elements cannot bulge without changing volume: they lock as mu tends to 1/2; half the spread between "
         "meshes of 4 and 16 a side about the value of 8"
     )
-    pair, metric = ("fem", "fem"), "displacement.static"
+    pair = ("fem", "fem")
+    metric = "displacement.static"
     for poisson, band in LOCKED.items():
         yield Gate(name(poisson, 1), pair, metric, *band, why, OWN, against=name(poisson, 2))
     why = (

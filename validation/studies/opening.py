@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import operator
 from collections.abc import Iterator, Mapping
 
-import numpy as np
-
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
+from validation.metrics.values import or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import fitted_order
 from validation.studies.declaration import Study
 
-NAME, SCENE = "opening", "unlocked"
+NAME = "opening"
+SCENE = "unlocked"
 KINDS = ("block", "bar")
 INSTANTS = (3, 6, 9)  # wave transits a / c
 # p/E -> block, bar: displacement [m] and contact pressure [Pa] at these instants, as an independent program printed
@@ -80,7 +82,7 @@ def refined(name: str) -> Derived:
     """Return the row of the order in a scene whose step or mesh is refined."""
     solvers, key, _ = REFINED[name]
     levels = load_scene(name).expand()
-    needs = tuple((case.name, solver) for case in levels for solver in solvers)
+    needs = tuple(itertools.product((case.name for case in levels), solvers))
     return Derived(name, "order", needs, functools.partial(order, levels, solvers, key))
 
 
@@ -91,20 +93,18 @@ def order(levels: tuple[Scene, ...], solvers: tuple[str, str], key: str, finishe
         histories = [finished.history(case.name, solver) for solver in solvers]
         if histories[0] is None or histories[1] is None:
             return {}
-        error = pair("displacement.l2", histories[0], histories[1])
-        errors.append(error if isinstance(error, float) else math.nan)
+        errors.append(or_nan(pair("displacement.l2", histories[0], histories[1])))
     sizes = [float(operator.attrgetter(key)(case)) for case in levels]
-    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
-    return {"displacement": float(slope)}
+    return {"displacement": fitted_order(sizes, errors)}
 
 
 def sampled() -> tuple[Derived, ...]:
     """Return a row of samples for every case and both exact motions."""
-    return tuple(
-        Derived(case.name, f"{kind} samples", ((case.name, f"{kind}-events"),), functools.partial(samples, case, kind))
-        for case in cases().values()
-        for kind in KINDS
-    )
+    rows = []
+    for case, kind in itertools.product(cases().values(), KINDS):
+        needs = ((case.name, f"{kind}-events"),)
+        rows.append(Derived(case.name, f"{kind} samples", needs, functools.partial(samples, case, kind)))
+    return tuple(rows)
 
 
 def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
@@ -112,11 +112,11 @@ def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(case.name, f"{kind}-events")
     if history is None:
         return {}
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for n in INSTANTS:
-        found[f"displacement.{n}"] = float(history.displacement[n - 1])
-        found[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
-    return found
+        values[f"displacement.{n}"] = float(history.displacement[n - 1])
+        values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
+    return values
 
 
 def gates() -> tuple[Gate, ...]:
@@ -136,8 +136,8 @@ def value_gates() -> Iterator[Gate]:
 def order_gates() -> Iterator[Gate]:
     """Yield the gates on the order of DDA in the step and of elements in the mesh, through openings and landings."""
     for name, (_, key, value) in REFINED.items():
-        what = "of the scheme in smooth motion" if key == "time.step" else "of quadratic elements, as errors over n"
-        reason = f"order {value:g} {what}, kept through switches; {NEXT:g} for the next order"
+        kind = "of the scheme in smooth motion" if key == "time.step" else "of quadratic elements, as errors over n"
+        reason = f"order {value:g} {kind}, kept through switches; {NEXT:g} for the next order"
         yield Gate(name, ("order",), "displacement", value - NEXT, value + NEXT, reason)
 
 

@@ -111,18 +111,20 @@ def write_pack(directory: Path) -> Written:
     """
     study = get_study(STUDY)
     cases = {case.scene.name: case.scene for case in study.cases() if case.solver == JUDGED}
-    gates = [g for g in study.gates() if g.pair[0] == JUDGED and not set(g.pair) & set(ALSO_DDA)]
+    gates = [gate for gate in study.gates() if gate.pair[0] == JUDGED and not set(gate.pair) & set(ALSO_DDA)]
     part = Part(directory)
     for scene in cases.values():
         part.add_scene(scene)
-    wanted = dict.fromkeys([(name, JUDGED) for name in cases] + [(g.against or g.scene, g.pair[-1]) for g in gates])
-    for name, solver in wanted:
+    required_histories = dict.fromkeys(
+        [(name, JUDGED) for name in cases] + [(gate.against or gate.scene, gate.pair[-1]) for gate in gates]
+    )
+    for name, solver in required_histories:
         part.add_history(name, solver, history_of(cases[name], solver))
     bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
     part.add_table("bands", bands)
     part.add_text("bands.json", json.dumps(bands, indent=1) + "\n")
     part.add_text("README.md", README)
-    return Written(len(cases), len(wanted), len(bands))
+    return Written(len(cases), len(required_histories), len(bands))
 
 
 class Part:
@@ -191,7 +193,8 @@ def band(gate: Gate) -> dict[str, Any]:
 
 def as_toml(scene: Scene) -> str:
     """Return a single case as a scene file."""
-    lines, sections = [], []
+    lines = []
+    sections = []
     for key, value in scene.definition().items():
         if isinstance(value, dict) and key not in LEFT_OUT:
             sections += ["", f"[{key}]", *map(_line, value.items())]

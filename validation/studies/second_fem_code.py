@@ -12,7 +12,8 @@ from validation.studies.declaration import Study
 
 SQUARES = ("two-codes-constant", "two-codes-average")
 POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh
-OPENING, FRICTION = "two-codes-opening", "two-codes-friction"
+OPENING = "two-codes-opening"
+FRICTION = "two-codes-friction"
 SCENES = (*SQUARES, *POLYGONS, OPENING, FRICTION)
 SAME = 1e-10  # of the maximum
 

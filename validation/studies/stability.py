@@ -37,7 +37,8 @@ MEASURES = ("history", "stability")
 # in which they promise digits, grow by rounding before they grow by the scheme.
 ENDS = (Outcome.OVERFLOW, Outcome.MISPREDICTED)
 LIMIT = {"zero": 1e-11, "consistent": 1e-9}  # what dda promises, over the maximum
-FEM_LIMIT, FEM_RANGE = 1e-9, (1e-3, 1e12)  # what fem promises, and the p/E for which it does
+FEM_LIMIT = 1e-9  # what fem promises
+FEM_RANGE = (1e-3, 1e12)  # the p/E for which it does
 BAR_LIMIT = 1e-9
 # Orders of magnitude of the pressure error of the printed recursion over 300 steps of 1e-3 s, by an independent program
 LOST = {(0.5, 1e21): 2e-5, (0.5, 1e24): 0.04, (0.25, 1e21): 9e-4, (0.25, 1e24): 1.3}
@@ -79,7 +80,7 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
         if name.startswith("plane"):  # linear elements: both components move, and sixty digits take their time
             values |= {"block.hypothesis": name.replace("-", " "), "fem.degree": 1}
         scene = load_scene("extremes").with_values(values)
-        sweep = {key: list(some) for key, some in FACTORS[name].items()} | {"mode": "zip"}
+        sweep = {key: list(extremes) for key, extremes in FACTORS[name].items()} | {"mode": "zip"}
         update = {"name": f"extreme-{name}-{start}", "title": f"Extremes of {name}, {start} start", "sweep": sweep}
         yield scene.model_copy(update=update)
 
@@ -112,7 +113,9 @@ def incompressible(case: Scene) -> bool:
 
 def digits(case: Scene) -> Iterator[Gate]:
     """Yield the gates on correct digits, both quantities, against sixty-digit arithmetic."""
-    t, ratio, name = case.time, case.contact.stiffness / case.block.young, case.name
+    t = case.time
+    ratio = case.contact.stiffness / case.block.young
+    name = case.name
     why = "contact-gap coordinates, mode by mode: eleven digits from A0 = 0, nine from the consistent start"
     yield Gate(name, ("dda", "dda-60"), "worst.max", 0.0, LIMIT[t.start], why)
     if FEM_RANGE[0] <= ratio <= FEM_RANGE[1] and not conditional(t.alpha, t.delta) and not incompressible(case):

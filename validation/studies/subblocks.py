@@ -140,7 +140,8 @@ def rocking_frequency(scene: Scene) -> float:
 
     (17): M = rho diag(a^2, a^4/6, a^4/24); (27): p [[2, a, -a/2], [a, a^2, 0], [-a/2, 0, a^2/4]], and A G for gxy.
     """
-    a, p = closed_forms.size(scene)[0], scene.contact.stiffness
+    a = closed_forms.size(scene)[0]
+    p = scene.contact.stiffness
     M = scene.block.density * np.array([a**2, a**4 / 6, a**4 / 24])
     K = p * np.array([[2.0, a, -a / 2], [a, a * a, 0.0], [-a / 2, 0.0, a * a / 4]])
     K[2, 2] += a * a * scene.block.young / 2

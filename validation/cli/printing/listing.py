@@ -33,7 +33,10 @@ def _grouped(line: Callable[[Metric], Line]) -> list[Line]:
     groups: dict[str, list[Line]] = {}
     for metric in CATALOGUE.values():
         groups.setdefault(metric.id.partition(".")[0], []).append(line(metric))
-    return [each for group in groups.values() for each in (BREAK, *group)][1:]
+    lines: list[Line] = []
+    for group in groups.values():
+        lines += [BREAK, *group]
+    return lines[1:]
 
 
 def studies() -> list[Line]:
@@ -51,11 +54,12 @@ def solvers() -> list[Line]:
     """Return name, role, a description and the features handled of every solver."""
     from validation.solvers.registry import BUILT_IN, entry_points, get_solver
 
-    heads, lines = ("solver", "role", "description", "handles"), []
+    lines: list[Line] = [("solver", "role", "description", "handles")]
     for name in BUILT_IN:
         solver = get_solver(name)
-        lines.append((name, str(solver.role), _first_line(solver), ", ".join(sorted(solver.handles)) or "-"))
-    return [heads, *lines, *((name, "other", target, "decides itself") for name, target in entry_points().items())]
+        description = (type(solver).__doc__ or "").partition("\n")[0]
+        lines.append((name, str(solver.role), description, ", ".join(sorted(solver.handles)) or "-"))
+    return [*lines, *((name, "other", target, "decides itself") for name, target in entry_points().items())]
 
 
 def _studies() -> list[Study]:
@@ -72,10 +76,6 @@ def _scenes() -> list[Scene]:
 
 def _title(scene: Scene) -> str:
     return scene.title or scene.name
-
-
-def _first_line(value: object) -> str:
-    return (type(value).__doc__ or "").partition("\n")[0]
 
 
 LISTS: dict[str, Callable[[], list[Line]]] = {
@@ -103,7 +103,10 @@ def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = ""
     """
     widths = [max(map(len, column)) for column in zip(*filter(None, lines), strict=True)][:-1]
     offset = len(indent) + sum(n + 2 for n in widths)
-    return "\n".join(row for line in lines for row in _rows(line, widths, indent, offset, width))
+    rows: list[str] = []
+    for line in lines:
+        rows += _rows(line, widths, indent, offset, width)
+    return "\n".join(rows)
 
 
 def _rows(line: Line, widths: Sequence[int], indent: str, offset: int, width: int | None) -> list[str]:

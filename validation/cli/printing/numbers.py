@@ -6,6 +6,7 @@ A column: the same of each layer, its blocks a wavelength, and what the base ref
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -53,36 +54,37 @@ def cases(scene: Scene) -> list[Scene]:
     return [every[i] for i in np.linspace(0, len(every) - 1, MOST_CASES).round().astype(int)]
 
 
-def ranges(found: Sequence[Sequence[Number]]) -> list[Range]:
+def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> list[Range]:
     """Return each number's range over cases, in the order of the case that has most of them."""
     values: dict[str, list[Number]] = {}
-    for numbers in sorted(found, key=len, reverse=True):
+    for numbers in sorted(numbers_by_case, key=len, reverse=True):
         for number in numbers:
             values.setdefault(number.name, []).append(number)
     return [
-        Range(name, min(n.value for n in some), max(n.value for n in some), some[0].unit, some[0].says)
-        for name, some in values.items()
+        Range(name, min(n.value for n in samples), max(n.value for n in samples), samples[0].unit, samples[0].says)
+        for name, samples in values.items()
     ]
 
 
 def numbers(scene: Scene) -> list[Number]:
     """Return the derived numbers of one case, all of them finite."""
     parts = (_column,) if scene.column is not None else (_block, _modes, _opening, _slope)
-    found = [*(number for part in parts for number in part(scene)), *_steps(scene)]
-    return [number for number in found if math.isfinite(number.value)]
+    derived = itertools.chain(*(part(scene) for part in parts), _steps(scene))
+    return [number for number in derived if math.isfinite(number.value)]
 
 
-def remarks(scene: Scene, found: Sequence[Number]) -> list[str]:
+def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
-    values = {number.name: number.value for number in found}
-    return [text for part in (_unstable, _coarse, _landing, _steep) for text in part(scene, values)]
+    values = {number.name: number.value for number in derived}
+    return list(itertools.chain(*(part(scene, values) for part in (_unstable, _coarse, _landing, _steep))))
 
 
 # ---- a block ------------------------------------------------------------------------------------------------------
 
 
 def _block(scene: Scene) -> Iterator[Number]:
-    b, dt = scene.block, scene.time.step
+    b = scene.block
+    dt = scene.time.step
     height = float(np.ptp([y for _, y in b.outline]))
     speed = math.sqrt(closed_forms.moduli(scene)[0] / b.density)
     yield Number("m", scene.block.mass, "kg", "mass of the block")
@@ -90,7 +92,7 @@ def _block(scene: Scene) -> Iterator[Number]:
     yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
     yield Number("h/c", height / speed, "s", "travel time of the wave through the block")
     yield Number("c dt/h", speed * dt / height, "", "share of the block that the wave crosses per step")
-    if load := opened.pushing(scene):
+    if load := opened.resultant_load(scene):
         yield Number("F/2p", load / (2 * scene.contact.stiffness), "m", "compression of the springs at rest")
 
 
@@ -99,22 +101,22 @@ def _modes(scene: Scene) -> Iterator[Number]:
         return
     with suppress(InputError):  # no modes: the motion is not linear, or DDA does not take the scene
         modes = dda_modes(scene)
-        named = dict(zip(mode_names(modes), modes, strict=True))
+        modes_by_name = dict(zip(mode_names(modes), modes, strict=True))
         for short, name in (("w1", FIRST), ("wc", CONTACT)):
-            if name in named:
-                yield from _mode(scene, short, name, named[name].frequency)
+            if name in modes_by_name:
+                yield from _mode(scene, short, name, modes_by_name[name].frequency)
         if not scene.damping.present:
             yield Number("dt stable", stable_step(scene), "s", "largest stable step of the DDA block")
 
 
 def _mode(scene: Scene, short: str, name: str, frequency: float) -> Iterator[Number]:
-    found = mode_damping(scene, name, frequency)
+    analysis = mode_damping(scene, name, frequency)
     yield Number(short, frequency, "rad/s", f"{name} mode of the DDA block")
-    yield Number(f"{short} dt", found.omega_dt, "", "times the step; a period takes 2 pi over this many steps")
-    if found.damping is not None:
-        yield Number(f"{short} xi", 100 * found.damping, "%", "its damping ratio by scheme, gg and tables")
+    yield Number(f"{short} dt", analysis.omega_dt, "", "times the step; a period takes 2 pi over this many steps")
+    if analysis.damping is not None:
+        yield Number(f"{short} xi", 100 * analysis.damping, "%", "its damping ratio by scheme, gg and tables")
     if name == CONTACT:
-        yield Number("least root", found.least_root, "", "of a step; near -1 the contact force rings")
+        yield Number("least root", analysis.least_root, "", "of a step; near -1 the contact force rings")
 
 
 def _opening(scene: Scene) -> Iterator[Number]:
@@ -131,9 +133,10 @@ def _opening(scene: Scene) -> Iterator[Number]:
 
 
 def _slope(scene: Scene) -> Iterator[Number]:
-    c, slope = scene.contact, math.tan(math.radians(scene.load.slope))
-    if c.friction is not None:
-        yield Number("tan phi", math.tan(math.radians(c.friction)), "", "coefficient of friction")
+    friction = scene.contact.friction
+    slope = math.tan(math.radians(scene.load.slope))
+    if friction is not None:
+        yield Number("tan phi", math.tan(math.radians(friction)), "", "coefficient of friction")
     if slope:
         yield Number("tan b", abs(slope), "", "of the slope: friction coefficient that it needs at rest")
         if scene.block.vertices is None:
@@ -155,24 +158,26 @@ def _column(scene: Scene) -> Iterator[Number]:
     column = scene.column
     if column is None:
         return
-    top, travel = 0.0, 0.0
+    top_impedance = 0.0
+    travel_time = 0.0
     for number, layer in enumerate(column.layer, start=1):
         speed = math.sqrt(column.modulus(layer) / layer.density)
         height = layer.thickness / layer.blocks
-        travel += layer.thickness / speed
-        top = layer.density * speed
-        yield from _layer(scene, f"{number}: " if len(column.layer) > 1 else "", speed, height)
-    yield Number("H/c", travel, "s", "travel time of the wave through the column")
+        travel_time += layer.thickness / speed
+        top_impedance = layer.density * speed
+        place = f"{number}: " if len(column.layer) > 1 else ""
+        yield from _layer(scene, place, speed, height)
+    yield Number("H/c", travel_time, "s", "travel time of the wave through the column")
     with suppress(InputError):  # DDA does not take the column
         yield Number(
             "dt stable", stable_step(scene), "s", "largest stable step of the blocks, glue and joints included"
         )
     if column.impedance is not None:
         lowest = column.layer[0]
-        own = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
-        share = abs(column.impedance - own) / (column.impedance + own)
+        base_impedance = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
+        share = abs(column.impedance - base_impedance) / (column.impedance + base_impedance)
         yield Number("reflected", 100 * share, "%", "of the amplitude of a wave that reaches the base")
-    yield Number("rho c", top, "Pa s/m", "impedance of the top layer")
+    yield Number("rho c", top_impedance, "Pa s/m", "impedance of the top layer")
 
 
 def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Number]:
@@ -188,38 +193,40 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
 # ---- limits -------------------------------------------------------------------------------------------------------
 
 
-def _unstable(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
-    if scene.time.step > found.get("dt stable", math.inf) * (1 + 1e-12):
+def _unstable(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
+    if scene.time.step > values.get("dt stable", math.inf) * (1 + 1e-12):
         yield "dt is beyond the stability limit: the solution grows without bound"
 
 
-def _coarse(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
-    if found.get("w1 dt", 0.0) > math.pi:
+def _coarse(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
+    if values.get("w1 dt", 0.0) > math.pi:
         yield "fewer than two steps per period of the first mode: no history can show it"
-    stable = scene.time.step <= found.get("dt stable", math.inf)
-    if stable and found.get("least root", 0.0) <= FLIPPING:
+    stable = scene.time.step <= values.get("dt stable", math.inf)
+    if stable and values.get("least root", 0.0) <= FLIPPING:
         yield "the contact mode changes sign in every step: the contact force rings"
 
 
-def _landing(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
-    if scene.time.step > found.get("dt seen", math.inf):
+def _landing(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
+    if scene.time.step > values.get("dt seen", math.inf):
         yield "dt is too large to show that the block leaves its springs at t = 0"
-    least, most = found.get("e least", math.nan), found.get("e most", math.nan)
+    least = values.get("e least", math.nan)
+    most = values.get("e most", math.nan)
+    without_step = values.get("e own", math.nan)
     if most - least > contact.NOTABLE:
         yield f"the restitution of a landing, {least:.2g} to {most:.2g}, depends on where in the step the block lands"
-    elif max(abs(least - found.get("e own", math.nan)), abs(most - found.get("e own", math.nan))) > contact.NOTABLE:
-        yield f"the step changes the restitution of a landing from {found['e own']:.2g} to {least:.2g}"
+    elif max(abs(least - without_step), abs(most - without_step)) > contact.NOTABLE:
+        yield f"the step changes the restitution of a landing from {without_step:.2g} to {least:.2g}"
 
 
-def _steep(scene: Scene, found: Mapping[str, float]) -> Iterator[str]:
-    slope = found.get("tan b", 0.0)
+def _steep(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
+    slope = values.get("tan b", 0.0)
     if slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
         return
-    grip = math.inf
+    friction = math.inf
     if scene.contact.cohesion == 0:
-        grip = 0.0 if scene.contact.shear_stiffness == 0 else found.get("tan phi", math.inf)
-    if slope > grip:
+        friction = 0.0 if scene.contact.shear_stiffness == 0 else values.get("tan phi", math.inf)
+    if slope > friction:
         yield "tan b > tan phi: the block slides"
     # The friction of a block that slides is tan(phi) N, whose moment does not tip it where tan(phi) < w/h.
-    if min(slope, grip) > found.get("w/h", math.inf):
+    if min(slope, friction) > values.get("w/h", math.inf):
         yield "tan b > w/h: the block topples"

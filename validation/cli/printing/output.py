@@ -36,7 +36,7 @@ def echo(text: str = "", err: bool = False) -> None:
 
 
 @contextmanager
-def heard() -> Iterator[None]:
+def tolerate_closed_pipe() -> Iterator[None]:
     """Go on where the reader of the output has gone: what is left to say decides nothing."""
     try:
         yield
@@ -52,7 +52,7 @@ def silence() -> None:
 
 
 def console() -> Console:
-    """Return a console of the library rich that leaves a reader who has gone to `heard`."""
+    """Return a console of the library rich that leaves a reader who has gone to `tolerate_closed_pipe`."""
     from rich.console import Console
     from rich.text import Text
 
@@ -69,7 +69,8 @@ def console() -> Console:
         def on_broken_pipe(self) -> None:  # rich would end the process
             raise
 
-    return Plain(width=None if sys.stdout.isatty() else PAGE)
+    width = None if sys.stdout.isatty() else PAGE
+    return Plain(width=width)
 
 
 def width() -> int:
@@ -79,8 +80,8 @@ def width() -> int:
 
 def broken(text: str) -> str:
     """Return a sentence in lines of the terminal; in one line where the output is none."""
-    wide = terminal_width()
-    return text if wide is None else "\n".join(wrap(text, wide, break_long_words=False, break_on_hyphens=False))
+    columns = terminal_width()
+    return text if columns is None else "\n".join(wrap(text, columns, break_long_words=False, break_on_hyphens=False))
 
 
 def terminal_width() -> int | None:

@@ -8,12 +8,15 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
+
 from validation.cli.printing import numbers
 from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-INSIDE, NARROWEST = 15, 5  # characters of a block's width in the drawing
+INSIDE = 15  # characters of a block's width in the drawing
+NARROWEST = 5  # the same of a tall block
 BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
 SCHEMES = {
     (0.5, 1.0): "constant acceleration",
@@ -21,45 +24,49 @@ SCHEMES = {
     (1 / 6, 0.5): "linear acceleration",
     (0.0, 0.5): "central differences",
 }
-SHOWN = 6  # values of a swept key
+SWEPT_VALUES = 6  # of a key that are shown
 
 
 def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
     """Yield the lines of the page; a scene with a sweep shows the range of each number over its cases."""
-    every, looked = scene.expand(), numbers.cases(scene)
-    found = [numbers.numbers(case) for case in looked]
+    cases = scene.expand()
+    sampled_cases = numbers.cases(scene)
+    derived = [numbers.numbers(case) for case in sampled_cases]
     yield from textwrap.wrap(f"{scene.name}: {scene.title or 'a scene'}", width or 1000, break_long_words=False)
     yield ""
-    yield from (column(every[0]) if scene.column is not None else block(every[0], width))
+    yield from (column(cases[0]) if scene.column is not None else block(cases[0], width))
     yield ""
-    yield in_columns(list(_facts(every[0], scene, len(every))), width)
+    yield in_columns(list(_facts(cases[0], scene, len(cases))), width)
     yield ""
-    if len(every) > 1:
-        of_all = f"{len(looked)} of {len(every)}" if len(looked) < len(every) else f"all {len(every)}"
+    if len(cases) > 1:
+        of_all = f"{len(sampled_cases)} of {len(cases)}" if len(sampled_cases) < len(cases) else f"all {len(cases)}"
         yield f"over {of_all} cases of the sweep (the first one is above):"
-    yield in_columns(_table(numbers.ranges(found)), width)
-    for text, count in _remarks(looked, found).items():
-        told = f"{text} (in {count} of {len(looked)} cases)" if len(looked) > 1 else text
-        yield from textwrap.wrap(told, width or 1000, initial_indent="! ", subsequent_indent="  ")
+    yield in_columns(_table(numbers.ranges(derived)), width)
+    for text, count in _remarks(sampled_cases, derived).items():
+        remark = f"{text} (in {count} of {len(sampled_cases)} cases)" if len(sampled_cases) > 1 else text
+        yield from textwrap.wrap(remark, width or 1000, initial_indent="! ", subsequent_indent="  ")
     yield ""
     yield f"next: dda-validate run {source}"
 
 
 def as_data(scene: Scene) -> dict[str, Any]:
     """Return the scene as a file states it, and each number's range, as plain data."""
-    looked = numbers.cases(scene)
-    found = [numbers.numbers(case) for case in looked]
+    sampled_cases = numbers.cases(scene)
+    derived = [numbers.numbers(case) for case in sampled_cases]
     return {
         "scene": scene.definition(),
         "cases": len(scene.expand()),
-        "numbers": {r.name: {"low": r.low, "high": r.high, "unit": r.unit} for r in numbers.ranges(found)},
-        "remarks": dict(_remarks(looked, found)),
+        "numbers": {r.name: {"low": r.low, "high": r.high, "unit": r.unit} for r in numbers.ranges(derived)},
+        "remarks": dict(_remarks(sampled_cases, derived)),
     }
 
 
-def _remarks(looked: Sequence[Scene], found: Sequence[Sequence[numbers.Number]]) -> Counter[str]:
+def _remarks(cases: Sequence[Scene], derived: Sequence[Sequence[numbers.Number]]) -> Counter[str]:
     """Return how many cases lie beyond each limit."""
-    return Counter(text for case, own in zip(looked, found, strict=True) for text in numbers.remarks(case, own))
+    remarks: Counter[str] = Counter()
+    for case, case_numbers in zip(cases, derived, strict=True):
+        remarks.update(numbers.remarks(case, case_numbers))
+    return remarks
 
 
 def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
@@ -72,13 +79,14 @@ def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
     yield "scheme", f"{scheme}, alpha = {t.alpha:.4g}, delta = {t.delta:g}, {discount}"
     if first.damping.present:
         yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
-    if asked := features.of(first):
-        yield "features", ", ".join(asked)
+    if scene_features := features.of(first):
+        yield "features", ", ".join(scene_features)
     for field, values in scene.sweep.items():
         if field != "mode":
-            more = f", ... ({len(values)})" if len(values) > SHOWN else ""
-            yield "varied", f"{field} = {', '.join(map(_short, values[:SHOWN]))}{more}"
-    yield "solvers", f"{', '.join(scene.run.solvers)}{f'; {count} cases' if count > 1 else ''}"
+            more = f", ... ({len(values)})" if len(values) > SWEPT_VALUES else ""
+            yield "varied", f"{field} = {', '.join(map(_short, values[:SWEPT_VALUES]))}{more}"
+    case_count = f"; {count} cases" if count > 1 else ""
+    yield "solvers", f"{', '.join(scene.run.solvers)}{case_count}"
     if scene.gate:
         yield "gates", f"{len(scene.gate)} in the scene"
 
@@ -87,11 +95,12 @@ def _short(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _table(found: Sequence[numbers.Range]) -> list[Line]:
+def _table(ranges: Sequence[numbers.Range]) -> list[Line]:
     rows: list[Line] = [("", "value", "", "what it is")]
-    for each in found:
-        low, high = f"{each.low:.4g}", f"{each.high:.4g}"
-        rows.append((each.name, low if low == high else f"{low} .. {high}", each.unit, each.says))
+    for quantity in ranges:
+        low = f"{quantity.low:.4g}"
+        high = f"{quantity.high:.4g}"
+        rows.append((quantity.name, low if low == high else f"{low} .. {high}", quantity.unit, quantity.says))
     return rows
 
 
@@ -117,20 +126,18 @@ def block(scene: Scene, width: int | None) -> Iterator[str]:
 
 def _extent(scene: Scene) -> tuple[int, int]:
     """Return columns and rows of the block's inside; a row is as high as two columns are wide."""
-    points = scene.block.outline
-    slenderness = (max(x for x, _ in points) - min(x for x, _ in points)) / (
-        max(y for _, y in points) - min(y for _, y in points)
-    )
+    width, height = np.ptp(scene.block.outline, axis=0)
+    slenderness = width / height
     across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
     return across, min(max(3, round(across / slenderness / 2)), INSIDE // 2)
 
 
 def _size(scene: Scene) -> str:
     b = scene.block
-    xs, ys = [x for x, _ in b.outline], [y for _, y in b.outline]
+    width, height = np.ptp(b.outline, axis=0)
     cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
     shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
-    return f"{max(xs) - min(xs):.3g} m wide, {max(ys) - min(ys):.3g} m high{shape}{cut}"
+    return f"{width:.3g} m wide, {height:.3g} m high{shape}{cut}"
 
 
 def _material(scene: Scene) -> str:
@@ -139,23 +146,28 @@ def _material(scene: Scene) -> str:
 
 
 def _start(scene: Scene) -> str:
-    b, c = scene.block, scene.contact
+    block = scene.block
+    gap = scene.contact.gap
     parts = (
-        f"starts at {b.velocity:g} m/s" if b.velocity else "",
-        f"tilted by {b.tilt:g} deg" if b.tilt else "",
-        f"gap of {c.gap:g} m" if c.gap else "",
+        f"starts at {block.velocity:g} m/s" if block.velocity else "",
+        f"tilted by {block.tilt:g} deg" if block.tilt else "",
+        f"gap of {gap:g} m" if gap else "",
     )
     return ", ".join(filter(None, parts))
 
 
 def _arrows(scene: Scene, across: int) -> str:
-    mark = "v" if scene.load.pressure else ">" if scene.load.traction else ""
+    mark = ""
+    if scene.load.pressure:
+        mark = "v"
+    elif scene.load.traction:
+        mark = ">"
     return " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
 
 
 def _loads(scene: Scene) -> str:
     load = scene.load
-    said = [
+    loads = [
         f"{word} = {value:g} {unit}"
         for word, value, unit in (
             ("q", load.pressure, "Pa"),
@@ -166,8 +178,9 @@ def _loads(scene: Scene) -> str:
         )
         if value
     ]
-    moved = [] if load.base_motion is None else [f"base moved by {load.base_motion.rpartition('/')[2]}"]
-    return ", ".join([*said, *moved]) or "no load"
+    if load.base_motion is not None:
+        loads.append(f"base moved by {load.base_motion.rpartition('/')[2]}")
+    return ", ".join(loads) or "no load"
 
 
 def _springs(scene: Scene) -> Iterator[str]:
@@ -182,20 +195,25 @@ def _springs(scene: Scene) -> Iterator[str]:
 
 def column(scene: Scene) -> Iterator[str]:
     """Yield the layers of a column from the top down, and what it stands on."""
-    drawn, drive = scene.column, scene.input
-    if drawn is None:
+    layered_column = scene.column
+    if layered_column is None:
         return
-    what = drive.shape or f"record {(drive.record or '').rpartition('/')[2]}"
-    strength = f"{drive.velocity:g} m/s" if drive.velocity is not None else f"{drive.pressure or 0:g} Pa"
-    told = what if drive.shape is None else f"{what}, {strength}"
-    yield f"  +{'-' * INSIDE}+   {f'{told} on the top, {drawn.motion} waves' if drive.at == 'top' else 'free top'}"
-    for layer in reversed(drawn.layer):
+    excitation = scene.input
+    if excitation.shape is None:
+        signal = f"record {(excitation.record or '').rpartition('/')[2]}"
+    elif excitation.velocity is not None:
+        signal = f"{excitation.shape}, {excitation.velocity:g} m/s"
+    else:
+        signal = f"{excitation.shape}, {excitation.pressure or 0:g} Pa"
+    top = f"{signal} on the top, {layered_column.motion} waves" if excitation.at == "top" else "free top"
+    yield f"  +{'-' * INSIDE}+   {top}"
+    for layer in reversed(layered_column.layer):
         cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
         yield f"  |{cut}|   rho = {layer.density:g} kg/m3, E = {layer.young:g} Pa, mu = {layer.poisson:g}"
         yield f"  +{'-' * INSIDE}+"
-    for joint in drawn.joint:
+    for joint in layered_column.joint:
         yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {joint.stiffness:g} Pa/m"
-    if drawn.glue is not None:
-        yield f"{' ' * (INSIDE + 7)}blocks glued by {drawn.glue:g} Pa/m"
-    driven = f", {told}, {drawn.motion} waves" if drive.at == "base" else ""
-    yield f" {'=' * (INSIDE + 4)}  {drawn.base} base{driven}"
+    if layered_column.glue is not None:
+        yield f"{' ' * (INSIDE + 7)}blocks glued by {layered_column.glue:g} Pa/m"
+    base_motion = f", {signal}, {layered_column.motion} waves" if excitation.at == "base" else ""
+    yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"

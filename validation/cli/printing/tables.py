@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import console, echo
 from validation.gates.gate import Verdict, value_text
 from validation.runs.case_name import CaseName
-from validation.runs.records import ComparisonRecord, Judged, VerdictRecord
+from validation.runs.records import BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.runs.text import printable
@@ -26,15 +27,17 @@ if TYPE_CHECKING:
     from validation.gates.changes import Change
 
 DIFFERENCES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")  # shown where nothing is judged
-UNLIKE = 0.5  # relative difference (L2) from which two histories share less than half of the motion
-MOST = 20  # pairs that are shown
+LARGEST_AGREEMENT = 0.5  # relative difference (L2) from which two histories share less than half of the motion
+PAIRS_SHOWN = 20
 
 
 def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
     """Print one table, a row a gate: scene, pair, metric, value, band, verdict, seconds; without seconds if narrow."""
     rows = results.rows()
-    cases = [case for study in studies for case in results.manifest(study)["cases"]]
-    seconds = {(case["scene"], case["solver"]): sum(rows[case["key"]].seconds.values()) for case in cases}
+    seconds: dict[tuple[str, str], float] = {}
+    for study in studies:
+        for case in results.manifest(study)["cases"]:
+            seconds[case["scene"], case["solver"]] = sum(rows[case["key"]].seconds.values())
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     name = _namer([v.gate.scene for v in verdicts])
     table.add_column("scene", overflow="fold")
@@ -45,16 +48,18 @@ def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]
     table.add_column("verdict")
     table.add_column("seconds", justify="right")
     for v in verdicts:
-        g, word = v.gate, str(v.status)
-        spent = seconds.get(g.cases[0])
+        gate = v.gate
+        status = str(v.status)
+        case_seconds = seconds.get(gate.cases[0])
+        duration = "" if case_seconds is None else f"{case_seconds:.2f}"
         table.add_row(
-            escape(printable(name(g.scene))),
-            " | ".join(g.pair),
-            g.id.rpartition(":")[2],
+            escape(printable(name(gate.scene))),
+            " | ".join(gate.pair),
+            gate.id.rpartition(":")[2],
             value_text(v.value),
             _band(v),
-            f"[{STYLES[word]}]{word}[/]",
-            "" if spent is None else f"{spent:.2f}",
+            f"[{STYLES[status]}]{status}[/]",
+            duration,
         )
     printer = console()
     if printer.measure(table, options=printer.options.update(width=10_000)).maximum <= printer.width:
@@ -97,10 +102,11 @@ def print_lines(lines: Iterable[Line]) -> None:
     """Print lines, with the style of its verdict on the first word or, in a line of counts, on all of it."""
     printer = console()
     for text, word in lines:
-        shown = Text(text)
+        styled_text = Text(text)
         if word:
-            shown.stylize(STYLES[word], 0, len(word) if text.startswith(word) else len(text))
-        printer.print(shown, soft_wrap=True)
+            end = len(word) if text.startswith(word) else len(text)
+            styled_text.stylize(STYLES[word], 0, end)
+        printer.print(styled_text, soft_wrap=True)
 
 
 def print_differences(results: Results, study: str, writable: bool) -> None:
@@ -112,21 +118,23 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
     table.add_column("pair", no_wrap=True)
     for metric in DIFFERENCES:
         table.add_column(metric.replace(".", "\n.") + " [%]", justify="right")
-    for c in compared[:MOST]:
+    for c in compared[:PAIRS_SHOWN]:
         values = [c["metrics"].get(metric) for metric in DIFFERENCES]
-        shown = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
+        cells = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
         pair = f"{c['solver']} | {c['reference']}"
-        table.add_row(*map(escape, map(printable, (name(c["scene"]), pair))), *shown)
+        table.add_row(*map(escape, map(printable, (name(c["scene"]), pair))), *cells)
     printer = console()
     if compared:
         printer.print(table)
-    if len(compared) > MOST:
-        printer.print(f"and {len(compared) - MOST} more pairs; dda-validate report shows all", markup=False)
-    for line in _next(compared, writable) if compared else [_alone(outcomes(results, study))]:
-        echo(line)
+    if len(compared) > PAIRS_SHOWN:
+        printer.print(f"and {len(compared) - PAIRS_SHOWN} more pairs; dda-validate report shows all", markup=False)
+    if compared:
+        echo("\n".join(_next(compared, writable)))
+    else:
+        echo(_without_comparison(outcomes(results, study)))
 
 
-def _alone(ended: Mapping[tuple[str, str], Outcome]) -> str:
+def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
     """Return what to do with a scene whose solvers cannot be compared."""
     if len({solver for _, solver in ended}) < 2:
         return 'next: name two solvers or more that apply to the scene, such as solvers = ["dda", "bar"] under [run]'
@@ -142,7 +150,8 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
     metric = DIFFERENCES[0]
     agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
     if not agreeing:
-        yield f"next: no pair agrees within {100 * UNLIKE:g} % ({metric}), which is a finding and no tolerance:"
+        limit = f"{100 * LARGEST_AGREEMENT:g} % ({metric})"
+        yield f"next: no pair agrees within {limit}, which is a finding and no tolerance:"
         yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
         return
     first = agreeing[0]
@@ -163,7 +172,7 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
 
 def _agrees(value: object) -> bool:
     """Whether a difference may be what a user tolerates; one that is not measured says nothing against it."""
-    return not isinstance(value, float | int) or value < UNLIKE
+    return not isinstance(value, float | int) or value < LARGEST_AGREEMENT
 
 
 def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
@@ -182,7 +191,10 @@ def print_ends(results: Results, studies: list[str]) -> None:
 
 
 def after_run(
-    records: list[VerdictRecord], studies: Sequence[str], summary: Path | None, baseline: Sequence[Judged] | None
+    records: list[VerdictRecord],
+    studies: Sequence[str],
+    summary: Path | None,
+    baseline: Sequence[BaselineVerdict] | None,
 ) -> list[Change] | None:
     """Write the summary; return what changed since the baseline in the studies, None without a baseline."""
     from validation.gates.changes import against, markdown
@@ -200,7 +212,7 @@ def printable_lines(text: str) -> str:
     return text.encode("utf-8", "backslashreplace").decode()
 
 
-def print_changes(found: list[Change]) -> None:
+def print_changes(changes: list[Change]) -> None:
     """Print one table: change, study, gate, verdict and value before and after."""
     from validation.gates.changes import band_said
 
@@ -208,7 +220,7 @@ def print_changes(found: list[Change]) -> None:
     for name in ("change", "study", "gate", "before", "after"):
         table.add_column(name, overflow="fold")
     colours = {"worse": "bold red", "better": "green"}
-    for c in found:
+    for c in changes:
         sides = ((c.before, c.value_before), (c.after, c.value_after))
         values = [f"{word} {value_text(value)}" for word, value in sides]
         if c.rebanded:
@@ -217,9 +229,11 @@ def print_changes(found: list[Change]) -> None:
         kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"
         table.add_row(kind, *map(escape, (c.study, c.id, *values)))
     printer = console()
-    if found:
-        printer.print(table)
-    kinds = [c.kind for c in found]
-    words = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
-    many = "1 gate differs" if len(found) == 1 else f"{len(found)} gates differ"
-    printer.print(f"{many}: {words}" if found else "no gate differs", markup=False)
+    if not changes:
+        printer.print("no gate differs", markup=False)
+        return
+    printer.print(table)
+    kinds = Counter(c.kind for c in changes)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    many = "1 gate differs" if len(changes) == 1 else f"{len(changes)} gates differ"
+    printer.print(f"{many}: {counts}", markup=False)

@@ -30,6 +30,14 @@ def closed_corners(stiffness: float, shear: float) -> dda.Contact:
     return dda.Contact(stiffness, shear or FRICTIONLESS * stiffness)
 
 
+def block_of(scene: Scene) -> dda.Block:
+    """Return the block of a scene."""
+    import dda
+
+    b = scene.block
+    return dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+
+
 def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """Return the block of a scene on its base with both corners closed and sticking.
 
@@ -37,10 +45,11 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """
     import dda
 
-    b, c, q = scene.block, scene.contact, scene.load
-    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    b = scene.block
+    q = scene.load
+    corners = closed_corners(scene.contact.stiffness, scene.contact.shear)
     loads = q.pressure or 1.0, b.base, b.top, q.eccentricity, q.traction, q.gravity, None, q.slope
-    return dda.TwoBlockModel(block, closed_corners(c.stiffness, c.shear), *loads)
+    return dda.TwoBlockModel(block_of(scene), corners, *loads)
 
 
 def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:
@@ -76,10 +85,10 @@ def rolling_frequency(scene: Scene, scheme: dda.Scheme) -> float:
     """
     import dda
 
-    b, c = scene.block, scene.contact
+    c = scene.contact
     if math.isinf(c.stiffness):
         return math.inf
-    block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
+    block = block_of(scene)
     stiffness = max(c.stiffness, c.shear)
     corners = closed_corners(stiffness, stiffness)
     frequencies = []

@@ -15,13 +15,14 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import dda_limit, opening_frequency, opening_system_frequency
+from validation.solvers.blocks.closed import block_of, dda_limit, opening_frequency, opening_system_frequency
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
-from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
+from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
 
 if TYPE_CHECKING:
     import dda
+    from dda.rotation.result import RollingResult
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
@@ -37,14 +38,16 @@ class OpeningBlock(Prepared):
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None, full: bool) -> None:
         import dda
 
-        self.scene, self.scheme, self.full = scene, scheme, full
+        self.scene = scene
+        self.scheme = scheme
+        self.full = full
         self.result: dda.ContactResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
+        b = scene.block
+        c = scene.contact
+        q = scene.load
         with naming(scene):
-            block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, *friction(scene), c.rules)
             loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block, law, *loads, b.velocity, q.slope, motion)
+            self.model = dda.UnilateralModel(block_of(scene), law_of(scene), *loads, b.velocity, q.slope, motion)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:
@@ -63,59 +66,78 @@ class OpeningBlock(Prepared):
 
         no_fields("dda", self.scene, fields)
         check_columns(self.scene, (*dda.COLUMNS, *OPENING))
-        asked = [name for name in self.scene.run.columns if name in dda.COLUMNS]
+        model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = self.solve(asked)
-        self.result = r
-        return opened_run(self.scene, r, {**r.columns, **self._contact(r)})
+            result = self.solve(model_columns)
+        self.result = result
+        return opened_run(self.scene, result, {**result.columns, **self._contact(result)})
 
-    def _contact(self, r: dda.ContactResult) -> dict[str, Array]:
+    def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
         names = [name for name in self.scene.run.columns if name in OPENING]
-        return {name: np.asarray(getattr(r, counts.get(name, name)), dtype=float) for name in names}
+        return {name: np.asarray(getattr(result, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
         if self.result is None:
             raise NotReported("dda: the scene was not run")
-        r = self.result
-        return flips({"M": r.closed_m.astype(float), "N": r.closed_n.astype(float)}, r.time)
+        result = self.result
+        return switches_between_steps(
+            {"M": result.closed_m.astype(float), "N": result.closed_n.astype(float)}, result.time
+        )
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
         if self.result is None:
             raise NotReported("dda: the scene was not run")
-        r, gaps, force = self.result, self.result.gap, self.result.normal.sum(axis=0)
-        return opened.record(
-            self.scene,
-            time=r.time,
-            force=force,
-            impulse=self._impulse(r, force),
-            penetration=np.maximum(0.0, -gaps).max(axis=0),
-            gap=np.maximum(0.0, gaps).max(axis=0),
-            open_share=1 - np.mean(r.closed, axis=0),
-            velocity=r.velocity,
-            rebounds=opened.rebounds(gaps, self.scheme.step),
-            energies=r.energies or {},
-            solves=r.step_solves.astype(float),
-            cuts=r.step_cuts.astype(float),
-            slip=r.slip,
-        )
-
-    def _impulse(self, r: dda.ContactResult, force: Array) -> Array:
-        """Return the impulse of the contact; the force over a step is no sum of those at its ends in the last rule."""
-        late = {"newmark": self.scheme.delta, "implicit": 1.0}.get(self.options.rule)
-        if late is None:
-            return opened.balanced(self.scene, r.velocity)
-        return opened.summed(force, self.scheme.step, late)
+        end_weight = {"newmark": self.scheme.delta, "implicit": 1.0}.get(self.options.rule)
+        if end_weight is None:  # the conserving rule: the force over a step is no sum of those at its ends
+            impulse = opened.impulse_of_momentum(self.scene, self.result.velocity)
+        else:
+            impulse = opened.impulse_of_force(self.result.normal.sum(axis=0), self.scheme.step, end_weight)
+        return record_of_steps(self.scene, self.result, impulse)
 
 
-def friction(scene: Scene) -> tuple[float | None, float]:
-    """Return tan(phi) and the cohesion of one corner, half of that of the whole base [N]."""
+def law_of(scene: Scene) -> dda.Unilateral:
+    """Return the contact law of a scene; a corner has half of the cohesion of the whole base."""
+    import dda
+
     c = scene.contact
     tangent = None if c.friction is None else math.tan(math.radians(c.friction))
-    return tangent, c.cohesion * scene.block.base_length / 2
+    cohesion = c.cohesion * scene.block.base_length / 2  # N
+    return dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, tangent, cohesion, c.rules)
+
+
+def record_of_steps(
+    scene: Scene, result: dda.ContactResult | RollingResult, impulse: Array, base: Sequence[int] | slice = slice(None)
+) -> ContactRecord:
+    """Return what the contacts of a block did at its steps.
+
+    Parameters
+    ----------
+    scene, result
+        The scene and the history of its contacts.
+    impulse
+        Of all contacts from t = 0 on [N s], shape (steps,).
+    base
+        The contacts of the base, by which opening is measured.
+    """
+    return opened.record(
+        scene,
+        time=result.time,
+        force=result.normal.sum(axis=0),
+        impulse=impulse,
+        penetration=np.maximum(0.0, -result.gap).max(axis=0),
+        gap=np.maximum(0.0, result.gap[base]).max(axis=0),
+        open_share=1 - np.mean(result.closed[base], axis=0),
+        velocity=result.velocity,
+        rebounds=opened.rebounds(result.gap, scene.time.step),
+        energies=result.energies or {},
+        solves=result.step_solves.astype(float),
+        cuts=result.step_cuts.astype(float),
+        slip=result.slip,
+    )
 
 
 class OpeningSubBlocks(OpeningBlock):

@@ -6,36 +6,39 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array
 from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers import opened
-from validation.solvers.blocks.closed import dda_limit, rolling_frequency
-from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, friction
+from validation.solvers.blocks.closed import block_of, dda_limit, rolling_frequency
+from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, law_of, record_of_steps
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
-from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
+from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
 
 if TYPE_CHECKING:
     import dda
     from dda.rotation.result import RollingResult
 
 AREA = "area"  # column: of the outline, over that of the start [-]
-OWN = (*OPENING, AREA)
-TOGETHER = features.LOADS | {features.ROTATION, features.UNILATERAL, features.RIGID, features.FRICTION, features.SLOPE}
+ROLLING_COLUMNS = (*OPENING, AREA)
+COMPATIBLE = features.LOADS | {
+    features.ROTATION,
+    features.UNILATERAL,
+    features.RIGID,
+    features.FRICTION,
+    features.SLOPE,
+}
 
 
 def rotation_apart(scene: Scene) -> str | None:
     """Return None, or what does not go together with a block that turns."""
-    own = set(features.of(scene))
-    if features.UNILATERAL not in own:
+    scene_features = set(features.of(scene))
+    if features.UNILATERAL not in scene_features:
         return f"it does not handle {features.ROTATION} without {features.UNILATERAL}"
-    if others := own - TOGETHER:
+    if others := scene_features - COMPATIBLE:
         return f"it does not handle {min(others)} together with {features.ROTATION}"
     return None
 
@@ -47,12 +50,15 @@ class RollingBlock(Prepared):
         import dda
         from dda.rotation.model import RollingModel, RollingOptions
 
-        self.scene, self.scheme = scene, scheme
+        self.scene = scene
+        self.scheme = scheme
         self.result: RollingResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
+        b = scene.block
+        c = scene.contact
+        q = scene.load
         with naming(scene):
-            block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-            law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, *friction(scene), c.rules)
+            block = block_of(scene)
+            law = law_of(scene)
             load = dda.Load(q.pressure, q.eccentricity, q.traction, q.gravity, motion, q.slope)
             self.model = RollingModel(block, law, load, b.base, b.top, math.radians(b.tilt), (0.0, b.velocity))
             self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
@@ -67,56 +73,49 @@ class RollingBlock(Prepared):
         from dda.rotation.solution import solve_rolling
 
         no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *OWN))
-        asked = self.scene.run.columns
+        check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))
+        requested_columns = self.scene.run.columns
+        model_columns = [name for name in requested_columns if name in dda.COLUMNS]
         with naming(self.scene):
-            r = solve_rolling(
-                self.model, self.scheme, self.scene.time.steps, [n for n in asked if n in dda.COLUMNS], self.options
-            )
-        self.result = r
-        columns = of_corners(r)
-        return opened_run(self.scene, r, r.columns | {name: columns[name] for name in asked if name in OWN})
+            result = solve_rolling(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
+        self.result = result
+        corner_columns = of_corners(result)
+        columns = {name: corner_columns[name] for name in requested_columns if name in ROLLING_COLUMNS}
+        return opened_run(self.scene, result, result.columns | columns)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base corners M and N, and of the others by number, between the steps."""
-        r = self._made()
-        names = dict(zip(r.base_contacts, "MN", strict=True))
-        closed = r.closed.astype(float)
-        return flips({names.get(i, f"corner {i}"): state for i, state in enumerate(closed)}, r.time)
+        result = self._completed_result()
+        names = dict(zip(result.base_contacts, "MN", strict=True))
+        closed = result.closed.astype(float)
+        return switches_between_steps(
+            {names.get(i, f"corner {i}"): state for i, state in enumerate(closed)}, result.time
+        )
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
-        r = self._made()
-        base = list(r.base_contacts)
-        force = r.normal.sum(axis=0)
-        return opened.record(
-            self.scene,
-            time=r.time,
-            force=force,
-            impulse=r.impulse,
-            penetration=np.maximum(0.0, -r.gap).max(axis=0),
-            gap=np.maximum(0.0, r.gap[base]).max(axis=0),
-            open_share=1 - np.mean(r.closed[base], axis=0),
-            velocity=r.velocity,
-            rebounds=opened.rebounds(r.gap, self.scheme.step),
-            energies=r.energies or {},
-            solves=r.step_solves.astype(float),
-            cuts=r.step_cuts.astype(float),
-            slip=r.slip,
-        )
+        result = self._completed_result()
+        return record_of_steps(self.scene, result, result.impulse, list(result.base_contacts))
 
-    def _made(self) -> RollingResult:
+    def _completed_result(self) -> RollingResult:
         if self.result is None:
             raise NotReported("dda: the scene was not run")
         return self.result
 
 
-def of_corners(r: RollingResult) -> dict[str, Array]:
+def of_corners(result: RollingResult) -> dict[str, Array]:
     """Return the columns of the base corners and of the iteration."""
-    own, names = list(r.base_contacts), (*FORCES, *GAPS, *SLIDES, *STATES)
-    by_corner = (*r.normal[own], *r.shear[own], *r.gap[own], *r.slide[own], *r.states[own].astype(float))
+    corners = list(result.base_contacts)
+    names = (*FORCES, *GAPS, *SLIDES, *STATES)
+    by_corner = (
+        *result.normal[corners],
+        *result.shear[corners],
+        *result.gap[corners],
+        *result.slide[corners],
+        *result.states[corners].astype(float),
+    )
     return dict(zip(names, by_corner, strict=True)) | {
-        "solves": r.step_solves.astype(float),
-        "cuts": r.step_cuts.astype(float),
-        AREA: r.area,
+        "solves": result.step_solves.astype(float),
+        "cuts": result.step_cuts.astype(float),
+        AREA: result.area,
     }

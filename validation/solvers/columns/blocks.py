@@ -27,12 +27,17 @@ class BlockColumn(Prepared):
     """A column of DDA blocks."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme) -> None:
-        self.scene, self.scheme, self.section = scene, scheme, column_of(scene)
-        c = self.section
+        self.scene = scene
+        self.scheme = scheme
+        self.section = column_of(scene)
+        section = self.section
         with naming(scene):
-            layers = [Layer(x.thickness, x.density, x.young, x.poisson, x.blocks) for x in c.layer]
-            springs = [Spring(joint.height, joint.stiffness) for joint in c.springs]
-            self.column = Column(layers, c.motion, c.glue, springs, c.impedance)
+            layers = [
+                Layer(layer.thickness, layer.density, layer.young, layer.poisson, layer.blocks)
+                for layer in section.layer
+            ]
+            springs = [Spring(joint.height, joint.stiffness) for joint in section.springs]
+            self.column = Column(layers, section.motion, section.glue, springs, section.impedance)
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the scheme at the column's highest frequency: glue, joints and base springs included."""
@@ -44,13 +49,15 @@ class BlockColumn(Prepared):
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = Drive(**vars(motion_at(self.scene, instants)))
         with naming(self.scene):
-            found = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
-        return to_run(self.scene, found)
+            result = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
+        return to_run(self.scene, result)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
         check_step(self.scene, self.step_limit())
-        at = self.scene.input.at
+        excited_end = self.scene.input.at
         with naming(self.scene):
-            found = column_response(self.column, self.scheme, frequencies, at, (DISPLACEMENT, PRESSURE), exact)
-        return {name: amplitude(self.scene) * values for name, values in found.items()}
+            amplitudes = column_response(
+                self.column, self.scheme, frequencies, excited_end, (DISPLACEMENT, PRESSURE), exact
+            )
+        return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}

@@ -37,7 +37,9 @@ class LineColumn(Prepared):
     """A column of line elements, `fem.elements` of them for each block."""
 
     def __init__(self, scene: Scene, scheme: Scheme) -> None:
-        self.scene, self.scheme, self.ground = scene, scheme, ground_of(scene)
+        self.scene = scene
+        self.scheme = scheme
+        self.ground = ground_of(scene)
         c = column_of(scene)
         self.elements = [layer.blocks * scene.fem.per_side for layer in c.layer]
         self.heights = c.heights
@@ -55,20 +57,25 @@ class LineColumn(Prepared):
         from fem_reference.column.stepping import solve_line
 
         no_fields("fem with a column", self.scene, fields)
-        degree, columns = self.scene.fem.degree, self.scene.run.columns
+        degree = self.scene.fem.degree
+        columns = self.scene.run.columns
         instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
         drive = excitation(self.scene, instants)
         with naming(self.scene):
-            found = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
-        return to_run(self.scene, found)
+            result = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
+        return to_run(self.scene, result)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
         from fem_reference.column.vibration import line_response
 
-        ground, elements, degree = self.ground, self.elements, self.scene.fem.degree
+        degree = self.scene.fem.degree
+        on_top = self.scene.input.at == "top"
+        columns = (DISPLACEMENT, PRESSURE)
         check_step(self.scene, self.step_limit())
-        asked = self.scene.input.at == "top", (DISPLACEMENT, PRESSURE), exact
+
         with naming(self.scene):
-            found = line_response(ground, elements, degree, self.scheme, frequencies, *asked)
-        return {name: amplitude(self.scene) * values for name, values in found.items()}
+            amplitudes = line_response(
+                self.ground, self.elements, degree, self.scheme, frequencies, on_top, columns, exact
+            )
+        return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}

@@ -29,7 +29,9 @@ class ExactColumn(Prepared):
     def __init__(self, scene: Scene) -> None:
         from validation.solvers.columns.elements import ground_of
 
-        self.scene, self.ground, self.scheme = scene, ground_of(scene), _scheme_of(scene)
+        self.scene = scene
+        self.ground = ground_of(scene)
+        self.scheme = _scheme_of(scene)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -37,10 +39,14 @@ class ExactColumn(Prepared):
         from validation.solvers.columns.elements import excitation
 
         no_fields("layers", self.scene, fields)
-        steps, columns, heights = self.scene.time.steps, self.scene.run.columns, column_of(self.scene).heights
+        steps = self.scene.time.steps
+        columns = self.scene.run.columns
+        heights = column_of(self.scene).heights
         with naming(self.scene):
-            found = solve_layers(self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights)
-        return to_run(self.scene, found)
+            result = solve_layers(
+                self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights
+            )
+        return to_run(self.scene, result)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time; at rest it is that of next to nothing."""
@@ -50,11 +56,12 @@ class ExactColumn(Prepared):
         f = np.maximum(np.atleast_1d(np.asarray(frequencies, float)), STILL)
         with naming(self.scene):
             W2 = squares(f, self.scheme, exact=True)
-        w, names = 2 * np.pi * f, (DISPLACEMENT, PRESSURE)
-        moved, pressed = amplitudes(self.ground, w, names, squared=W2)
+        w = 2 * np.pi * f
+        names = (DISPLACEMENT, PRESSURE)
+        under_base_motion, under_pressure = amplitudes(self.ground, w, names, squared=W2)
         if self.scene.input.at == "top":
-            return {name: amplitude(self.scene) * pressed[name] for name in names}
-        return {name: 1j * w * moved[name] for name in names}
+            return {name: amplitude(self.scene) * under_pressure[name] for name in names}
+        return {name: 1j * w * under_base_motion[name] for name in names}
 
 
 def _scheme_of(scene: Scene) -> fem_reference.Scheme:
@@ -72,7 +79,8 @@ class ExactLayers(Solver):
     sections = ("column", "input", "time", "run")
     unread = ("column.glue", "time.alpha", "time.delta", "time.start")
     sources: tuple[str, ...] = ("fem_reference",)
-    role, rank = Role.TRUTH, 6.5
+    role = Role.TRUTH
+    rank = 6.5
     line = LineStyle("#999999", (), 0.7, 1)
     own_columns = OF_COLUMN
 

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
+
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.column import MOST_HEIGHTS, ColumnSection
 from validation.scenes.scene import Scene
 
 STRESS = "stress"
-AT_HEIGHTS = tuple(f"{part}_{number + 1}" for part in (DISPLACEMENT, STRESS) for number in range(MOST_HEIGHTS))
+
+
+def at_heights(count: int) -> tuple[str, ...]:
+    """Return the names of displacement and stress at a number of heights."""
+    return tuple(f"{part}_{n}" for part, n in itertools.product((DISPLACEMENT, STRESS), range(1, count + 1)))
+
+
+AT_HEIGHTS = at_heights(MOST_HEIGHTS)
 OF_COLUMN = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
 
 
@@ -28,9 +37,8 @@ def column_of(scene: Scene) -> ColumnSection:
     """
     if scene.column is None:
         raise InputError(f"{scene.name}: column: is needed for what is asked, got a scene of a block")
-    count = len(scene.column.heights)
-    known = (DISPLACEMENT, PRESSURE, *(f"{part}_{n + 1}" for part in (DISPLACEMENT, STRESS) for n in range(count)))
-    unknown = [name for name in scene.run.columns if name not in known]
+    column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(scene.column.heights)))
+    unknown = [name for name in scene.run.columns if name not in column_names]
     if unknown:
-        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(known)}, got {unknown[0]!r}")
+        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(column_names)}, got {unknown[0]!r}")
     return scene.column

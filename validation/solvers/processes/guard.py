@@ -16,9 +16,11 @@ import sys
 import time
 
 GRACE = 0.7  # s for exit hooks of a command whose starter has ended
-ROUNDS, PAUSE = 60, 0.01  # looks for what is left, and s between them
-DEATH_SIGNAL, SUBREAPER = 1, 36  # PR_SET_PDEATHSIG and PR_SET_CHILD_SUBREAPER of Linux
-CAUGHT = (signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
+KILL_ROUNDS = 60  # in which processes that have appeared meanwhile are ended too
+KILL_INTERVAL = 0.01  # s between them
+DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
+SUBREAPER = 36  # PR_SET_CHILD_SUBREAPER of Linux
+HANDLED_SIGNALS = (signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 
 
 def control(option: int, value: int) -> None:
@@ -27,7 +29,7 @@ def control(option: int, value: int) -> None:
         ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
-def started(command: list[str]) -> int:
+def start(command: list[str]) -> int:
     """Start the command in a group of its own, to be killed with this process."""
     guard = os.getpid()
     child = os.fork()
@@ -38,8 +40,8 @@ def started(command: list[str]) -> int:
     try:
         os.setpgid(0, 0)
         signal.set_wakeup_fd(-1)
-        for caught in CAUGHT:
-            signal.signal(caught, signal.SIG_DFL)
+        for number in HANDLED_SIGNALS:
+            signal.signal(number, signal.SIG_DFL)
         control(DEATH_SIGNAL, signal.SIGKILL)
         if os.getppid() == guard:
             os.execvp(command[0], command)
@@ -50,7 +52,7 @@ def started(command: list[str]) -> int:
 
 def parents() -> dict[int, int]:
     """Return the parent of every process that lives, as /proc tells it."""
-    found = {}
+    parent_of = {}
     for name in filter(str.isdigit, os.listdir("/proc")):
         try:
             with open(f"/proc/{name}/stat", "rb") as stream:
@@ -58,46 +60,50 @@ def parents() -> dict[int, int]:
         except (OSError, ValueError):  # it has ended meanwhile
             continue
         if state not in (b"Z", b"X"):
-            found[int(name)] = int(parent)
-    return found
+            parent_of[int(name)] = int(parent)
+    return parent_of
 
 
 def descendants(root: int) -> list[int]:
     """Return the processes that a process and its descendants have started."""
-    of, found = parents(), [root]
-    for known in found:
-        found += [child for child, parent in of.items() if parent == known]
-    return found[1:]
+    parent_of = parents()
+    processes = [root]
+    for process in processes:
+        processes += [child for child, parent in parent_of.items() if parent == process]
+    return processes[1:]
 
 
 def kill(group: int) -> None:
     """End the group and every descendant, those that appear meanwhile included."""
-    for _ in range(ROUNDS):
-        left = [-group]
+    for _ in range(KILL_ROUNDS):
+        processes = [-group]
         with contextlib.suppress(OSError):  # where there is no /proc
-            left += descendants(os.getpid())
-        for process in left:
+            processes += descendants(os.getpid())
+        for process in processes:
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(process, signal.SIGKILL)
-        if left == [-group]:
+        if processes == [-group]:
             return
-        time.sleep(PAUSE)
+        time.sleep(KILL_INTERVAL)
 
 
-def ended(child: int, block: bool = False) -> "int | None":
+def exit_status(child: int, block: bool = False) -> "int | None":
     """Return the status of the child as a shell tells it, None while it runs; reap the others that have ended.
 
     The child itself is not reaped: its number, which is that of its group, stays nobody else's.
     """
     if not hasattr(os, "waitid"):
-        process, status = os.waitpid(child, 0 if block else os.WNOHANG)
+        options = 0 if block else os.WNOHANG
+        pid, status = os.waitpid(child, options)
         code = os.waitstatus_to_exitcode(status)
-        return None if process == 0 else code if code >= 0 else 128 - code
-    which, whose = (os.P_PID, child) if block else (os.P_ALL, 0)
-    while (found := os.waitid(which, whose, os.WEXITED | os.WNOWAIT | (0 if block else os.WNOHANG))) is not None:
-        if found.si_pid == child:
-            return found.si_status if found.si_code == os.CLD_EXITED else 128 + found.si_status
-        os.waitpid(found.si_pid, 0)
+        if pid == 0:
+            return None
+        return code if code >= 0 else 128 - code
+    kind, number, options = (os.P_PID, child, 0) if block else (os.P_ALL, 0, os.WNOHANG)
+    while (process := os.waitid(kind, number, os.WEXITED | os.WNOWAIT | options)) is not None:
+        if process.si_pid == child:
+            return process.si_status if process.si_code == os.CLD_EXITED else 128 + process.si_status
+        os.waitpid(process.si_pid, 0)
     return None
 
 
@@ -105,32 +111,34 @@ def watch(child: int, lifeline: int, wake: int) -> int:
     """Wait for the end of the child or of the lifeline; return the child's status."""
     deadline: float | None = None
     watched = [lifeline, wake]
-    while (status := ended(child)) is None:
-        rest = None if deadline is None else max(0.0, deadline - time.monotonic())
-        ready = select.select(watched, [], [], rest)[0]
-        asked = wake in ready and any(number != int(signal.SIGCHLD) for number in os.read(wake, 64))
-        if asked or rest == 0.0 or (lifeline in ready and os.read(lifeline, 1)):
+    while (status := exit_status(child)) is None:
+        remaining = None if deadline is None else max(0.0, deadline - time.monotonic())
+        ready = select.select(watched, [], [], remaining)[0]
+        has_signal = wake in ready and any(number != int(signal.SIGCHLD) for number in os.read(wake, 64))
+        if has_signal or remaining == 0.0 or (lifeline in ready and os.read(lifeline, 1)):
             kill(child)
-            return ended(child, block=True) or 0
+            return exit_status(child, block=True) or 0
         if lifeline in ready:
-            deadline, watched = time.monotonic() + GRACE, [wake]
+            deadline = time.monotonic() + GRACE
+            watched = [wake]
     return status
 
 
 def main() -> None:
     """Guard the command of the arguments."""
-    lifeline, command = int(sys.argv[1]), sys.argv[2:]
+    lifeline = int(sys.argv[1])
+    command = sys.argv[2:]
     os.set_inheritable(lifeline, False)
     wake, awaken = os.pipe()
     os.set_blocking(awaken, False)
     signal.set_wakeup_fd(awaken, warn_on_full_buffer=False)
-    for caught in CAUGHT:
-        signal.signal(caught, lambda *_: None)
+    for number in HANDLED_SIGNALS:
+        signal.signal(number, lambda *_: None)
     control(SUBREAPER, 1)
-    child = started(command)
+    child = start(command)
     nothing = os.open(os.devnull, os.O_RDWR)
-    for number in (0, 1):  # the ends of the pipes are the command's alone
-        os.dup2(nothing, number)
+    for descriptor in (0, 1):  # the ends of the pipes are the command's alone
+        os.dup2(nothing, descriptor)
     status = watch(child, lifeline, wake)
     kill(child)
     os._exit(status)

@@ -36,10 +36,10 @@ INSTALLED = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "pure
 def load(name: str) -> Any:
     """Import what ``module:attribute`` names; a class is made into an object."""
     module, _, attribute = name.partition(":")
-    found = importlib.import_module(module)
+    target = importlib.import_module(module)
     for part in (attribute or "solve").split("."):
-        found = getattr(found, part)
-    return found() if isinstance(found, type) else found
+        target = getattr(target, part)
+    return target() if isinstance(target, type) else target
 
 
 def columns_of(value: Any) -> dict[str, Any]:
@@ -71,10 +71,10 @@ def plain(name: str, values: Any) -> list[Any]:
     TypeError
         They are complex numbers, texts or dates, which numpy would turn into other numbers without a word.
     """
-    found = np.asarray(values)
-    if found.dtype.kind not in "biufO":
-        raise TypeError(f"{name} must hold real numbers, got an array of {found.dtype}")
-    listed: list[Any] = found.astype(float).tolist()
+    array = np.asarray(values)
+    if array.dtype.kind not in "biufO":
+        raise TypeError(f"{name} must hold real numbers, got an array of {array.dtype}")
+    listed: list[Any] = array.astype(float).tolist()
     return listed
 
 
@@ -88,15 +88,15 @@ def text_of(error: BaseException) -> str:
 
 def place_of(error: BaseException, home: Path) -> str:
     """Return where the solver's own code raised an error, or called what did: ``file:line, in function``."""
-    own = anywhere = ""
+    own_place = last_place = ""
     for frame, line in traceback.walk_tb(error.__traceback__):
         file = Path(frame.f_code.co_filename)
         if file.name.startswith("<") or file.is_relative_to(ROOT):
             continue
-        shown = file.relative_to(home) if file.is_relative_to(home) else file
-        anywhere = f"{shown}:{line}, in {frame.f_code.co_name}"
-        own = own if any(map(file.is_relative_to, INSTALLED)) else anywhere
-    return own or anywhere
+        path = file.relative_to(home) if file.is_relative_to(home) else file
+        last_place = f"{path}:{line}, in {frame.f_code.co_name}"
+        own_place = own_place if any(map(file.is_relative_to, INSTALLED)) else last_place
+    return own_place or last_place
 
 
 def optional(solver: Any, part: str, scene: Scene) -> Any:
@@ -115,12 +115,14 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
     if unknown:
         return {"inapplicable": f"the solver does not state that it handles {', '.join(unknown)} (give it `handles`)"}
     try:
-        found = columns_of((solver.solve if hasattr(solver, "solve") else solver)(scene))
+        solve = solver.solve if hasattr(solver, "solve") else solver
+        columns = columns_of(solve(scene))
     except NotImplementedError as error:
         return {"inapplicable": f"the solver says that it is not made for this scene: {error}"}
-    static, modes = optional(solver, "static", scene), optional(solver, "modes", scene) or ()
+    static = optional(solver, "static", scene)
+    modes = optional(solver, "modes", scene) or ()
     return {
-        "columns": {str(name): plain(str(name), values) for name, values in found.items()},
+        "columns": {str(name): plain(str(name), values) for name, values in columns.items()},
         "static": None if static is None else {name: float(value) for name, value in static.items()},
         "modes": [[m.frequency, m.share, [[z.real, z.imag] for z in map(complex, m.eigenvalues)]] for m in modes],
     }
@@ -128,21 +130,22 @@ def run(solver: Any, request: Mapping[str, Any]) -> dict[str, Any]:
 
 def answering(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
     """Return what answers requests with one solver, which the first of them imports."""
-    kept: list[Any] = []
-    place = os.getcwd()
+    loaded: list[Any] = []
+    directory = os.getcwd()
 
     def answer(request: dict[str, Any]) -> dict[str, Any]:
-        os.chdir(place)  # which the last scene may have left
+        os.chdir(directory)  # which the last scene may have left
         try:
-            kept.extend([] if kept else [load(name)])
+            if not loaded:
+                loaded.append(load(name))
             if "parts" in request:
-                return {"parts": [part for part in request["parts"] if hasattr(kept[0], part)]}
+                return {"parts": [part for part in request["parts"] if hasattr(loaded[0], part)]}
             if "about" in request:
-                said = getattr(kept[0], "about", {})
-                return {"about": {name: str(said[name]) for name in request["about"] if name in said}}
-            return run(kept[0], request)
+                statements = getattr(loaded[0], "about", {})
+                return {"about": {name: str(statements[name]) for name in request["about"] if name in statements}}
+            return run(loaded[0], request)
         except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
-            return {"raised": text_of(error), "at": place_of(error, Path(place))}
+            return {"raised": text_of(error), "at": place_of(error, Path(directory))}
 
     return answer
 

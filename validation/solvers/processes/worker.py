@@ -16,12 +16,16 @@ from pathlib import Path
 from typing import IO, Any
 
 GUARD = Path(__file__).with_name("guard.py")
-LONGEST = 2**30  # bytes of an answer: ten million steps of four columns
-PIECE, PIECES = 2**16, 64  # bytes read at a time and kept of standard error, and pieces of what a dead worker left
-ENDING, PATIENCE = 0.5, 3.0  # s for a process that has closed its output, and for a guard to end what it guards
-TAIL = 3  # lines of a dead worker's standard error that are worth telling
-NAMED = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
-FRAME = re.compile(r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*")  # a launcher's rules and advice
+LONGEST_ANSWER = 2**30  # bytes of an answer: ten million steps of four columns
+PIECE_SIZE = 2**16  # bytes read at a time, and kept of standard error
+TAIL_PIECES = 64  # of what a dead worker left in its standard error
+EXIT_TIMEOUT = 0.5  # s for a process that has closed its output
+GUARD_TIMEOUT = 3.0  # s for a guard to end what it guards
+TAIL_LINES = 3  # lines of a dead worker's standard error that are worth telling
+ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
+LAUNCHER_LINE = re.compile(
+    r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*"
+)  # a launcher's rules and advice
 
 
 class WorkerDied(RuntimeError):
@@ -32,19 +36,20 @@ class WorkerHangs(RuntimeError):
     """The worker did not answer within its time limit; it has been killed."""
 
 
-def last_words(text: str) -> str:
+def stderr_tail(text: str) -> str:
     """Return why a process ended: the errors that its standard error names, else its last lines that say something."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    named = list(dict.fromkeys(line for line in lines if NAMED.fullmatch(line)))  # two ranks say the same
-    said = [line for line in lines if not FRAME.fullmatch(line)]
-    return " | ".join((named or said)[-TAIL:]) or "no message"
+    error_lines = list(dict.fromkeys(line for line in lines if ERROR_LINE.fullmatch(line)))  # two ranks say the same
+    other_lines = [line for line in lines if not LAUNCHER_LINE.fullmatch(line)]
+    return " | ".join((error_lines or other_lines)[-TAIL_LINES:]) or "no message"
 
 
 class Lines:
     """What has come through a pipe so far, to be taken line by line."""
 
     def __init__(self) -> None:
-        self._held, self._seen = bytearray(), 0
+        self._buffer = bytearray()
+        self._searched = 0
 
     def add(self, piece: bytes) -> None:
         """Take a piece.
@@ -54,19 +59,19 @@ class Lines:
         WorkerDied
             The line is longer than any answer.
         """
-        self._held += piece
-        if len(self._held) > LONGEST:
-            raise WorkerDied(f"its answer is longer than {LONGEST} bytes")
+        self._buffer += piece
+        if len(self._buffer) > LONGEST_ANSWER:
+            raise WorkerDied(f"its answer is longer than {LONGEST_ANSWER} bytes")
 
     def next(self) -> bytes | None:
         """Return the first line, or None where it is not whole yet."""
-        end = self._held.find(b"\n", self._seen)
+        end = self._buffer.find(b"\n", self._searched)
         if end < 0:
-            self._seen = len(self._held)
+            self._searched = len(self._buffer)
             return None
-        line = bytes(self._held[:end])
-        del self._held[: end + 1]
-        self._seen = 0
+        line = bytes(self._buffer[:end])
+        del self._buffer[: end + 1]
+        self._searched = 0
         return line
 
 
@@ -90,15 +95,19 @@ class Worker:
         )
         os.close(watched)
         self._lifeline = os.fdopen(lifeline, "wb", buffering=0)
-        self._lines, self._said, self._asked = Lines(), b"", 0
+        self._lines = Lines()
+        self._stderr = b""
+        self._request_number = 0
         for stream in self._streams():
             os.set_blocking(stream.fileno(), False)
 
     def _streams(self) -> tuple[IO[bytes], IO[bytes], IO[bytes]]:
-        given, taken, complaints = self._process.stdin, self._process.stdout, self._process.stderr
-        if given is None or taken is None or complaints is None:
+        stdin = self._process.stdin
+        stdout = self._process.stdout
+        stderr = self._process.stderr
+        if stdin is None or stdout is None or stderr is None:
             raise ValueError("worker: must have three pipes, got fewer")
-        return given, taken, complaints
+        return stdin, stdout, stderr
 
     def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
         """Send a request and wait for its answer, at most `limit` seconds.
@@ -112,70 +121,71 @@ class Worker:
         WorkerHangs
             There was no whole answer within the limit.
         """
-        self._asked += 1
+        self._request_number += 1
         deadline = None if limit is None else time.monotonic() + limit
-        rest = json.dumps({**request, "id": self._asked}).encode() + b"\n"
-        while (found := self._answer()) is None:
-            rest = self._exchange(rest, deadline)
+        unsent = json.dumps({**request, "id": self._request_number}).encode() + b"\n"
+        while (answer := self._answer()) is None:
+            unsent = self._exchange(unsent, deadline)
             if deadline is not None and time.monotonic() > deadline:
                 raise WorkerHangs(f"no answer within {limit:g} s")
-        return found
+        return answer
 
-    def _exchange(self, rest: bytes, deadline: float | None) -> bytes:
+    def _exchange(self, unsent: bytes, deadline: float | None) -> bytes:
         """Wait until something moves; return what is left to be sent."""
-        given, taken, complaints = self._streams()
-        left = None if deadline is None else max(0.0, deadline - time.monotonic())
-        heard = [taken] if complaints.closed else [taken, complaints]
-        ready, free, _ = select.select(heard, [given] if rest else [], [], left)
+        stdin, stdout, stderr = self._streams()
+        remaining = None if deadline is None else max(0.0, deadline - time.monotonic())
+        readable = [stdout] if stderr.closed else [stdout, stderr]
+        writable = [stdin] if unsent else []
+        ready, free, _ = select.select(readable, writable, [], remaining)
         if free:
             with contextlib.suppress(BlockingIOError):
-                rest = self._sent(rest)
-        if complaints in ready:
-            self._listen()
-        if taken in ready and (piece := _read(taken)) is not None:
+                unsent = self._send(unsent)
+        if stderr in ready:
+            self._read_stderr()
+        if stdout in ready and (piece := _read(stdout)) is not None:
             if not piece:
                 raise WorkerDied(f"the process ended with status {self._status()}: {self._tail()}")
             self._lines.add(piece)
-        return rest
+        return unsent
 
-    def _sent(self, data: bytes) -> bytes:
+    def _send(self, data: bytes) -> bytes:
         """Send what the pipe takes and return the rest, nothing where nobody reads any more."""
         try:
             return data[os.write(self._streams()[0].fileno(), data) :]
         except BrokenPipeError:
             return b""
 
-    def _listen(self) -> None:
+    def _read_stderr(self) -> None:
         """Keep the end of what the worker writes to its standard error, so that it neither waits nor fills a disk."""
         stream = self._streams()[2]
         if (piece := _read(stream)) is not None:
-            self._said = (self._said + piece)[-PIECE:]
+            self._stderr = (self._stderr + piece)[-PIECE_SIZE:]
             if not piece:
                 stream.close()
 
     def _tail(self) -> str:
         stream = self._streams()[2]
-        for _ in range(PIECES):
+        for _ in range(TAIL_PIECES):
             if stream.closed or not select.select([stream], [], [], 0)[0]:
                 break
-            self._listen()
-        return last_words(self._said.decode(errors="replace"))
+            self._read_stderr()
+        return stderr_tail(self._stderr.decode(errors="replace"))
 
     def _answer(self) -> dict[str, Any] | None:
         """Return the answer to the latest request where all of it is here."""
         while (line := self._lines.next()) is not None:
             try:
-                found = dict(json.loads(line))
+                answer = dict(json.loads(line))
             except (ValueError, TypeError, RecursionError):
                 raise WorkerDied(f"no answer but {line[:60].decode(errors='replace')!r}: {self._tail()}") from None
-            if found.pop("id", None) == self._asked:
-                return found
+            if answer.pop("id", None) == self._request_number:
+                return answer
         return None
 
     def _status(self) -> int:
         """Return the status of a process that has ended, or has closed its output and is ended for it."""
         try:
-            return self._process.wait(timeout=ENDING)
+            return self._process.wait(timeout=EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:
             return self.kill()
 
@@ -194,7 +204,7 @@ class Worker:
 
     def _wait(self) -> int:
         try:
-            return self._process.wait(timeout=PATIENCE)
+            return self._process.wait(timeout=GUARD_TIMEOUT)
         except subprocess.TimeoutExpired:  # somebody has stopped the guard; the worker is killed with it
             self._process.kill()
             return self._process.wait()
@@ -203,19 +213,19 @@ class Worker:
 def _read(stream: IO[bytes]) -> bytes | None:
     """Return what a pipe holds, nothing at its end, None where there is nothing yet."""
     try:
-        return os.read(stream.fileno(), PIECE)
+        return os.read(stream.fileno(), PIECE_SIZE)
     except BlockingIOError:
         return None
 
 
-kept: dict[tuple[int, tuple[str, ...]], Worker] = {}  # the workers, by process and command
+workers: dict[tuple[int, tuple[str, ...]], Worker] = {}  # the workers, by process and command
 
 
 @atexit.register
 def close_all() -> None:
     """End the workers of this process."""
-    for key in [key for key in kept if key[0] == os.getpid()]:
-        kept.pop(key).close()
+    for key in [key for key in workers if key[0] == os.getpid()]:
+        workers.pop(key).close()
 
 
 def ask(
@@ -229,12 +239,12 @@ def ask(
         There is no answer; the next request starts another worker.
     """
     key = (os.getpid(), tuple(command))  # a forked process must not share its parent's pipes
-    if key not in kept:
-        kept[key] = Worker(command, environment)
+    if key not in workers:
+        workers[key] = Worker(command, environment)
     try:
-        return kept[key].ask(request, limit)
+        return workers[key].ask(request, limit)
     except BaseException:
-        worker = kept.pop(key)  # dead, hanging, or interrupted with an answer on its way
+        worker = workers.pop(key)  # dead, hanging, or interrupted with an answer on its way
         worker.kill()
         worker.close()
         raise
@@ -245,15 +255,17 @@ def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
 
     Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing.
     """
-    requests, answers, own = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w"), os.getpid()
+    requests = os.fdopen(os.dup(0))
+    answers = os.fdopen(os.dup(1), "w")
+    process = os.getpid()
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
     for line in requests:
         request = json.loads(line)
-        said = json.dumps({**answer(request), "id": request["id"]})
-        if os.getpid() != own:
+        reply = json.dumps({**answer(request), "id": request["id"]})
+        if os.getpid() != process:
             os._exit(0)
-        answers.write(said + "\n")
+        answers.write(reply + "\n")
         answers.flush()

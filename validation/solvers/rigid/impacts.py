@@ -23,8 +23,8 @@ def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tu
     """
     from fem_reference.events.restitution import ContactScheme, statistics
 
-    found = statistics(ContactScheme(alpha, delta, gg), omega)
-    return found.mean, found.low, found.high, found.mean_square
+    restitutions = statistics(ContactScheme(alpha, delta, gg), omega)
+    return restitutions.mean, restitutions.low, restitutions.high, restitutions.mean_square
 
 
 def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phase: float) -> float:

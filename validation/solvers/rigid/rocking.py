@@ -76,8 +76,8 @@ def rocking(
     from fem_reference.exact.rocking import RockingBlock, solve
 
     motion = solve(RockingBlock(width, height, gravity, restitution), float(time[-1]), tilt)
-    seen = time[time <= motion.end]
-    return Rocking(seen, *motion.at(seen), motion.impacts, motion.overturned)
+    instants = time[time <= motion.end]
+    return Rocking(instants, *motion.at(instants), motion.impacts, motion.overturned)
 
 
 def overturning_acceleration(

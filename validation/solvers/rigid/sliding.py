@@ -47,7 +47,8 @@ def rigid_motion(scene: Scene, smooth: bool = False) -> SlidingMotion:
     """
     from fem_reference.exact.sliding_block import moved, recorded
 
-    record, load = base_record(scene), scene.load
+    record = base_record(scene)
+    load = scene.load
     if scene.contact.friction is None:
         raise InputError(f"{scene.name}: contact.friction is required for a sliding block, got none")
     if load.pressure or load.traction:
@@ -79,7 +80,8 @@ def _from_start(time: Array, x: Array) -> tuple[Array, Array]:
 
 def _accelerations(time: Array, x: Array) -> Array:
     """Return the second differences of a record [m/s2], none at its ends."""
-    speeds, middles = np.diff(x) / np.diff(time), (time[1:] + time[:-1]) / 2
+    speeds = np.diff(x) / np.diff(time)
+    middles = (time[1:] + time[:-1]) / 2
     return np.concatenate([[0.0], np.diff(speeds) / np.diff(middles), [0.0]])
 
 
@@ -87,7 +89,8 @@ def block_of(scene: Scene) -> SlidingBlock:
     """Return the rigid mass of a scene with friction."""
     from fem_reference.exact.sliding_block import SlidingBlock
 
-    c, load = scene.contact, scene.load
+    c = scene.contact
+    load = scene.load
     return SlidingBlock(
         slope=load.slope,
         friction=c.friction or 0.0,

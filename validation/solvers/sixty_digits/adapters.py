@@ -40,9 +40,9 @@ def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
 
 
 def _doubles(values: list[Number]) -> Array:
-    found: Array = np.fromiter((float(v) if abs(v) <= LARGEST else np.inf for v in values), np.float64, len(values))
-    found[~np.logical_and.accumulate(np.isfinite(found))] = np.inf
-    return found
+    doubles: Array = np.fromiter((float(v) if abs(v) <= LARGEST else np.inf for v in values), np.float64, len(values))
+    doubles[~np.logical_and.accumulate(np.isfinite(doubles))] = np.inf
+    return doubles
 
 
 class _StepsOnly(Prepared):
@@ -69,7 +69,8 @@ class PreciseDDA(DDA):
     name = "dda-60"
     handles = frozenset()
     sources = ("validation.solvers.sixty_digits",)
-    role, rank = Role.REPEAT, 7.0
+    role = Role.REPEAT
+    rank = 7.0
     line = None
 
     def columns(self) -> tuple[str, ...] | None:
@@ -97,7 +98,8 @@ class PreciseBar(ExactBar):
     name = "bar-60"
     handles = frozenset({features.SUB_BLOCKS})
     sources = ("validation.solvers.sixty_digits",)
-    role, rank = Role.REPEAT, 9.0
+    role = Role.REPEAT
+    rank = 9.0
     line = None
 
     def build(self, scene: Scene, full: bool) -> Prepared:
@@ -112,7 +114,8 @@ class PreciseMesh(_StepsOnly, Mesh):
         """Run the scene on the model with every exact saving, as `fem` does, or on the whole block."""
         from validation.solvers.sixty_digits import matrices
 
-        model, scene = self.model, self.scene
+        model = self.model
+        scene = self.scene
         if reason := _too_large(len(model.F)):
             raise InputError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
         rows = {name: model.observers[name] for name in scene.run.columns}
@@ -125,7 +128,8 @@ class PreciseFiniteElements(FiniteElements):
     name = "fem-60"
     handles = frozenset({features.SUB_BLOCKS})
     sources = ("fem_reference", "validation.solvers.sixty_digits")
-    role, rank = Role.REPEAT, 8.0
+    role = Role.REPEAT
+    rank = 8.0
     line = None
 
     def columns(self) -> tuple[str, ...] | None:

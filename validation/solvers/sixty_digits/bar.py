@@ -55,7 +55,8 @@ def _circle(
 
 def _variable(z: Number, s: NewmarkNumbers) -> tuple[Number, Number]:
     """Return s^2 dt^2 and the load's generating function at one point."""
-    half, damped = mpf(1) / 2 - s.alpha, s.gg * z / (1 - s.gg * z)
+    half = mpf(1) / 2 - s.alpha
+    damped = s.gg * z / (1 - s.gg * z)
     P = s.alpha + half * z + damped * (s.delta + (1 - s.delta) * z)
     Q = half * z + damped * (1 - s.delta) * z
     return (1 - z) / P, z / (1 - z) + (Q / P if s.consistent else 0)
@@ -64,12 +65,14 @@ def _variable(z: Number, s: NewmarkNumbers) -> tuple[Number, Number]:
 def _transforms(scene: Scene, square: Number, load: Number) -> tuple[Number, Number]:
     """Return the generating functions of displacement and contact pressure where s^2 and the load are given."""
     (_, _), (width, _), (_, height), _ = scene.block.outline
-    E, q = mpf(scene.block.young), mpf(scene.load.pressure)
+    E = mpf(scene.block.young)
+    q = mpf(scene.load.pressure)
     kappa = 2 * mpf(scene.contact.stiffness) * mpf(height) / (E * mpf(width))
     theta = mp.sqrt(square) * (mpf(height) * mp.sqrt(mpf(scene.block.density) / E))
     half = mp.exp(theta / 2)
     back = 1 / half
-    cosh, sinh = (half * half + back * back) / 2, (half * half - back * back) / 2
+    cosh = (half * half + back * back) / 2
+    sinh = (half * half - back * back) / 2
     scale = load / (theta * sinh + kappa * cosh)
     middle = ((half + back) + kappa / theta * (half - back)) / 2
     return -(q * mpf(height) / E) * scale * middle, q * kappa * scale
@@ -90,7 +93,8 @@ def _fourier(values: list[Pair]) -> list[Pair]:
     size = len(values)
     if size == 1:
         return values
-    even, odd = _fourier(values[::2]), _fourier(values[1::2])
+    even = _fourier(values[::2])
+    odd = _fourier(values[1::2])
     turned = [
         ((x * c - y * s) >> BITS, (x * s + y * c) >> BITS) for (x, y), (c, s) in zip(odd, _roots(size), strict=True)
     ]

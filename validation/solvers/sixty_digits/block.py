@@ -54,8 +54,10 @@ def equations(scene: Scene) -> Equations:
     points = [(mpf(x), mpf(y)) for x, y in scene.block.outline]
     area, centroid, moments = _integrals(points)
     centred = [(x - centroid[0], y - centroid[1]) for x, y in points]
-    M, K = _inertia(scene, area, moments), _elastic(scene, area)
-    base, top = _edge(centred, scene.block.base), _edge(centred, scene.block.top)
+    M = _inertia(scene, area, moments)
+    K = _elastic(scene, area)
+    base = _edge(centred, scene.block.base)
+    top = _edge(centred, scene.block.top)
     pressure = _add_springs(scene, K, base)
     (x1, y1), (x2, y2) = top
     length = mp.hypot(x2 - x1, y2 - y1)
@@ -82,7 +84,9 @@ def _integrals(points: list[Any]) -> tuple[Number, tuple[Number, Number], tuple[
         sxx += c * (x * x + x * X + X * X) / 12
         syy += c * (y * y + y * Y + Y * Y) / 12
         sxy += c * (x * Y + 2 * x * y + 2 * X * Y + X * y) / 24
-    s1, s2, s3 = sxx - sx * sx / s, syy - sy * sy / s, sxy - sx * sy / s
+    s1 = sxx - sx * sx / s
+    s2 = syy - sy * sy / s
+    s3 = sxy - sx * sy / s
     return s, (x0 + sx / s, y0 + sy / s), (s1, s2, _clean(s3, mp.sqrt(s1 * s2)))
 
 
@@ -93,8 +97,9 @@ def _clean(value: Number, scale: Number) -> Number:
 
 def _rows_of_T(x: Number, y: Number) -> tuple[list[Number], list[Number]]:
     """Return the two rows of T, equation (3), in (u, v, r, ex, ey, gxy)."""
-    one, nil = mpf(1), mpf(0)
-    return [one, nil, -y, x, nil, y / 2], [nil, one, x, nil, y, x / 2]
+    unit = mpf(1)
+    zero = mpf(0)
+    return [unit, zero, -y, x, zero, y / 2], [zero, unit, x, zero, y, x / 2]
 
 
 def _inertia(scene: Scene, area: Number, moments: tuple[Number, Number, Number]) -> Number:
@@ -102,7 +107,10 @@ def _inertia(scene: Scene, area: Number, moments: tuple[Number, Number, Number])
     s1, s2, s3 = moments
     M = mp.zeros(6)
     M[0, 0] = M[1, 1] = area
-    M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
+    M[2, 2] = s1 + s2
+    M[3, 3] = s1
+    M[4, 4] = s2
+    M[5, 5] = (s1 + s2) / 4
     for i, j, value in ((2, 3, -s3), (2, 4, s3), (2, 5, (s1 - s2) / 2), (3, 5, s3 / 2), (4, 5, s3 / 2)):
         M[i, j] = M[j, i] = value
     return M * mpf(scene.block.density)
@@ -110,7 +118,8 @@ def _inertia(scene: Scene, area: Number, moments: tuple[Number, Number, Number])
 
 def _elastic(scene: Scene, area: Number) -> Number:
     """Return area times elasticity from the Lame parameters of the plane problem."""
-    E, mu = mpf(scene.block.young), mpf(scene.block.poisson)
+    E = mpf(scene.block.young)
+    mu = mpf(scene.block.poisson)
     G = E / (2 * (1 + mu))
     last = 1 - mu if scene.block.hypothesis == "plane stress" else 1 - 2 * mu
     lam = E * mu / ((1 + mu) * last)
@@ -125,8 +134,10 @@ def _add_springs(scene: Scene, K: Number, base: tuple[Any, Any]) -> list[Number]
     """Add the corner springs to K in place and return the row of the contact pressure."""
     (x1, y1), (x2, y2) = base
     a = mp.hypot(x2 - x1, y2 - y1)
-    tx, ty = (x2 - x1) / a, (y2 - y1) / a
-    normal_k, shear_k = mpf(scene.contact.stiffness), mpf(scene.contact.shear)
+    tx = (x2 - x1) / a
+    ty = (y2 - y1) / a
+    normal_k = mpf(scene.contact.stiffness)
+    shear_k = mpf(scene.contact.shear)
     pressure = [mpf(0)] * 6
     for x, y in base:
         u, v = _rows_of_T(x, y)
@@ -151,14 +162,14 @@ def _reached(full: Equations) -> Equations:
         ]
         for i in size
     ]
-    most = max(abs(full.F[i]) / scale[i] for i in size)
-    reached = {i for i in size if abs(full.F[i]) / scale[i] > mpf(10) ** (10 - WORKING) * most} or {1, 4}
-    while more := {j for i in reached for j in size if linked[i][j]} - reached:
+    largest = max(abs(full.F[i]) / scale[i] for i in size)
+    reached = {i for i in size if abs(full.F[i]) / scale[i] > mpf(10) ** (10 - WORKING) * largest} or {1, 4}
+    while more := {j for j in size if any(linked[i][j] for i in reached)} - reached:
         reached |= more
-    kept = sorted(reached)
-    M, K = (mp.matrix([[matrix[i, j] for j in kept] for i in kept]) for matrix in (full.M, full.K))
-    rows = {name: [row[i] for i in kept] for name, row in full.rows.items()}
-    return Equations(M, K, [full.F[i] for i in kept], rows)
+    unknowns = sorted(reached)
+    M, K = (mp.matrix([[matrix[i, j] for j in unknowns] for i in unknowns]) for matrix in (full.M, full.K))
+    rows = {name: [row[i] for i in unknowns] for name, row in full.rows.items()}
+    return Equations(M, K, [full.F[i] for i in unknowns], rows)
 
 
 def modes(system: Equations) -> tuple[list[Number], list[Number], dict[str, list[Number]]]:
@@ -175,11 +186,15 @@ def modes(system: Equations) -> tuple[list[Number], list[Number], dict[str, list
 
 def modal_history(square: Number, load: Number, scheme: NewmarkNumbers, steps: int) -> list[Number]:
     """Return y of step 1 to the last of y'' + w^2 y = load from rest."""
-    a, d, gg, dt2 = scheme.alpha, scheme.delta, scheme.gg, scheme.step**2
+    a = scheme.alpha
+    d = scheme.delta
+    gg = scheme.gg
+    dt2 = scheme.step**2
     k = square * dt2
     beta = 1 + a * k
     h = k / beta
-    trace, det = 1 - h / 2 + gg * (1 - d * h), gg * (1 + (mpf(1) / 2 - d) * h)
+    trace = 1 - h / 2 + gg * (1 - d * h)
+    det = gg * (1 + (mpf(1) / 2 - d) * h)
     F = load * dt2
     A0 = F if scheme.consistent else mpf(0)
     first = ((mpf(1) / 2 - a) * A0 + a * F) / beta

@@ -19,7 +19,8 @@ from validation.studies.bands import OTHER, about, cases
 from validation.studies.declaration import Study
 from validation.studies.opening import half_unit
 
-BLOCK, BAR = "block-events", "bar-events"
+BLOCK = "block-events"
+BAR = "bar-events"
 SCENES = ("unlocked-other", "impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
 WALLS = ("ansys-vm265", "siconos-bar")  # next to rigid
 # p/E -> first release over a / c and restitution of the block, then of the bar, by an independent program.
@@ -60,7 +61,7 @@ STOP = {
     "first_closing": 0.65785098512048,
     "second_closing": 1.2324367791597,
 }  # of the block on a rigid stop, over a / c
-KEPT = 0.89132203751993  # of its momentum, after three impacts in a row, by an independent program
+RETURNED = 0.89132203751993  # share of its momentum after three impacts in a row, by an independent program
 RIGID = {"release": 5 / 3, "impact": 11 / 3, "second release": 13 / 3}  # of the bouncing bar on a rigid wall [s]
 SWITCHES = ("first_opening", "second_closing", "second_opening")
 PRINTED = "an independent program; band: half a unit of its last digit, and 1e-11 of the value"
@@ -96,7 +97,8 @@ def bounce(scene: Scene) -> tuple[float, float, float]:
     With V^2 = V0^2 + 2 g s, w^2 = k / m: contact lasts (2 / w) (pi - atan(V w / g)), and the penetration is
     g / w^2 + sqrt(g^2 / w^4 + V^2 / w^2).
     """
-    b, g = scene.block, scene.load.gravity
+    b = scene.block
+    g = scene.load.gravity
     width, height = rectangle(scene) or (math.nan, math.nan)
     w = math.sqrt(2 * scene.contact.stiffness / (b.density * width * height))
     V = math.sqrt(b.velocity**2 + 2 * g * scene.contact.gap)
@@ -137,16 +139,17 @@ def impact_gates() -> Iterator[Gate]:
 
 def stop_gates(case: Scene) -> Iterator[Gate]:
     """Yield the gates on a block on springs next to rigid: impacts of its base, a quarter of its mass, in a row."""
-    left = math.sqrt(case.block.young / case.contact.stiffness)
+    impact_length = math.sqrt(case.block.young / case.contact.stiffness)
     why = "an independent program, on a rigid stop; band: sqrt(E / p), the length of an impact over a transit"
     for name, time in STOP.items():
-        edges = about(time * transit(case), left * transit(case))
+        edges = about(time * transit(case), impact_length * transit(case))
         yield Gate(case.name, (BLOCK,), f"switches.{name}", *edges, why, OTHER)
-    yield Gate(case.name, (BLOCK,), "contact.restitution", *about(KEPT, left), why, OTHER)
+    yield Gate(case.name, (BLOCK,), "contact.restitution", *about(RETURNED, impact_length), why, OTHER)
     whole = "contact of 2 h / c on a rigid wall; band: E / p, the springs of a wall that stiff"
-    soft = 2 * left**2
-    yield Gate(case.name, (BAR,), "switches.first_opening", *about(2 * transit(case), soft * transit(case)), whole)
-    yield Gate(case.name, (BAR,), "contact.restitution", 1 - soft, 1 + 1e-12, whole)
+    compliance = 2 * impact_length**2
+    edges = about(2 * transit(case), compliance * transit(case))
+    yield Gate(case.name, (BAR,), "switches.first_opening", *edges, whole)
+    yield Gate(case.name, (BAR,), "contact.restitution", 1 - compliance, 1 + 1e-12, whole)
 
 
 def fall_gates() -> Iterator[Gate]:
@@ -157,10 +160,10 @@ def fall_gates() -> Iterator[Gate]:
         block, bar, closing, opening = FALLS[case.contact.stiffness / case.block.young]
         for solver in (BLOCK, BAR):
             yield Gate(case.name, (solver,), "switches.first_closing", *about(start, 1e-12), free)
-        known = ((BLOCK, SWITCHES[0], block), (BAR, SWITCHES[0], bar), (BLOCK, SWITCHES[1], closing))
-        for solver, name, after in (*known, (BLOCK, SWITCHES[2], opening)):
-            if after is not None:
-                yield _near(case, solver, f"switches.{name}", start + after, half_unit(after))
+        switch_times = ((BLOCK, SWITCHES[0], block), (BAR, SWITCHES[0], bar), (BLOCK, SWITCHES[1], closing))
+        for solver, name, delay in (*switch_times, (BLOCK, SWITCHES[2], opening)):
+            if delay is not None:
+                yield _near(case, solver, f"switches.{name}", start + delay, half_unit(delay))
 
 
 def bouncing_bar_gates() -> Iterator[Gate]:
@@ -181,32 +184,39 @@ def bouncing_bar_gates() -> Iterator[Gate]:
 def derived() -> tuple[Derived, ...]:
     """Return the row of the bouncing bar's times, extrapolated to a rigid wall."""
     softer, stiffer = tuple(cases("bouncing-bar"))[-2:]
-    needs, reads = ((softer.name, BAR), (stiffer.name, BAR)), tuple(f"switches.{switch}" for switch in SWITCHES)
+    needs = ((softer.name, BAR), (stiffer.name, BAR))
+    reads = tuple(f"switches.{switch}" for switch in SWITCHES)
     return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, softer, stiffer), reads),)
 
 
 def rigid(softer: Scene, stiffer: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return the times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
-    a, b = 1 / stiffness_ratio(softer), 1 / stiffness_ratio(stiffer)
-    found: dict[str, Value] = {}
+    a = 1 / stiffness_ratio(softer)
+    b = 1 / stiffness_ratio(stiffer)
+    times: dict[str, Value] = {}
     for name, switch in zip(RIGID, SWITCHES, strict=True):
-        x, y = (finished.rows[case.name, BAR].metrics.get(f"switches.{switch}") for case in (softer, stiffer))
-        known = isinstance(x, float) and isinstance(y, float)
-        found[name] = (a * y - b * x) / (a - b) if known else "undefined"  # type: ignore[operator]
-    return found
+        x = finished.rows[softer.name, BAR].metrics.get(f"switches.{switch}")
+        y = finished.rows[stiffer.name, BAR].metrics.get(f"switches.{switch}")
+        if isinstance(x, float) and isinstance(y, float):
+            times[name] = (a * y - b * x) / (a - b)
+        else:
+            times[name] = "undefined"
+    return times
 
 
 def wall_gates() -> Iterator[Gate]:
     """Yield the gates on the bars of Ansys and Siconos."""
     for case in cases(*WALLS):
-        start, end = case.contact.gap / -case.block.velocity, release(case)
+        start = case.contact.gap / -case.block.velocity
+        end = release(case)
         closed = "contact lasts 2 L / c and what the springs add, 1.6783 / F of a transit; band: rounding"
         yield Gate(
             case.name, (BAR,), "switches.first_closing", *about(start, 1e-12 * start), "gap over speed; band: rounding"
         )
         yield Gate(case.name, (BAR,), "switches.first_opening", *about(end, 1e-12 * end), closed)
-        F, kept = stiffness_ratio(case), "all of the momentum on a rigid wall; band: 1 / F of the springs"
-        yield Gate(case.name, (BAR,), "contact.restitution", 1 - 1 / F, 1.0, kept)
+        F = stiffness_ratio(case)
+        restitution_reason = "all of the momentum on a rigid wall; band: 1 / F of the springs"
+        yield Gate(case.name, (BAR,), "contact.restitution", 1 - 1 / F, 1.0, restitution_reason)
 
 
 def mass_gates() -> Iterator[Gate]:

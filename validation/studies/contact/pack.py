@@ -86,15 +86,15 @@ def numbers(scene: Scene, motion: str, part: Part) -> Iterator[dict[str, Any]]:
     InputError
         The motion did not complete.
     """
-    asked = scene.with_values({"run.columns": list(COLUMNS)})
-    row, history = execute(Case(asked, motion), "", "pack")
+    sampled_scene = scene.with_values({"run.columns": list(COLUMNS)})
+    row, history = execute(Case(sampled_scene, motion), "", "pack")
     if row.outcome is not Outcome.COMPLETED or history is None:
         raise InputError(f"{scene.name} {motion}: {row.outcome.sentence} {'; '.join(row.notes)}")
     part.add_history(scene.name, motion, history)
-    known = {name: row.metrics.get(f"switches.{name}") for name in SWITCHES}
+    values = {name: row.metrics.get(f"switches.{name}") for name in SWITCHES}
     if scene.load.pressure == 0 == scene.load.gravity:
-        known["restitution"] = row.metrics.get("contact.restitution")
-    for name, value in known.items():
+        values["restitution"] = row.metrics.get("contact.restitution")
+    for name, value in values.items():
         if isinstance(value, float):
             unit = "1" if name == "restitution" else "s"
             yield _number(scene, motion, name, value, unit, ROUNDED * value)
@@ -107,14 +107,15 @@ def _instants(scene: Scene, motion: str, history: History) -> Iterator[dict[str,
     jump = front(scene)
     for name in ("displacement", "contact_pressure"):
         for t, value in zip(history.time, history.columns[name], strict=True):
-            least = jump if name == "contact_pressure" else 0.0
-            said = f"{name} at {float(t)!r} s"
-            yield _number(scene, motion, said, float(value), UNITS[name], ROUNDED * abs(float(value)) + least)
+            front_uncertainty = jump if name == "contact_pressure" else 0.0
+            quantity = f"{name} at {float(t)!r} s"
+            uncertainty = ROUNDED * abs(float(value)) + front_uncertainty
+            yield _number(scene, motion, quantity, float(value), UNITS[name], uncertainty)
 
 
 def _number(scene: Scene, motion: str, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
-    named = {"scene": slug(scene.name), "motion": motion, "quantity": quantity}
-    return named | {"value": value, "unit": unit, "uncertainty": float(f"{uncertainty:.1e}")}
+    identity = {"scene": slug(scene.name), "motion": motion, "quantity": quantity}
+    return identity | {"value": value, "unit": unit, "uncertainty": float(f"{uncertainty:.1e}")}
 
 
 def restitutions() -> Iterator[dict[str, float]]:

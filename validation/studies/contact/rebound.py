@@ -17,6 +17,7 @@ import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
+from validation.metrics.values import or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
@@ -85,13 +86,11 @@ def compared(name: str) -> Any:
 
 
 def _compared(scenes: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
-    off = [abs(_restitution(finished, scene) - expected(scene)) for scene in scenes]
-    return {"largest difference": max(off) if all(map(math.isfinite, off)) else "undefined"}
-
-
-def _restitution(finished: Finished, scene: Scene) -> float:
-    value = finished.rows[scene.name, "dda"].metrics.get(*READS)
-    return value if isinstance(value, float) else math.nan
+    differences = []
+    for scene in scenes:
+        restitution = or_nan(finished.rows[scene.name, "dda"].metrics.get(*READS))
+        differences.append(abs(restitution - expected(scene)))
+    return {"largest difference": max(differences) if all(map(math.isfinite, differences)) else "undefined"}
 
 
 def stiff(scheme: tuple[float, float], finished: Finished) -> Mapping[str, Value]:
@@ -106,9 +105,11 @@ def gates() -> tuple[Gate, ...]:
 
 def impact_gates() -> Iterator[Gate]:
     """Yield the gates on the impacts of the rigid block."""
-    said = "the piecewise linear map of the scheme, computed without DDA; band: the block's strain, 8 p/E, and rounding"
+    why_map = (
+        "the piecewise linear map of the scheme, computed without DDA; band: the block's strain, 8 p/E, and rounding"
+    )
     for name in IMPACTS:
-        yield Gate(name, (MAP,), "largest difference", 0.0, SOFT, said, "other code")
+        yield Gate(name, (MAP,), "largest difference", 0.0, SOFT, why_map, "other code")
         for case in cases(name):
             if math.isclose(omega(case), 2.0):
                 e = TWO_STEPS[name]
@@ -121,9 +122,8 @@ def statistics_gates() -> Iterator[Gate]:
     for scheme, (values, half) in STIFF.items():
         for part, value in zip(PARTS, values, strict=True):
             why = "an independent computation: half a unit of its last digit" if half else "closed form"
-            yield Gate(
-                MAP, (label(scheme),), part, *about(value, half + 1e-12), why, "other code" if half else "exact", half
-            )
+            kind = "other code" if half else "exact"
+            yield Gate(MAP, (label(scheme),), part, *about(value, half + 1e-12), why, kind, half)
 
 
 def map_gates() -> Iterator[Gate]:
@@ -158,11 +158,11 @@ def ratio(scene: Scene) -> float:
 
 def finest() -> list[Scene]:
     """Return the case of the smallest step for each p: there the exact motion is run."""
-    found: dict[float, Scene] = {}
+    finest_by_ratio: dict[float, Scene] = {}
     for case in cases(MAPS[0]):
-        if ratio(case) not in found or case.time.step < found[ratio(case)].time.step:
-            found[ratio(case)] = case
-    return list(found.values())
+        if ratio(case) not in finest_by_ratio or case.time.step < finest_by_ratio[ratio(case)].time.step:
+            finest_by_ratio[ratio(case)] = case
+    return list(finest_by_ratio.values())
 
 
 @functools.cache

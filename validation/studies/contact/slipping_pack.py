@@ -40,7 +40,7 @@ CASES: dict[str, dict[str, Any]] = {
 }
 STEP = 1e-3  # s, at which the motions are sampled
 PRINTED = 1e-39  # s, by which forty digits of a midpoint may round it
-TOLD = 12  # switches of a motion that are numbers of their own
+LISTED_SWITCHES = 12  # switches of a motion that are numbers of their own
 VALUES = {"horizontal_displacement": "m", "displacement": "m", "rotation": "rad"}
 BASE = ("slide_m", "slide_n")
 STATES = ("state_m", "state_n")
@@ -103,8 +103,8 @@ def slipping_cases() -> Iterator[Scene]:
     plain = load_scene("unlocked").with_values({"contact.stiffness": 1e9, "time.step": STEP, "run.solvers": [MOTION]})
     columns = [*VALUES, "gap_m", "gap_n", *BASE, *FORCES, *STATES]
     for name, values in CASES.items():
-        said = {"title": f"Block with friction: {name.replace('-', ' ')}", "run.columns": columns}
-        yield plain.with_values(said | values).model_copy(update={"name": name})
+        titles = {"title": f"Block with friction: {name.replace('-', ' ')}", "run.columns": columns}
+        yield plain.with_values(titles | values).model_copy(update={"name": name})
 
 
 def write_slipping_pack(directory: Path) -> int:
@@ -121,7 +121,8 @@ def write_slipping_pack(directory: Path) -> int:
     for scene in slipping_cases():
         part.add_scene(scene)
         rows += numbers(scene, part, enclosed)
-    shaken, rocked = list(shakes()), list(rockings())
+    shaken = list(shakes())
+    rocked = list(rockings())
     tables = {"numbers": rows, "enclosures": enclosed, "newmark": shaken, "rocking": rocked}
     for name, table in tables.items():
         part.add_table(name, table)
@@ -144,12 +145,12 @@ def numbers(scene: Scene, part: Part, enclosed: list[dict[str, Any]]) -> Iterato
     if history is None:
         raise InputError(f"{scene.name} {MOTION}: no history")
     part.add_history(scene.name, MOTION, history)
-    for corner, kind_, midpoint, radius in prepared.enclosures():
-        named = {"scene": slug(scene.name), "corner": corner, "kind": kind_}
-        enclosed.append(named | {"midpoint": midpoint, "radius": _rounded_up(radius)})
-    for n, switch in enumerate(prepared.switches()[:TOLD], start=1):
-        said = f"switch {n}: {switch.corner} {kind(switch)}"
-        yield _number(scene, said, switch.time, "s", ROUNDED * switch.time)
+    for corner, event, midpoint, radius in prepared.enclosures():
+        identity = {"scene": slug(scene.name), "corner": corner, "kind": event}
+        enclosed.append(identity | {"midpoint": midpoint, "radius": _rounded_up(radius)})
+    for n, switch in enumerate(prepared.switches()[:LISTED_SWITCHES], start=1):
+        quantity = f"switch {n}: {switch.corner} {kind(switch)}"
+        yield _number(scene, quantity, switch.time, "s", ROUNDED * switch.time)
     yield from _instants(scene, history)
 
 
@@ -164,16 +165,17 @@ def _instants(scene: Scene, history: History) -> Iterator[dict[str, Any]]:
     """Yield the centroid and the mean slide of the base at the end, and at each 0.1 s of a longer motion."""
     mean = np.mean([history.columns[name] for name in BASE], axis=0)
     columns = {name: history.columns[name] for name in VALUES} | {"mean slide": mean}
-    every = min(100, scene.time.steps)
-    for n in range(every - 1, scene.time.steps, every):
+    stride = min(100, scene.time.steps)
+    for n in range(stride - 1, scene.time.steps, stride):
         for name, column in columns.items():
-            said = f"{name} at {float(history.time[n])!r} s"
-            yield _number(scene, said, float(column[n]), VALUES.get(name, "m"), ROUNDED * float(np.abs(column).max()))
+            quantity = f"{name} at {float(history.time[n])!r} s"
+            uncertainty = ROUNDED * float(np.abs(column).max())
+            yield _number(scene, quantity, float(column[n]), VALUES.get(name, "m"), uncertainty)
 
 
 def _number(scene: Scene, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
-    named = {"scene": slug(scene.name), "quantity": quantity}
-    return named | {"value": value, "unit": unit, "uncertainty": _rounded(uncertainty)}
+    identity = {"scene": slug(scene.name), "quantity": quantity}
+    return identity | {"value": value, "unit": unit, "uncertainty": _rounded(uncertainty)}
 
 
 def _rounded(uncertainty: float) -> float:
@@ -190,10 +192,10 @@ def shakes() -> Iterator[dict[str, float]]:
     for slope, phi, amplitude, rate, duration in SHAKES:
         for two_way in (True, False):
             end = np.array([duration + 1.0])
-            found = harmonic_slide(slope, phi, amplitude, rate, duration, end, two_way)
-            given = {"slope": slope, "friction": phi, "amplitude": amplitude, "rate": rate, "duration": duration}
-            answer = {"two_way": int(two_way), "slide": float(found.slide[0]), "slip": found.slip}
-            yield given | answer | {"uncertainty": _rounded(ROUNDED * found.slip)}
+            motion = harmonic_slide(slope, phi, amplitude, rate, duration, end, two_way)
+            parameters = {"slope": slope, "friction": phi, "amplitude": amplitude, "rate": rate, "duration": duration}
+            answer = {"two_way": int(two_way), "slide": float(motion.slide[0]), "slip": motion.slip}
+            yield parameters | answer | {"uncertainty": _rounded(ROUNDED * motion.slip)}
 
 
 def rockings() -> Iterator[dict[str, Any]]:
@@ -212,5 +214,5 @@ def rockings() -> Iterator[dict[str, Any]]:
             }
         for duration in PULSES:
             value = overturning_acceleration(width, height, duration)
-            said = {"quantity": "overturning half sine [m/s2]", "at": duration}
-            yield {**size, **said, "value": value, "uncertainty": _rounded(BISECTED * value)}
+            overturning = {"quantity": "overturning half sine [m/s2]", "at": duration}
+            yield {**size, **overturning, "value": value, "uncertainty": _rounded(BISECTED * value)}

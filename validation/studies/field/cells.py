@@ -44,15 +44,16 @@ class Cells:
     def derived(self) -> Iterator[Derived]:
         """Yield a derived row for every case that is judged."""
         for name in PROBLEMS:
-            for program in (HABIT, FINE, *((ELEMENTS,) if with_elements(scene_of(name)) else ()), *installed()):
+            elements = (ELEMENTS,) if with_elements(scene_of(name)) else ()
+            for program in (HABIT, FINE, *elements, *installed()):
                 yield self._row(name, program)
 
     def _row(self, name: str, program: str) -> Derived:
         def compute(finished: Finished) -> Mapping[str, Value]:
-            kept = self._found.get((name, program))
-            if kept is None or kept[0] is not finished:
-                kept = self._found[name, program] = finished, self._cell(name, program, finished)
-            return kept[1]
+            cached = self._found.get((name, program))
+            if cached is None or cached[0] is not finished:
+                cached = self._found[name, program] = finished, self._cell(name, program, finished)
+            return cached[1]
 
         needs = [case_of(name, program)]
         if kept_exact(scene_of(name)):
@@ -63,18 +64,20 @@ class Cells:
         answer = finished.history(*case_of(name, program))
         if answer is None:
             return {}
-        seen, held, asked = sampled(name, program, answer), self._standard(name, finished), problem_named(name)
-        found = judge(asked, seen, held)
+        history = sampled(name, program, answer)
+        bands = self._standard(name, finished)
+        problem = problem_named(name)
+        judgement = judge(problem, history, bands)
         why = ""
-        if found.word is Word.FAIL:
-            why = OF_MODEL if program == ELEMENTS else cause(asked, seen, held).sentence
-        return metrics_of(found, why)
+        if judgement.word is Word.FAIL:
+            why = OF_MODEL if program == ELEMENTS else cause(problem, history, bands).sentence
+        return metrics_of(judgement, why)
 
     def _standard(self, name: str, finished: Finished) -> Standard:
-        kept = self._standards.get(name)
-        if kept is None or kept[0] is not finished:
-            kept = self._standards[name] = finished, standard_in(name, finished)
-        return kept[1]
+        cached = self._standards.get(name)
+        if cached is None or cached[0] is not finished:
+            cached = self._standards[name] = finished, standard_in(name, finished)
+        return cached[1]
 
 
 def case_of(name: str, program: str) -> tuple[str, str]:
@@ -87,8 +90,9 @@ def sampled(name: str, program: str, answer: History) -> History:
     """Return an answer at the steps of the problem."""
     if program not in (FINE, ELEMENTS):
         return answer
-    every = finer(scene_of(name))
-    return History(answer.time[every - 1 :: every], {key: x[every - 1 :: every] for key, x in answer.columns.items()})
+    stride = finer(scene_of(name))
+    last_of_each = slice(stride - 1, None, stride)
+    return History(answer.time[last_of_each], {key: x[last_of_each] for key, x in answer.columns.items()})
 
 
 def standard_in(name: str, finished: Finished) -> Standard:
@@ -99,21 +103,21 @@ def standard_in(name: str, finished: Finished) -> Standard:
     ValueError
         A kept motion is lost.
     """
-    asked = problem_named(name)
-    if not kept_exact(asked.scene):
-        return standard(asked)
-    own = finished.history(PREFIX + name, EXACT)
+    problem = problem_named(name)
+    if not kept_exact(problem.scene):
+        return standard(problem)
+    exact = finished.history(PREFIX + name, EXACT)
     others = {datum: finished.history(scene.name, EXACT) for datum, scene in changed(name).items()}
-    found = {datum: history for datum, history in others.items() if history is not None}
-    if own is None or len(found) < len(others):
+    changed_motions = {datum: history for datum, history in others.items() if history is not None}
+    if exact is None or len(changed_motions) < len(others):
         raise ValueError(f"{name}: an exact motion is lost")
-    return standard_of(own, found)
+    return standard_of(exact, changed_motions)
 
 
-def metrics_of(found: Judgement, why: str) -> dict[str, Value]:
+def metrics_of(judgement: Judgement, why: str) -> dict[str, Value]:
     """Return a judgement as the metrics of a row: the cell's own, then those of each column, then what is told."""
-    deciding = found.deciding
-    metrics: dict[str, Value] = {"verdict": str(found.word), "says": found.verdict, "cause": why}
+    deciding = judgement.deciding
+    metrics: dict[str, Value] = {"verdict": str(judgement.word), "says": judgement.verdict, "cause": why}
     if deciding is not None and deciding.band is not None and deciding.error is not None:
         metrics |= {
             "column": deciding.name,
@@ -121,15 +125,15 @@ def metrics_of(found: Judgement, why: str) -> dict[str, Value]:
             "band": settled(deciding.band),
             BESIDE: settled(deciding.error / deciding.band),
             "reason": deciding.reason,
-            "within": settled(found.within),
+            "within": settled(judgement.within),
         }
-    for column in found.columns:
+    for column in judgement.columns:
         metrics[f"{column.name}: word"] = str(column.word)
         metrics[f"{column.name}: error"] = None if column.error is None else settled(column.error)
         metrics[f"{column.name}: band"] = None if column.band is None else settled(column.band)
         metrics[f"{column.name}: until"] = settled(column.until)
         metrics[f"{column.name}: reason"] = column.reason
-    for number in found.told:
+    for number in judgement.told:
         for kind, value in (("value", number.value), ("exact", number.exact)):
             metrics[f"told {kind}: {number.name} [{number.unit}]"] = None if value is None else settled(value)
     return metrics

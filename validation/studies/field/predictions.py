@@ -41,8 +41,8 @@ class Prediction:
     def scene(self) -> Scene:
         """The scene that predicts it."""
         name = f"{PREFIX}{self.problem} as {self.program} steps"
-        found = scene_of(self.problem).with_values({**self.values, "run.solvers": [HABIT]})
-        return found.model_copy(update={"name": name})
+        predicting = scene_of(self.problem).with_values({**self.values, "run.solvers": [HABIT]})
+        return predicting.model_copy(update={"name": name})
 
     @property
     def name(self) -> str:
@@ -88,10 +88,10 @@ def derived() -> Iterator[Derived]:
 
 def _difference(needs: tuple[tuple[str, str], tuple[str, str]]) -> Callable[[Finished], Mapping[str, Value]]:
     def compute(finished: Finished) -> Mapping[str, Value]:
-        seen, expected = (finished.history(*need) for need in needs)
-        if seen is None or expected is None:
+        answer, expected = (finished.history(*need) for need in needs)
+        if answer is None or expected is None:
             return {}
-        return {APART: relative_l2(seen.columns[DISPLACEMENT], expected.columns[DISPLACEMENT])}
+        return {APART: relative_l2(answer.columns[DISPLACEMENT], expected.columns[DISPLACEMENT])}
 
     return compute
 
@@ -99,19 +99,19 @@ def _difference(needs: tuple[tuple[str, str], tuple[str, str]]) -> Callable[[Fin
 def _answered(program: str, recipe: str) -> Callable[[Finished], Mapping[str, Value]]:
     def compute(finished: Finished) -> Mapping[str, Value]:
         rows = [finished.rows.get((PREFIX + name, program)) for name in PROBLEMS]
-        there = [row for row in rows if row is not None]
-        endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in there]
-        if not there or is_absent(endings):
+        present = [row for row in rows if row is not None]
+        endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in present]
+        if not present or is_absent(endings):
             raise NothingToDerive(f"not installed: {recipe}")
-        return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in there))}
+        return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in present))}
 
     return compute
 
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on predictions, and that a program which is installed answers."""
-    for one in PREDICTIONS:
-        yield Gate(PREFIX + one.problem, (one.name,), APART, 0.0, one.band, one.why)
+    for prediction in PREDICTIONS:
+        yield Gate(PREFIX + prediction.problem, (prediction.name,), APART, 0.0, prediction.band, prediction.why)
     for program in known():
         why = "a program that is installed answers a problem at least; there are no more than all"
         yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(PROBLEMS)), why)

@@ -9,7 +9,10 @@ from validation.solvers.registry import entry_points, get_solver
 from validation.solvers.user import UserSolver
 
 DEFAULT = "-default"  # ending of the name of a program as it comes
-HABIT, FINE, ELEMENTS = "dda", "dda-fine", "fem"  # the suite's own
+# The suite's own
+HABIT = "dda"
+FINE = "dda-fine"
+ELEMENTS = "fem"
 APT = "pip install examples/peers, and apt install"
 RECIPES = {  # name to title and recipe
     "opensees": ("OpenSees", "pip install 'examples/peers[opensees]'"),
@@ -92,12 +95,12 @@ OWN = (
 
 def known() -> Iterator[Program]:
     """Yield the programs whose adapters the suite has, installed or not."""
-    there = entry_points()
+    entry_point_names = entry_points()
     for name, (title, recipe) in RECIPES.items():
-        yield Program(name, title, recipe, "chosen", name in there)
+        yield Program(name, title, recipe, "chosen", name in entry_point_names)
         if name not in WITHOUT_DEFAULT:
-            other = name + DEFAULT
-            yield Program(other, f"{title}, as it comes", recipe, "default", other in there)
+            default_name = name + DEFAULT
+            yield Program(default_name, f"{title}, as it comes", recipe, "default", default_name in entry_point_names)
 
 
 def brought() -> Iterator[Program]:

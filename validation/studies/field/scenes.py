@@ -12,7 +12,8 @@ from validation.scenes.scene import Scene, load_scene
 from validation.studies.field.programs import ELEMENTS, HABIT, installed
 
 EXACT = "block-events"  # of the exact solutions the one that takes seconds, so that its motions are kept
-FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; a block that turns takes long
+FINER = 32  # steps in one of the scene's
+FINER_TURNING = 4  # the same of a block that turns, which takes long
 MOST_STEPS = 200  # of a scene that finite elements run at fine steps
 
 
@@ -71,18 +72,19 @@ def with_elements(scene: Scene) -> bool:
 @functools.cache
 def changed(name: str) -> dict[str, Scene]:
     """Return the scenes whose exact motions set the bands of a problem: datum to scene."""
-    found = {}
+    scenes_by_datum = {}
     for datum, scene in changed_scenes(scene_of(name)).items():
         title = f"{PREFIX}{name} with {datum} one per cent larger"
-        found[datum] = scene.model_copy(update={"name": title, "title": title}).with_values({"run.solvers": [EXACT]})
-    return found
+        renamed = scene.model_copy(update={"name": title, "title": title})
+        scenes_by_datum[datum] = renamed.with_values({"run.solvers": [EXACT]})
+    return scenes_by_datum
 
 
 def scenes() -> list[Scene]:
     """Return all scenes of the study."""
-    found = []
+    all_scenes = []
     for name in PROBLEMS:
-        found += [judged(name), fine(name)]
+        all_scenes += [judged(name), fine(name)]
         if kept_exact(scene_of(name)):
-            found += changed(name).values()
-    return found
+            all_scenes += changed(name).values()
+    return all_scenes

@@ -7,6 +7,7 @@ predicts of its integrator, which says that its adapter states the problem right
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -38,18 +39,17 @@ def gates() -> Iterator[Gate]:
 
 def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which run each cell is of."""
-    found = programs.programs()
+    columns = programs.programs()
+    runs = {}
+    for name, program in itertools.product(PROBLEMS, columns):
+        runs[f"{name} {program.name}"] = [list(case_of(name, program.name)), cell_name(program.name)]
     return {
         "problems": [
             {"name": name, "scene": PREFIX + name, "title": scenes.scene_of(name).title, "asks": ASKS[name]}
             for name in PROBLEMS
         ],
-        "programs": [_program(program) for program in found],
-        "runs": {
-            f"{name} {program.name}": [list(case_of(name, program.name)), cell_name(program.name)]
-            for name in PROBLEMS
-            for program in found
-        },
+        "programs": [_program(program) for program in columns],
+        "runs": runs,
     }
 
 
@@ -64,7 +64,7 @@ def _program(program: programs.Program) -> dict[str, Any]:
     }
 
 
-def nothing(asked: Sequence[Scene], finished: Finished) -> Annotations:
+def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return no alarms and no budgets: what DDA's habit does is what the cells say."""
     return {"alarms": [], "budgets": []}
 

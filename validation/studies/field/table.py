@@ -15,7 +15,11 @@ from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 
 STUDY = "field"
-PASS, PARTIAL, FAIL, NOT_RUN, NOT_APPLICABLE = "PASS", "PARTIAL", "FAIL", "NOT RUN", "not applicable"
+PASS = "PASS"
+PARTIAL = "PARTIAL"
+FAIL = "FAIL"
+NOT_RUN = "NOT RUN"
+NOT_APPLICABLE = "not applicable"
 JUDGED = (PASS, PARTIAL, FAIL)
 # A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
 WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
@@ -165,13 +169,14 @@ def read(results: Results) -> Table | None:
     programs = tuple(ProgramLine(**line) for line in data["programs"])
     rows = results.rows()
     keys = {(case["scene"], case["solver"]): case["key"] for case in manifest.get("cases", [])}
-    found = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+    metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
     cells = {}
     for problem in problems:
         for program in programs:
             case, name = data["runs"].get(f"{problem.name} {program.name}", (("", ""), ""))
             row = rows.get(keys.get(tuple(case), ""))
-            cells[problem.name, program.name] = _cell(problem, program, row, found.get((problem.scene, name), {}))
+            metrics = metrics_by_cell.get((problem.scene, name), {})
+            cells[problem.name, program.name] = _cell(problem, program, row, metrics)
     return Table(problems, programs, cells)
 
 
@@ -184,6 +189,7 @@ def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: 
     if row.outcome is not Outcome.COMPLETED or not metrics:
         return _ended(problem, program, row)
     texts = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "cause", "column", "reason")}
+    seconds = sum(row.seconds.values()) if row.seconds else None
     return Cell(
         problem.name,
         program.name,
@@ -191,7 +197,7 @@ def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: 
         error=_number(metrics.get("error")),
         band=_number(metrics.get("band")),
         within=_number(metrics.get("within")),
-        seconds=sum(row.seconds.values()) if row.seconds else None,
+        seconds=seconds,
         columns=_columns(metrics),
         numbers=_numbers(metrics),
         key=row.key,
@@ -226,14 +232,14 @@ def _columns(metrics: Mapping[str, Value]) -> tuple[ColumnCell, ...]:
 
 
 def _numbers(metrics: Mapping[str, Value]) -> tuple[Number, ...]:
-    found = []
+    numbers = []
     for key in metrics:
         if key.startswith("told value: "):
             name = key.removeprefix("told value: ")
-            said, _, unit = name.rpartition(" [")
+            quantity, _, unit = name.rpartition(" [")
             exact = _number(metrics.get(f"told exact: {name}"))
-            found.append(Number(said, unit.removesuffix("]"), _number(metrics[key]), exact))
-    return tuple(found)
+            numbers.append(Number(quantity, unit.removesuffix("]"), _number(metrics[key]), exact))
+    return tuple(numbers)
 
 
 def _number(value: Any) -> float | None:

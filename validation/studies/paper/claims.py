@@ -76,8 +76,8 @@ class Evidence:
 
     def settles(self, case: str, quantity: str, tolerance: float = 0.01) -> float:
         """Return the first step from which a quantity stays within a tolerance of static; NaN if never."""
-        found = settling_step(self.scaled(case, quantity), 1.0, tolerance)
-        return found if isinstance(found, float) else np.nan
+        step = settling_step(self.scaled(case, quantity), 1.0, tolerance)
+        return step if isinstance(step, float) else np.nan
 
 
 @dataclass(frozen=True)
@@ -124,8 +124,8 @@ class Claim:
 
     def _compute(self, finished: Finished) -> Mapping[str, Value]:
         numbers = self.measure(Evidence(finished))
-        known: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
-        return {"verdict": float(self.finding(numbers))} | known
+        values: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
+        return {"verdict": float(self.finding(numbers))} | values
 
     def gate(self) -> Gate:
         """Return the gate that holds the verdict to the expected one."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 from validation.gates import friction
 from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
 
-CREEP, SLIDES = named("creep-claim"), named("slope-sliding")
+CREEP = named("creep-claim")
+SLIDES = named("slope-sliding")
 LAGGED, CONSISTENT = ([name for name, s in CREEP.items() if s.contact.rules == r] for r in ("lagged", "consistent"))
 RULES = {"lagged": LAGGED, "consistent": CONSISTENT}
-COARSE, FINE = 0, -1  # of the cases of a rule, by time step
+# Of the cases of a rule, by time step
+COARSE = 0
+FINE = -1
 STANDS = 1e-9  # m/s, rounding
 PLACE = "not in the paper: said where block codes are checked on inclines"
 
@@ -23,25 +26,25 @@ def standing(e: Evidence) -> dict[str, float]:
 
 def refined(e: Evidence) -> dict[str, float]:
     """Return the slip over the step by both rules, and how it grows from the coarsest step to the finest."""
-    found = {}
+    slip_by_step = {}
     growth = {}
     for rule, names in RULES.items():
         slips = [e.number(name, "contact.slip") for name in names]
         for name, slip in zip(names, slips, strict=True):
-            found[f"slip at dt = {CREEP[name].time.step:g}, {rule}, mm"] = 1e3 * slip
+            slip_by_step[f"slip at dt = {CREEP[name].time.step:g}, {rule}, mm"] = 1e3 * slip
         growth[f"slip at the finest step over that at the coarsest, {rule}"] = slips[FINE] / slips[COARSE]
-    return found | growth
+    return slip_by_step | growth
 
 
 def beyond(e: Evidence) -> dict[str, float]:
     """Return how far sliding blocks are beyond the closed form, over tan(phi) times the settlement."""
-    found = {}
+    offsets = {}
     for name, scene in SLIDES.items():
         free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
         offset = e.number(name, "horizontal.final") - float(free[-1])
-        found[f"over tan(phi) x settlement at dt = {scene.time.step:g}"] = offset / friction.penalty_offset(scene)
-    found["tan(phi) x settlement, mm"] = 1e3 * friction.penalty_offset(next(iter(SLIDES.values())))
-    return found
+        offsets[f"over tan(phi) x settlement at dt = {scene.time.step:g}"] = offset / friction.penalty_offset(scene)
+    offsets["tan(phi) x settlement, mm"] = 1e3 * friction.penalty_offset(next(iter(SLIDES.values())))
+    return offsets
 
 
 ON_SLOPES = (

@@ -12,7 +12,9 @@ DAMPED, UNDAMPED = (
     [name for name, s in CASES.items() if s.time.delta == delta and s.time.gg == 1] for delta in (1, 0.5)
 )
 DISCOUNTED = [name for name, s in CASES.items() if s.time.discount < 1]
-COARSE, FINE = 0, -1  # of the cases of a scheme, by time step
+# Of the cases of a scheme, by time step
+COARSE = 0
+FINE = -1
 
 
 def omega(scene: Scene) -> float:
@@ -27,7 +29,8 @@ def most_solves(e: Evidence, cases: list[str]) -> float:
 
 def guaranteed(e: Evidence) -> dict[str, float]:
     """Return the most solves with and without algorithmic damping, and the cuts without."""
-    with_damping, without = most_solves(e, DAMPED), most_solves(e, UNDAMPED)
+    with_damping = most_solves(e, DAMPED)
+    without = most_solves(e, UNDAMPED)
     return {
         "most solves a step with damping, (1/2, 1)": with_damping,
         "most solves a step without, (1/4, 1/2)": without,

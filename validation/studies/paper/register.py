@@ -39,8 +39,8 @@ def counts(displacement: float, force: float) -> tuple[Band, ...]:
 
 def equilibrium(e: Evidence) -> dict[str, float]:
     """Return the largest distance of the last pressure from q, over q, and the least remaining."""
-    left = [abs(e.scaled(case, "pressure")[-1] - 1) for case in (*A34, *A56)]
-    return {"final distance from q, largest of six runs": max(left)}
+    distances = [abs(e.scaled(case, "pressure")[-1] - 1) for case in (*A34, *A56)]
+    return {"final distance from q, largest of six runs": max(distances)}
 
 
 def force_first(e: Evidence) -> dict[str, float]:
@@ -51,12 +51,12 @@ def force_first(e: Evidence) -> dict[str, float]:
 
 def stiff_alike(e: Evidence) -> dict[str, float]:
     """Return the difference of settling steps between p = 10E and 100E, at 1 % and at 1e-4."""
-    found: dict[str, float] = {}
+    differences: dict[str, float] = {}
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
         for quantity, word in (("displacement", "displacement"), ("pressure", "contact force")):
             steps = [e.settles(case, quantity, tolerance) for case in (STIFF, STIFFEST)]
-            found[f"{word} to {name}, steps apart"] = whole(abs(steps[1] - steps[0]))
-    return found | {"contact root at 100E": e.number(STIFFEST, "contact.least_root")}
+            differences[f"{word} to {name}, steps apart"] = whole(abs(steps[1] - steps[0]))
+    return differences | {"contact root at 100E": e.number(STIFFEST, "contact.least_root")}
 
 
 def over_steps(e: Evidence) -> dict[str, float]:
@@ -66,7 +66,8 @@ def over_steps(e: Evidence) -> dict[str, float]:
         if s.contact.stiffness == s.block.young:
             pairs.append((s.time.step * e.number(name, "mode1.frequency"), e.number(name, "mode1.damping")))
     omega, xi = np.array(sorted(pairs)).T
-    rise, below = np.diff(xi), omega[1:] < 3.28
+    rise = np.diff(xi)
+    below = omega[1:] < 3.28
     return {
         "least rise of xi below w dt = 3.27": float(rise[below].min()),
         "least rise of xi above": float(rise[~below].min()),
@@ -93,14 +94,14 @@ def over_stiffness(e: Evidence) -> dict[str, float]:
 
 def small_step(e: Evidence) -> dict[str, float]:
     """Return first and last peak over static, and xi, for the three stiffnesses of Figure 7."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for case, p in zip(A7, ("1E", "10E", "100E"), strict=True):
         x = e.scaled(case, "displacement")
-        found |= {f"first peak at {p}": float(x[: 2 * PEAK].max()), f"last peak at {p}": float(x[-2 * PEAK :].max())}
-        found[f"xi at {p}"] = e.number(case, "mode1.damping")
-    falls = [found[f"first peak at {p}"] - found[f"last peak at {p}"] for p in ("1E", "10E", "100E")]
-    xi = [found[f"xi at {p}"] for p in ("1E", "10E", "100E")]
-    return found | {"least fall of the peaks": min(falls), "xi at 100E over 1E": xi[2] / xi[0]}
+        values |= {f"first peak at {p}": float(x[: 2 * PEAK].max()), f"last peak at {p}": float(x[-2 * PEAK :].max())}
+        values[f"xi at {p}"] = e.number(case, "mode1.damping")
+    falls = [values[f"first peak at {p}"] - values[f"last peak at {p}"] for p in ("1E", "10E", "100E")]
+    xi = [values[f"xi at {p}"] for p in ("1E", "10E", "100E")]
+    return values | {"least fall of the peaks": min(falls), "xi at 100E over 1E": xi[2] / xi[0]}
 
 
 def average(e: Evidence) -> dict[str, float]:
@@ -119,7 +120,8 @@ def high_frequencies(e: Evidence) -> dict[str, float]:
             omega = s.time.step * e.number(name, f"{mode}.frequency")
             pairs.append((omega, e.number(name, f"{mode}.spectral_radius")))
     omega, radius = np.array(sorted(pairs)).T
-    below, above = omega < 4, omega > 4
+    below = omega < 4
+    above = omega > 4
     return {
         "greatest rise of |lambda| below w dt = 4": float(np.diff(radius[below]).max()),
         "least |lambda|": float(radius.min()),
@@ -143,14 +145,14 @@ def boundary(e: Evidence) -> dict[str, float]:
 
 def discount_alone(e: Evidence) -> dict[str, float]:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
-    found: dict[str, float] = {}
+    ratios: dict[str, float] = {}
     squares = []
     for name, s in DISCOUNTS.items():
-        found[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")
+        ratios[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")
         if s.time.step >= 1e-4:
             squares.append(e.number(name, "mode1.spectral_radius") ** 2 / s.time.discount)
-    xi = [value for name, value in found.items() if name != "xi at dt = 2e-05"]
-    return found | {
+    xi = [value for name, value in ratios.items() if name != "xi at dt = 2e-05"]
+    return ratios | {
         "|lambda|^2 / gg - 1, largest of complex roots": max(abs(v - 1) for v in squares),
         "xi, greatest over least": max(xi) / min(xi),
     }

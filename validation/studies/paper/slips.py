@@ -20,7 +20,7 @@ def model(case: str, **values: float) -> Any:
     from validation.solvers.dda import model_of
 
     scene = named(scene_of(case))[case]
-    return model_of(scene.with_values(dict(values)) if values else scene)
+    return model_of(scene.with_values(dict(values)))
 
 
 def radius(e: Evidence) -> dict[str, float]:
@@ -40,16 +40,17 @@ def radius(e: Evidence) -> dict[str, float]:
 
 def inertia(e: Evidence) -> dict[str, float]:
     """Return entries (3, 6) and (6, 6) of the inertia matrix of a 1 m x 2 m block, over rho."""
-    found = model(SOFT, **OBLONG)
-    mass = found.mass / found.block.material.density
+    block_model = model(SOFT, **OBLONG)
+    mass = block_model.mass / block_model.block.material.density
     return {"entry (3, 6)": float(mass[2, 5]), "entry (6, 6)": float(mass[5, 5])}
 
 
 def energy(e: Evidence) -> dict[str, float]:
     """Return the strain energy of ey = 1 over s/2 times the area integral of E."""
-    found = model(SOFT)
-    elastic = found.block.elastic()[4, 4]
-    area, young = 4.0, found.block.material.young
+    block_model = model(SOFT)
+    elastic = block_model.block.elastic()[4, 4]
+    area = 4.0
+    young = block_model.block.material.young
     return {"strain energy over that of (20)": float(elastic / 2 / (area / 2 * young * area))}
 
 
@@ -60,9 +61,9 @@ def modulus(e: Evidence) -> dict[str, float]:
 
 def load(e: Evidence) -> dict[str, float]:
     """Return the load on v over a q, and the static displacement that it causes."""
-    found = model(SOFT)
+    block_model = model(SOFT)
     return {
-        "load on v over a q": float(found.load[1] / (2.0 * found.pressure)),
+        "load on v over a q": float(block_model.load[1] / (2.0 * block_model.pressure)),
         "static displacement, mm": 1e3 * e.number(SOFT, "displacement.static"),
     }
 
@@ -70,7 +71,9 @@ def load(e: Evidence) -> dict[str, float]:
 def lateral(e: Evidence) -> dict[str, float]:
     """Return statics at mu = 0.3, p = 1E: ours, and without the shear springs' stretch, where sigma_x = 0."""
     s = named("poisson-statics")[LATERAL]
-    a, E, q = s.block.base_length, s.block.young, s.load.pressure
+    a = s.block.base_length
+    E = s.block.young
+    q = s.load.pressure
     return {
         "static displacement, mm": 1e3 * e.number(LATERAL, "displacement.static"),
         "with (32) as printed, mm": -1e3 * (a * q / (2 * s.contact.stiffness) + a / 2 * q / E),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import operator
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -21,7 +20,7 @@ from validation.studies.paper.register import CLAIMS as STATEMENTS
 from validation.studies.paper.slips import SLIPS
 from validation.studies.paper.viscous import VISCOUS
 
-KEPT = ("id", "place", "says", "why", "condition")  # of a claim, for its chapter
+CHAPTER_FIELDS = ("id", "place", "says", "why", "condition")  # of a claim
 CLAIMS = (*STATEMENTS, *OPEN_CLOSE, *VISCOUS, *ON_SLOPES, *SLIPS)
 FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
@@ -86,8 +85,7 @@ def data() -> Mapping[str, Any]:
     for name, (alpha, delta) in SCHEMES.items():
         printed = np.sqrt(np.abs(1 + (0.5 - delta) * omega**2 / (1 + alpha * omega**2)))
         curves[name] = {"radius": _short(spectral_radius(omega, alpha, delta, 1.0)), "printed": _short(printed)}
-    kept = operator.attrgetter(*KEPT)
-    claims = [dict(zip(KEPT, kept(claim), strict=True)) for claim in CLAIMS]
+    claims = [{name: getattr(claim, name) for name in CHAPTER_FIELDS} for claim in CLAIMS]
     return {"omega": _short(omega), "schemes": curves, "claims": claims}
 
 

@@ -11,12 +11,13 @@ ALIKE = 1.05  # greatest over least damping that counts as independent of the st
 
 def independent(e: Evidence) -> dict[str, float]:
     """Return the damping of the first mode over the steps, under constant and under average acceleration."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for word, cases in (("(1/2, 1)", CONSTANT), ("(1/4, 1/2)", AVERAGE)):
         ratios = [e.number(case, "mode1.damping") for case in cases]
-        found |= {f"xi at dt = {CASES[case].time.step:g}, {word}": xi for case, xi in zip(cases, ratios, strict=True)}
-        found[f"xi, greatest over least, {word}"] = max(ratios) / min(ratios)
-    return found
+        for case, xi in zip(cases, ratios, strict=True):
+            values[f"xi at dt = {CASES[case].time.step:g}, {word}"] = xi
+        values[f"xi, greatest over least, {word}"] = max(ratios) / min(ratios)
+    return values
 
 
 VISCOUS = (

@@ -18,8 +18,12 @@ from validation.studies.rocking.read import crossing, landing, rectangle, settle
 
 LET_GO = ("rocking-release", "rocking-swing")
 PULSE = "rocking-pulse"
-SWING, PASSAGE = "swing", "pulse"  # derived rows
-PUSH, DURATION = 5.0, 0.36  # acceleration [m/s2] of the base in the record, and for how long [s]
+# Derived rows
+SWING = "swing"
+PASSAGE = "pulse"
+# The record of the base
+PUSH = 5.0  # acceleration [m/s2]
+DURATION = 0.36  # s
 
 
 def swing(scene: Scene, finished: Finished) -> Mapping[str, Value]:
@@ -30,10 +34,12 @@ def swing(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, "dda")
     if history is None:
         return {}
-    block, tilt = rectangle(scene), math.radians(scene.block.tilt)
+    block = rectangle(scene)
+    tilt = math.radians(scene.block.tilt)
     landed = landing(history.time, history.columns["gap_n"])
     other = max(0.0, -float(np.min(history.columns["rotation"])) - tilt)
-    risen, fallen = (math.cos(block.alpha - angle) - math.cos(block.alpha) for angle in (other, tilt))
+    risen = math.cos(block.alpha - other) - math.cos(block.alpha)  # over R, as the next
+    fallen = math.cos(block.alpha - tilt) - math.cos(block.alpha)
     return {
         "quarter period": landed / block.quarter_period(tilt),
         "rate ratio": math.sqrt(risen / fallen),
@@ -46,7 +52,8 @@ def passage(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, "dda")
     if history is None:
         return {}
-    rotation, exact = history.columns["rotation"], after_pulse(scene)
+    rotation = history.columns["rotation"]
+    exact = after_pulse(scene)
     if overturns(scene):
         return {"time": crossing(history.time, rotation, rectangle(scene).alpha) / exact(1.0)}
     return {"peak": float(np.max(rotation)) / exact(1.0), "tipping": float(np.max(rotation)) / rectangle(scene).alpha}
@@ -85,7 +92,8 @@ def swing_gates() -> Iterator[Gate]:
     )
     falls = "delta = 1 gains no energy; how much an impact takes depends on step and springs and is no property of DDA"
     for case in cases(*LET_GO):
-        block, tilt = rectangle(case), math.radians(case.block.tilt)
+        block = rectangle(case)
+        tilt = math.radians(case.block.tilt)
         line = case.time.step**2 * block.rate2 * math.sin(block.alpha) / block.landing_rate(tilt)
         late = line / block.quarter_period(tilt)
         early = settlement(case) / (block.width * tilt) + late
@@ -101,9 +109,11 @@ def pulse_gates() -> Iterator[Gate]:
     )
     stays = "below the threshold, in closed form, the centroid does not pass over the corner"
     for case in cases(PULSE):
-        exact, off = after_pulse(case), (case.time.step / DURATION) ** 2
+        exact = after_pulse(case)
+        off = (case.time.step / DURATION) ** 2
         edges = sorted(exact(size) / exact(1.0) for size in (1 - off, 1 + off))
-        yield Gate(case.name, (PASSAGE,), "time" if overturns(case) else "peak", edges[0], edges[1], why)
+        metric = "time" if overturns(case) else "peak"
+        yield Gate(case.name, (PASSAGE,), metric, edges[0], edges[1], why)
         if not overturns(case):
             yield Gate(case.name, (PASSAGE,), "tipping", 0.0, 1.0, stays)
 

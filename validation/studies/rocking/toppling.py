@@ -21,7 +21,8 @@ from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, increments, rectangle, settlement
 
-STATIC, SLIDE = "toppling-static", "toppling-slide"
+STATIC = "toppling-static"
+SLIDE = "toppling-slide"
 FROM_REST = ("toppling-tower", "toppling-threshold")  # on their base
 LET_GO = ("toppling-fall", "toppling-growth")  # on their lower corner
 ROW = "trajectory"  # derived row
@@ -42,10 +43,11 @@ def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, "dda")
     if history is None:
         return {}
-    u, steps = history.columns["horizontal_displacement"], scene.time.steps
-    moved = float(u[-1] - u[steps // 2 - 1])
-    way = (steps - steps // 2) * scene.time.step**2 / 2 * sliding_acceleration(scene)
-    return {"moved": moved / (way if way > 0 else rectangle(scene).width)}
+    u = history.columns["horizontal_displacement"]
+    steps = scene.time.steps
+    displacement = float(u[-1] - u[steps // 2 - 1])
+    sliding_distance = (steps - steps // 2) * scene.time.step**2 / 2 * sliding_acceleration(scene)
+    return {"moved": displacement / (sliding_distance if sliding_distance > 0 else rectangle(scene).width)}
 
 
 def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
@@ -56,11 +58,12 @@ def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, "dda")
     if history is None:
         return {}
-    u, v = history.columns["horizontal_displacement"], history.displacement
-    way = sliding_acceleration(scene) * history.time**2 / 2
+    u = history.columns["horizontal_displacement"]
+    v = history.displacement
+    sliding_distance = sliding_acceleration(scene) * history.time**2 / 2
     return {
-        "identity": float(np.max(np.abs(u + coefficient(scene) * v - way)) / way[-1]),
-        "run-out": float(u[-1] / way[-1]),
+        "identity": float(np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1]),
+        "run-out": float(u[-1] / sliding_distance[-1]),
     }
 
 
@@ -70,25 +73,25 @@ def fall(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     if history is None:
         return {}
     rotation = -history.columns["rotation"]
-    found: dict[str, Value] = {"turned": float(np.max(np.abs(rotation)))}
+    values: dict[str, Value] = {"turned": float(np.max(np.abs(rotation)))}
     if beyond(scene) > 0:
         exact = rectangle(scene).fall_time(beyond(scene), TURN)
-        found["time"] = crossing(history.time, rotation, TURN) / exact
+        values["time"] = crossing(history.time, rotation, TURN) / exact
     if "area" in history.columns:
-        grown = float(np.prod(1 + increments(history) ** 2)) if scene.run.rotation == "first-order" else 1.0
-        found["growth"] = float(history.columns["area"][-1]) - 1
-        found["area"] = float(history.columns["area"][-1]) / grown
-    return found
+        expected_area = float(np.prod(1 + increments(history) ** 2)) if scene.run.rotation == "first-order" else 1.0
+        values["growth"] = float(history.columns["area"][-1]) - 1
+        values["area"] = float(history.columns["area"][-1]) / expected_area
+    return values
 
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    made = ((STATIC, static), (SLIDE, slide), *((name, fall) for name in (*FROM_REST, *LET_GO)))
-    return tuple(
-        Derived(case.name, ROW, ((case.name, "dda"),), functools.partial(compute, case))
-        for name, compute in made
-        for case in cases(name)
-    )
+    computed_rows = ((STATIC, static), (SLIDE, slide), *((name, fall) for name in (*FROM_REST, *LET_GO)))
+    rows = []
+    for name, compute in computed_rows:
+        for case in cases(name):
+            rows.append(Derived(case.name, ROW, ((case.name, "dda"),), functools.partial(compute, case)))
+    return tuple(rows)
 
 
 def gates() -> tuple[Gate, ...]:
@@ -101,12 +104,13 @@ def sliding_gates() -> Iterator[Gate]:
     stands = "friction above the slope: a block without velocities comes to rest; band: rounding"
     slips = "friction below the slope: dt^2 / 2 g (sin b - tan(phi) cos b) a step; band: what is left of settling"
     for case in cases(STATIC):
-        steady = sliding_acceleration(case) > 0
-        edges = about(1.0, 1e-6) if steady else about(0.0, ROUNDING)
-        yield Gate(case.name, (ROW,), "moved", *edges, slips if steady else stands)
+        if sliding_acceleration(case) > 0:
+            yield Gate(case.name, (ROW,), "moved", *about(1.0, 1e-6), slips)
+        else:
+            yield Gate(case.name, (ROW,), "moved", *about(0.0, ROUNDING), stands)
     for case in cases(SLIDE):
-        way = sliding_acceleration(case) * case.time.duration**2 / 2
-        offset = coefficient(case) * settlement(case) / way
+        sliding_distance = sliding_acceleration(case) * case.time.duration**2 / 2
+        offset = coefficient(case) * settlement(case) / sliding_distance
         why = "both corners slip: the free motion of the scheme, exact for constant acceleration; band: rounding"
         yield Gate(case.name, (ROW,), "identity", 0.0, ROUNDING, why)
         why = "rigid block; above: tan(phi) times the settlement, twice that of both corners at rest"
@@ -126,7 +130,8 @@ def toppling_gates() -> Iterator[Gate]:
             yield Gate(case.name, (ROW,), "turned", 0.0, 2 * settlement(case) / block.width, stands)
             continue
         exact = block.fall_time(beyond(case), TURN)
-        low, high = 1 - lifted(case) / exact, 1 + straight(case)
+        low = 1 - lifted(case) / exact
+        high = 1 + straight(case)
         yield Gate(case.name, (ROW,), "time", low, high, why)
 
 
@@ -135,7 +140,8 @@ def lifted(scene: Scene) -> float:
 
     An impulse J gives the turn the rate J a / I, and psi = psi0 cosh(P t) is then ahead by that over psi0 P^2.
     """
-    block, p = rectangle(scene), scene.contact.stiffness
+    block = rectangle(scene)
+    p = scene.contact.stiffness
     m = scene.block.density * block.width * block.height
     impulse = m * block.gravity * math.cos(math.radians(scene.load.slope)) * math.pi * math.sqrt(m / (2 * p))
     inertia = m * (block.width**2 + block.height**2) / 3
@@ -150,19 +156,21 @@ def straight(scene: Scene) -> float:
 def falling_gates() -> Iterator[Gate]:
     """Yield the gates on towers that are let go on their lower corner, by exact and by first-order rotation."""
     timed = "rigid block about its lower corner, by quadrature; the corner settles by up to 2 m g / p, seen from psi"
-    kept = "exact rotation keeps the outline; band: the strain of four times the weight"
+    exact_reason = "exact rotation keeps the outline; band: the strain of four times the weight"
     product = "a step's first-order rotation multiplies the area by 1 + r^2; band: the strain of four times the weight"
     growing = (
         "dt times the integral of the squared rate of a rigid block; band: twice what the growth g itself changes, "
         "P T g / 2 by P^2 ~ 1/R and 3 g / 4 by the centroid, which gets further from the corner and is sped up by it"
     )
     for case in cases(*LET_GO):
-        block, grown = rectangle(case), growth(case)
+        block = rectangle(case)
+        grown = growth(case)
         exact = case.run.rotation == "exact"
         strain = 4 * case.block.density * block.gravity * block.height / case.block.young
         slack = 2 * settlement(case) / block.width / beyond(case) + (0.0 if exact else grown) + straight(case)
         yield Gate(case.name, (ROW,), "time", *about(1.0, slack), timed)
-        yield Gate(case.name, (ROW,), "area", *about(1.0, strain), kept if exact else product)
+        why = exact_reason if exact else product
+        yield Gate(case.name, (ROW,), "area", *about(1.0, strain), why)
         if not exact:
             yield Gate(case.name, (ROW,), "growth", *about(grown, 2 * slowed(case) * grown**2 + strain), growing)
 

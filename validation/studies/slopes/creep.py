@@ -8,7 +8,7 @@ stop; friction that lags by a pass, and dead bands, let it go on, the faster the
 from __future__ import annotations
 
 import functools
-import math
+import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -18,16 +18,21 @@ from validation.engine.finished import Derived, Finished
 from validation.gates import friction
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
+from validation.metrics.values import or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, LAGS, OTHER, about, cases
+from validation.studies.bands import APART, LAGS, OTHER, about, cases, fitted_order
 from validation.studies.declaration import Study
 
-EXACT, STEPS, LAGGED = "creep-exact", "creep-steps", "creep-lagged"
-STIFFNESS, DAMPED = "creep-stiffness", "creep-damped"
+EXACT = "creep-exact"
+STEPS = "creep-steps"
+LAGGED = "creep-lagged"
+STIFFNESS = "creep-stiffness"
+DAMPED = "creep-damped"
 REFINED = {"slope-exact-constant": 1.0, "slope-exact-average": 2.0}
 NEXT = 0.1  # of an order: what the next order adds over three halvings
-EVENTS, DDA = "block-events", "dda"
+EVENTS = "block-events"
+DDA = "dda"
 # Mean slip of the corners of the exact block at 0.1, 0.2, 0.3 and 0.4 s by an independent program [m], 30 degrees.
 KNOWN = (1.790e-3, 3.732e-3, 5.532e-3, 7.394e-3)
 RATES = {30.0: 18.7e-3, 22.0: 27.3e-3}  # its speed [m/s] over some tenths of a second
@@ -63,33 +68,37 @@ def _base(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, solver)
     if history is None:
         return {}
-    way, n = slid(history.columns), len(history.time)
-    found: dict[str, Value] = {f"way.{k}": float(way[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
-    speed = (way[-1] - way[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
-    whole = way[-1] / history.time[-1]
+    mean_slide = slid(history.columns)
+    n = len(history.time)
+    values: dict[str, Value] = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
+    speed = (mean_slide[-1] - mean_slide[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
+    mean_speed = mean_slide[-1] / history.time[-1]
     scale = friction.creep_scale(scene)
-    return found | {"speed": float(speed), "mean_speed": float(whole), "share": float(whole / scale)}
+    return values | {"speed": float(speed), "mean_speed": float(mean_speed), "share": float(mean_speed / scale)}
 
 
 def _nearest(step: float) -> Derived:
     """Return the row that lays the creep of three like springs beside the program's."""
-    own = tuple(case for case in cases(LAGGED) if case.time.step == step)
-    needs = tuple((case.name, DDA) for case in own)
-    return Derived(LAGGED, f"at {1e3 * step:g} ms", needs, functools.partial(_beside, own, PROGRAM[step]))
+    like_cases = tuple(case for case in cases(LAGGED) if case.time.step == step)
+    needs = tuple((case.name, DDA) for case in like_cases)
+    return Derived(LAGGED, f"at {1e3 * step:g} ms", needs, functools.partial(_beside, like_cases, PROGRAM[step]))
 
 
-def _beside(own: tuple[Scene, ...], way: float, finished: Finished) -> Mapping[str, Value]:
+def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Mapping[str, Value]:
     """Return how far the program's way is from those of the springs, over what their spread and its digits allow."""
-    histories = [finished.history(case.name, DDA) for case in own]
-    ways = [float(h.columns["horizontal_displacement"][-1]) for h in histories if h is not None]
-    middle, spread = (min(ways) + max(ways)) / 2, max(ways) - min(ways)
-    allowed = max(1.5 * spread + DIGIT, SHUFFLED * way if way > 0.1 else 0.0)
-    return {"distance": (way - middle) / allowed, "way": middle, "spread": spread}
+    histories = [finished.history(case.name, DDA) for case in like_cases]
+    slides = [float(h.columns["horizontal_displacement"][-1]) for h in histories if h is not None]
+    middle = (min(slides) + max(slides)) / 2
+    spread = max(slides) - min(slides)
+    allowed = 1.5 * spread + DIGIT
+    if program_slide > 0.1:
+        allowed = max(allowed, SHUFFLED * program_slide)
+    return {"distance": (program_slide - middle) / allowed, "way": middle, "spread": spread}
 
 
 def _order(name: str) -> Derived:
     levels = tuple(cases(name))
-    needs = tuple((case.name, solver) for case in levels for solver in (DDA, EVENTS))
+    needs = tuple(itertools.product((case.name for case in levels), (DDA, EVENTS)))
     return Derived(name, "order", needs, functools.partial(_fitted, levels))
 
 
@@ -97,14 +106,14 @@ def _fitted(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value
     """Return the orders, with their sign, fitted to the errors of both displacements against the exact motion."""
     errors: dict[str, list[float]] = {"displacement": [], "horizontal": []}
     for case in levels:
-        one, exact = finished.history(case.name, DDA), finished.history(case.name, EVENTS)
-        if one is None or exact is None:
+        history = finished.history(case.name, DDA)
+        exact = finished.history(case.name, EVENTS)
+        if history is None or exact is None:
             return {}
-        for name, found in errors.items():
-            error = pair(f"{name}.l2", one, exact)
-            found.append(error if isinstance(error, float) else math.nan)
-    sizes = np.log([case.time.step for case in levels])
-    return {name: float(np.polyfit(sizes, np.log(found), 1)[0]) for name, found in errors.items()}
+        for name, norms in errors.items():
+            norms.append(or_nan(pair(f"{name}.l2", history, exact)))
+    steps = [case.time.step for case in levels]
+    return {name: fitted_order(steps, norms) for name, norms in errors.items()}
 
 
 def gates() -> tuple[Gate, ...]:
@@ -114,12 +123,12 @@ def gates() -> tuple[Gate, ...]:
 
 def exact_gates() -> Iterator[Gate]:
     """Yield the gates on the exact creep."""
-    said = "an independent program, by events; half a unit of its last digit"
+    digits_reason = "an independent program, by events; half a unit of its last digit"
     for case in cases(EXACT):
         phi = case.contact.friction or 0.0
         if phi == 30:
-            for k, way in enumerate(KNOWN, start=1):
-                yield Gate(case.name, ("base",), f"way.{k}", *about(way, HALF), said, OTHER, HALF)
+            for k, mean_slide in enumerate(KNOWN, start=1):
+                yield Gate(case.name, ("base",), f"way.{k}", *about(mean_slide, HALF), digits_reason, OTHER, HALF)
         rate = RATES[phi]
         why = "an independent program, the speed over some tenths of a second; 5 % for where they begin and end"
         yield Gate(case.name, ("base",), "speed", *about(rate, 0.05 * rate), why, OTHER, 5e-5)
@@ -135,8 +144,8 @@ def step_gates() -> Iterator[Gate]:
             stands = "constant acceleration damps the normal ringing: the block stands; band: rounding"
             yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
             if t.step in STOPS:
-                said = "an independent program: where it stands; half a unit of its last digit"
-                yield Gate(case.name, ("base",), "way.4", *about(STOPS[t.step], STOPPED), said, OTHER, STOPPED)
+                digits_reason = "an independent program: where it stands; half a unit of its last digit"
+                yield Gate(case.name, ("base",), "way.4", *about(STOPS[t.step], STOPPED), digits_reason, OTHER, STOPPED)
         elif t.discount < 1:
             stands = "2 % a step damp the normal ringing: the block stands; band: rounding"
             yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
@@ -162,13 +171,14 @@ def stiffness_gates() -> Iterator[Gate]:
 
 def lagged_gates() -> Iterator[Gate]:
     """Yield the gates on lagged friction beside an established program."""
-    for step, way in PROGRAM.items():
+    for step, program_slide in PROGRAM.items():
         why = (
-            f"an established program creeps {1e3 * way:g} mm in a second; band: 1.5 times the spread of springs softer "
-            "by 0, 0.2 and 0.4 %, as its base is, and half a unit of its last digit"
+            f"an established program creeps {1e3 * program_slide:g} mm in a second; band: 1.5 times the spread of "
+            "springs softer by 0, 0.2 and 0.4 %, as its base is, and half a unit of its last digit"
         )
-        chaos = "; 20 % at the finest step, where rounding decides the order of stick and slip" if way > 0.1 else ""
-        yield Gate(LAGGED, (f"at {1e3 * step:g} ms",), "distance", -1.0, 1.0, why + chaos, OTHER, 1e-3)
+        if program_slide > 0.1:
+            why += "; 20 % at the finest step, where rounding decides the order of stick and slip"
+        yield Gate(LAGGED, (f"at {1e3 * step:g} ms",), "distance", -1.0, 1.0, why, OTHER, 1e-3)
 
 
 def order_gates() -> Iterator[Gate]:

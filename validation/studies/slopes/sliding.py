@@ -24,21 +24,21 @@ from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.bands import APART, LAGS, about, cases
 from validation.studies.declaration import Study
 
-SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN, QUAKE, QUAKE_EXACT = (
-    "slope-sliding",
-    "slope-average",
-    "slope-drag",
-    "slope-threshold",
-    "slope-manual",
-    "slope-base",
-    "slope-quake",
-    "slope-quake-exact",
-)
+SLIDING = "slope-sliding"
+AVERAGE = "slope-average"
+DRAG = "slope-drag"
+THRESHOLD = "slope-threshold"
+MANUAL = "slope-manual"
+SHAKEN = "slope-base"
+QUAKE = "slope-quake"
+QUAKE_EXACT = "slope-quake-exact"
 IDENTITY = "sliding identity"
 ROUNDED = 1e-10  # of the run-out: two formulations over 500 steps
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
 RIGID = "sliding block"
-CYCLES, RATE = 4, 2.0  # of the shaking, and its frequency [Hz]
+# The shaking
+CYCLES = 4
+RATE = 2.0  # Hz
 NEAR = 1e-4  # deg: the sliding acceleration is a straight line over 0.02 deg to (0.01 deg)^2 / 2
 
 
@@ -59,7 +59,8 @@ def derived() -> tuple[Derived, ...]:
 
 def sliding(scene: Scene, history: History) -> np.ndarray:
     """Return u_t + tan(phi) u_n of the centroid [m]."""
-    along, across = history.columns["horizontal_displacement"], history.displacement
+    along = history.columns["horizontal_displacement"]
+    across = history.displacement
     return np.asarray(along + friction.coefficient(scene) * across)
 
 
@@ -68,7 +69,8 @@ def acceleration(scene: Scene, history: History) -> float:
 
     The scheme of constant acceleration keeps D = D0 + V0 t + a t^2 / 2 at any three instants.
     """
-    z, n = sliding(scene, history), len(history.time)
+    z = sliding(scene, history)
+    n = len(history.time)
     quarter = n // 4
     middle = n - 1 - quarter
     gained = z[n - 1] - 2 * z[middle] + z[middle - quarter]
@@ -82,9 +84,9 @@ def _identity(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
         return {"acceleration": acceleration(scene, history)}
     free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
-    off = np.max(np.abs(sliding(scene, history) - free)) / friction.run_out(scene, scene.time.duration)
+    difference = np.max(np.abs(sliding(scene, history) - free)) / friction.run_out(scene, scene.time.duration)
     offset = history.columns["horizontal_displacement"][-1] - free[-1]
-    return {"largest difference": float(off), "offset": float(offset)}
+    return {"largest difference": float(difference), "offset": float(offset)}
 
 
 def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
@@ -99,13 +101,14 @@ def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
 
 def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
-    found = []
+    accelerations = []
     for case in pair:
         history = finished.history(case.name, "dda")
         if history is None:
             return {}
-        found.append(acceleration(case, history))
-    (low, high), (below, above) = (case.load.slope for case in pair), found
+        accelerations.append(acceleration(case, history))
+    low, high = (case.load.slope for case in pair)
+    below, above = accelerations
     return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
 
 
@@ -126,9 +129,9 @@ def gates() -> tuple[Gate, ...]:
 
 def identity_gates() -> Iterator[Gate]:
     """Yield the gates on the sliding identity."""
-    said = "u_t + tan(phi) u_n is the free recursion under g (sin b - tan(phi) cos b); band: rounding over the steps"
+    why = "u_t + tan(phi) u_n is the free recursion under g (sin b - tan(phi) cos b); band: rounding over the steps"
     for case in cases(SLIDING, AVERAGE, DRAG):
-        yield Gate(case.name, (IDENTITY,), "largest difference", 0.0, ROUNDED, said)
+        yield Gate(case.name, (IDENTITY,), "largest difference", 0.0, ROUNDED, why)
 
 
 def offset_gates() -> Iterator[Gate]:
@@ -143,9 +146,9 @@ def drag_gates() -> Iterator[Gate]:
     """Yield the gates on the way that a block slides under a discount."""
     why = "closed form of the discount as a drag, with the penalty offset; band: what still swings of the offset"
     for case in cases(DRAG):
-        moved, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+        free_displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
         offset = friction.penalty_offset(case)
-        edges = about(float(moved[-1]) + offset, SETTLED * offset)
+        edges = about(float(free_displacement[-1]) + offset, SETTLED * offset)
         yield Gate(case.name, ("dda",), "horizontal.final", *edges, why)
 
 
@@ -154,14 +157,16 @@ def threshold_gates() -> Iterator[Gate]:
     angle = friction.threshold_angle(next(cases(THRESHOLD)))
     why = "the angle of friction; band: the curvature of the acceleration over a hundredth of a degree"
     yield Gate(THRESHOLD, ("threshold",), "angle", *about(angle, NEAR), why)
-    said = "g (sin b - tan(phi) cos b) once it slides; band: 1e-6 of gravity along the slope"
+    rate_reason = "g (sin b - tan(phi) cos b) once it slides; band: 1e-6 of gravity along the slope"
     for case in cases(THRESHOLD, MANUAL):
         if case.name.startswith(THRESHOLD) or (case.contact.friction or 0) < case.load.slope:
             edges = about(friction.sliding_acceleration(case), 1e-6 * friction.along(case))
-            yield Gate(case.name, (IDENTITY,), "acceleration", *edges, said)
+            yield Gate(case.name, (IDENTITY,), "acceleration", *edges, rate_reason)
         else:
-            still = "its friction is above the slope, by a tenth of a degree at least: it stands; band: rounding"
-            yield Gate(case.name, ("dda",), "contact.slip_rate", 0.0, 1e-9, still)
+            stands_reason = (
+                "its friction is above the slope, by a tenth of a degree at least: it stands; band: rounding"
+            )
+            yield Gate(case.name, ("dda",), "contact.slip_rate", 0.0, 1e-9, stands_reason)
 
 
 def energy_gates() -> Iterator[Gate]:
@@ -173,9 +178,9 @@ def energy_gates() -> Iterator[Gate]:
         if case.time.delta == 1:
             yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
     for case in cases(SLIDING):
-        pressed = case.block.mass * friction.across(case)
-        held = friction.coefficient(case) * pressed + case.block.mass * friction.adhesion(case)
-        lost = held * friction.run_out(case, case.time.duration)
+        normal_force = case.block.mass * friction.across(case)
+        sliding_resistance = friction.coefficient(case) * normal_force + case.block.mass * friction.adhesion(case)
+        lost = sliding_resistance * friction.run_out(case, case.time.duration)
         why = "tan(phi) m g cos b + c a times the way; band: the swinging of the normal force at first, 1e-3"
         yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
 
@@ -225,10 +230,11 @@ def quake_gates() -> Iterator[Gate]:
 def _late(case: Scene, switches: tuple[tuple[float, int], ...]) -> float:
     """Return how far a block on shear springs may be from a rigid mass that slides between some switches [m]."""
     ends = [*(t for t, _ in switches[1:]), case.time.duration]
-    lasts = [end - t for (t, way), end in zip(switches, ends, strict=True) if way]
+    durations = [end - t for (t, direction), end in zip(switches, ends, strict=True) if direction]
     resisted = friction.coefficient(case) * friction.across(case)
-    swing = math.sqrt(2 * case.contact.shear / case.block.mass)
-    return resisted * (math.fsum(lasts) * (1 / swing + case.time.step) + 2 * len(lasts) / swing**2)
+    shear_frequency = math.sqrt(2 * case.contact.shear / case.block.mass)
+    late = math.fsum(durations) * (1 / shear_frequency + case.time.step)
+    return resisted * (late + 2 * len(durations) / shear_frequency**2)
 
 
 def quake_exact_gates() -> Iterator[Gate]:

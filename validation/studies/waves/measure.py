@@ -47,7 +47,8 @@ class Guide:
         """Return the guide of a scene at a number of blocks a wavelength of the continuum."""
         section = column_of(scene)
         layer = section.layer[0]
-        height, modulus = layer.thickness / layer.blocks, section.modulus(layer)
+        height = layer.thickness / layer.blocks
+        modulus = section.modulus(layer)
         column = waves.Column(height, layer.density, modulus, section.glue)
         speed = (modulus / layer.density) ** 0.5
         omega = 2 * np.pi * speed / (blocks * height)
@@ -58,7 +59,7 @@ class Guide:
         """Wavenumber of the closed form [rad/m]."""
         return complex(self.column.wavenumber(self.stepping.squared_frequency(self.omega)))
 
-    def told(self, k: complex, wavelengths: float = 10.0) -> tuple[float, float]:
+    def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> tuple[float, float]:
         """Return the error of the phase speed of a wavenumber, and the share left after some wavelengths."""
         distance = wavelengths * 2 * np.pi * self.speed / self.omega
         return self.omega / k.real / self.speed - 1, float(np.exp(-abs(k.imag) * distance))

@@ -19,10 +19,13 @@ from validation.studies.waves.response import amplitudes
 from validation.studies.waves.rows import travelling
 from validation.studies.waves.study import SITE, usual_site
 
-BLOCKS, COURANTS = (8, 10, 16, 20, 40, 100), (0.1, 0.25, 0.5, 1.0)
+BLOCKS = (8, 10, 16, 20, 40, 100)
+COURANTS = (0.1, 0.25, 0.5, 1.0)
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (1 / 3, 0.6))
-DISCOUNTS, GLUES = (1.0, 0.99), (math.inf, 1.0, 10.0, 100.0, 1e4)
-JOINTS, IMPEDANCES = (0.25, 0.5, 1.0, 2.0), (0.5, 1.0, 2.0)
+DISCOUNTS = (1.0, 0.99)
+GLUES = (math.inf, 1.0, 10.0, 100.0, 1e4)
+JOINTS = (0.25, 0.5, 1.0, 2.0)
+IMPEDANCES = (0.5, 1.0, 2.0)
 UNIT = 1.0  # h, rho and E of the columns of the tables, whose numbers do not depend on them
 
 README = """\
@@ -74,7 +77,8 @@ def write_waves_pack(directory: Path) -> int:
     InputError
         The directory cannot be made or written.
     """
-    part, count = Part(directory / "waves"), 0
+    part = Part(directory / "waves")
+    count = 0
     tables = {"waves": travel(), "joints": joints(), "bases": bases(), "response": amplitudes()}
     for name, rows in ((name, list(table)) for name, table in tables.items()):
         part.add_table(name, rows)
@@ -91,18 +95,18 @@ def write_waves_pack(directory: Path) -> int:
 
 def scenes() -> tuple[Scene, ...]:
     """Return the scenes of the pack: those of travelling waves that DDA runs, and the site twice."""
-    found = {wave.scene.name: wave.scene for wave in travelling() if wave.scene.time.steps < 5000}
+    scenes_by_name = {wave.scene.name: wave.scene for wave in travelling() if wave.scene.time.steps < 5000}
     usual = usual_site()
     site = usual.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.step": 2e-3, "time.steps": 4500})
-    return (*found.values(), site.model_copy(update={"name": SITE}), usual)
+    return (*scenes_by_name.values(), site.model_copy(update={"name": SITE}), usual)
 
 
 def _add_scene(scene: Scene, part: Part) -> None:
     """Add a scene, its DDA history and, of the site, the exact one."""
-    shown = scene
+    packed_scene = scene
     if scene.input.record is not None:
-        shown = scene.with_values({"input.record": Path(scene.input.record).name})
-    part.add_scene(shown)
+        packed_scene = scene.with_values({"input.record": Path(scene.input.record).name})
+    part.add_scene(packed_scene)
     for solver in ("dda", "layers") if scene.input.record is not None else ("dda",):
         part.add_history(scene.name, solver, history_of(scene, solver))
 
@@ -110,30 +114,31 @@ def _add_scene(scene: Scene, part: Part) -> None:
 def _cases(discounts: tuple[float, ...]) -> Iterator[tuple[dict[str, float], waves.Stepping, float]]:
     """Yield the first columns of a table, the stepping and w of each case, for h = rho = E = 1."""
     for (alpha, delta), gg, courant, blocks in itertools.product(SCHEMES, discounts, COURANTS, BLOCKS):
-        named = {"alpha": alpha, "delta": delta, "gg": gg, "courant": courant, "blocks": float(blocks)}
-        yield named, waves.Stepping(courant, alpha, delta, gg), 2 * math.pi / blocks
+        parameters = {"alpha": alpha, "delta": delta, "gg": gg, "courant": courant, "blocks": float(blocks)}
+        yield parameters, waves.Stepping(courant, alpha, delta, gg), 2 * math.pi / blocks
 
 
 def travel() -> Iterator[dict[str, float]]:
     """Yield speed and loss of waves."""
-    for named, stepping, w in _cases(DISCOUNTS):
+    for parameters, stepping, w in _cases(DISCOUNTS):
         for glue in GLUES:
-            column = waves.Column(UNIT, UNIT, UNIT, None if math.isinf(glue) else glue)
-            left, speed = column.travelled(stepping, w, 10 * 2 * math.pi / w)
-            yield named | {"glue": glue, "speed_error": float(speed), "left": float(left)}
+            stiffness = None if math.isinf(glue) else glue
+            column = waves.Column(UNIT, UNIT, UNIT, stiffness)
+            remaining_share, speed = column.travelled(stepping, w, 10 * 2 * math.pi / w)
+            yield parameters | {"glue": glue, "speed_error": float(speed), "left": float(remaining_share)}
 
 
 def joints() -> Iterator[dict[str, float]]:
     """Yield what joints let through and send back."""
-    for named, stepping, w in _cases((1.0,)):
+    for parameters, stepping, w in _cases((1.0,)):
         for ratio in JOINTS:
             T, R = waves.joint_in_column(waves.Column(UNIT, UNIT, UNIT), stepping.squared_frequency(w), ratio * w)
-            yield named | {"joint": ratio, "transmitted": float(np.abs(T)), "reflected": float(np.abs(R))}
+            yield parameters | {"joint": ratio, "transmitted": float(np.abs(T)), "reflected": float(np.abs(R))}
 
 
 def bases() -> Iterator[dict[str, float]]:
     """Yield what transmitting bases send back."""
-    for named, stepping, w in _cases((1.0,)):
+    for parameters, stepping, w in _cases((1.0,)):
         for impedance in IMPEDANCES:
             R = base_reflection(waves.Column(UNIT, UNIT, UNIT), stepping, w, impedance)
-            yield named | {"impedance": impedance, "reflected": float(np.abs(R))}
+            yield parameters | {"impedance": impedance, "reflected": float(np.abs(R))}

@@ -28,8 +28,10 @@ from validation.scenes.scene import SCENE_DIRECTORY, Scene, load_scene
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
 
-BASE, DAMPING = "response-base", "response-damping"
-FREQUENCIES, LOW = (20.0, 52.0, 80.0, 150.0), (5.0, 10.0, 20.0)  # Hz
+BASE = "response-base"
+DAMPING = "response-damping"
+FREQUENCIES = (20.0, 52.0, 80.0, 150.0)  # Hz
+LOW = (5.0, 10.0, 20.0)  # Hz
 WINDOWS = {BASE: 250, DAMPING: 200}  # last steps, whole periods of all frequencies of a record
 MESH = 8  # elements along the height, linear: their closed form is that of a column of welded blocks
 SOLVERS = ("dda", "fem")
@@ -59,7 +61,7 @@ class Answer:
             return vibration.elements(self.scene, w2, MESH)
         return {"dda": vibration.block, "bar": vibration.bar}[solver](self.scene, w2)
 
-    def found(self, solver: str, frequency: float) -> Response:
+    def reported(self, solver: str, frequency: float) -> Response:
         """Return what the solver reports."""
         return response(self.scene, frequency, solver, self.exact)
 
@@ -86,13 +88,15 @@ def row_name(solver: str, frequency: float) -> str:
 
 def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Mapping[str, Value]:
     """Return amplitudes under the pressure and how far they are from the closed form; of elements also from the bar."""
-    found, closed = answer.found(solver, frequency), answer.closed(solver, frequency)
+    reported = answer.reported(solver, frequency)
+    closed = answer.closed(solver, frequency)
     values: dict[str, Value] = {}
     for column, part in COLUMNS.items():
-        amplitude, expected = complex(found.columns[column][0]), complex(getattr(closed, column)[0])
+        amplitude = complex(reported.columns[column][0])
+        expected = complex(getattr(closed, column)[0])
         values |= {part: abs(amplitude), f"{part}.off": abs(amplitude / expected - 1)}
         if solver == "fem":
-            bar = complex(answer.found("bar", frequency).columns[column][0])
+            bar = complex(answer.reported("bar", frequency).columns[column][0])
             values[f"{part}.mesh"] = abs(amplitude) / abs(bar) - 1
     return values
 
@@ -116,7 +120,8 @@ def mesh_gates() -> Iterator[Gate]:
     why = f"the error of {MESH} linear elements at this frequency, in closed form; band: rounding times conditioning"
     for answer in answers():
         for f in FREQUENCIES:
-            fem, bar = answer.closed("fem", f), answer.closed("bar", f)
+            fem = answer.closed("fem", f)
+            bar = answer.closed("bar", f)
             for column, part in COLUMNS.items():
                 mesh = float(abs(getattr(fem, column)[0] / getattr(bar, column)[0]) - 1)
                 half = float(fem.band[0] + bar.band[0]) * (1 + abs(mesh))
@@ -129,7 +134,8 @@ def amplitudes() -> Iterator[dict[str, Any]]:
         t = answer.scene.time
         scheme = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount, "step": 0.0 if answer.exact else t.step}
         for solver, f in itertools.product(("dda", "bar"), FREQUENCIES):
-            row, closed = scheme | {"model": solver, "frequency": f}, answer.closed(solver, f)
+            row = scheme | {"model": solver, "frequency": f}
+            closed = answer.closed(solver, f)
             for column in COLUMNS:
                 size, phase = polar(getattr(closed, column))
                 row |= {column: float(size[0]), f"{column}_phase": float(phase[0])}
@@ -166,12 +172,13 @@ def _record(scene: Scene) -> str:
 
 def _stepped(scene: Scene, solver: str, frequency: float, finished: Finished) -> Mapping[str, Value]:
     """Return amplitudes per metre of the base, and how far from the response, of those of the record in all."""
-    seen, told = steady(finished, scene, solver, frequency), response(scene, FREQUENCIES, solver)
+    steady_state = steady(finished, scene, solver, frequency)
+    reported = response(scene, FREQUENCIES, solver)
     values: dict[str, Value] = {}
     for column, part in COLUMNS.items():
-        expected = told.columns[column]
-        apart = abs(seen[column] - expected[FREQUENCIES.index(frequency)]) / abs(expected).sum()
-        values |= {part: abs(seen[column]), f"{part}.off": float(apart)}
+        expected = reported.columns[column]
+        difference = abs(steady_state[column] - expected[FREQUENCIES.index(frequency)]) / abs(expected).sum()
+        values |= {part: abs(steady_state[column]), f"{part}.off": float(difference)}
     return values
 
 
@@ -183,12 +190,12 @@ def stepped_gates() -> Iterator[Gate]:
     )
     for case in cases(BASE):
         for solver in SOLVERS:
-            for f in FREQUENCIES:
-                for part in COLUMNS.values():
-                    yield Gate(case.name, (row_name(solver, f),), f"{part}.off", 0.0, left(case, solver), why)
+            band = remaining_transients(case, solver)
+            for f, part in itertools.product(FREQUENCIES, COLUMNS.values()):
+                yield Gate(case.name, (row_name(solver, f),), f"{part}.off", 0.0, band, why)
 
 
-def left(scene: Scene, solver: str) -> float:
+def remaining_transients(scene: Scene, solver: str) -> float:
     """Return what transients and rounding leave of the amplitudes of a window [-].
 
     A mode loses the greater modulus of its two eigenvalues a step. That falls with the frequency and rises again
@@ -197,13 +204,14 @@ def left(scene: Scene, solver: str) -> float:
     """
     E, _ = moduli(scene)
     w, h = size(scene)
-    p, rho = scene.contact.stiffness, scene.block.density
+    p = scene.contact.stiffness
+    rho = scene.block.density
     if solver == "fem":
         ends = bar_frequency(scene), np.sqrt(12 * E / rho) * scene.fem.elements / h
     else:
         first = dda_frequency(scene)
         ends = first, np.sqrt(24 * p * E / (rho * rho * w * h * h * h)) / first
-    slowest = max(abs(root) for frequency in ends for root in roots(scene, float(frequency)))
+    slowest = max(max(map(abs, roots(scene, float(frequency)))) for frequency in ends)
     return float(slowest ** (scene.time.steps - WINDOWS[_record(scene)]) + scene.time.steps * EPS + SOLVED)
 
 
@@ -213,9 +221,9 @@ def left(scene: Scene, solver: str) -> float:
 def _hidden(frequency: float, finished: Finished) -> Mapping[str, Value]:
     """Return |Im W| / |W| from the block's momentum, -W2 m v = P w, in the steps and in the response."""
     (scene,) = cases(DAMPING)
-    told = {name: complex(values[0]) for name, values in response(scene, frequency, "dda").columns.items()}
-    seen = steady(finished, scene, "dda", frequency)
-    return {f"damping.{name}": ratio(parts) for name, parts in (("steps", seen), ("response", told))}
+    reported = {name: complex(values[0]) for name, values in response(scene, frequency, "dda").columns.items()}
+    steady_state = steady(finished, scene, "dda", frequency)
+    return {f"damping.{name}": ratio(parts) for name, parts in (("steps", steady_state), ("response", reported))}
 
 
 def ratio(parts: Mapping[str, complex]) -> float:
@@ -229,13 +237,14 @@ def damping_gates() -> Iterator[Gate]:
     why = "(1/2, 1): |Im W| / |W| = sin(w dt / 4) exactly; band: half of the errors of the two amplitudes"
     (scene,) = cases(DAMPING)
     w = 2 * np.pi * np.array(LOW)
-    told = vibration.block(scene, Stepping.of(scene).squared_frequency(w), base=True)
+    closed_form = vibration.block(scene, Stepping.of(scene).squared_frequency(w), base=True)
     for at, f in enumerate(LOW):
-        exact, row = float(np.sin(w[at] * scene.time.step / 4)), (row_name("dda", f),)
-        sizes = (abs(amplitude) for amplitude in (told.displacement, told.contact_pressure))
-        lost = left(scene, "dda") * sum(float(size.sum() / size[at]) for size in sizes) / 2
-        yield Gate(DAMPING, row, "damping.steps", *about(exact, lost), why)
-        yield Gate(DAMPING, row, "damping.response", *about(exact, float(told.band[at])), why)
+        exact = float(np.sin(w[at] * scene.time.step / 4))
+        row = (row_name("dda", f),)
+        sizes = (abs(amplitude) for amplitude in (closed_form.displacement, closed_form.contact_pressure))
+        band_width = remaining_transients(scene, "dda") * sum(float(size.sum() / size[at]) for size in sizes) / 2
+        yield Gate(DAMPING, row, "damping.steps", *about(exact, band_width), why)
+        yield Gate(DAMPING, row, "damping.response", *about(exact, float(closed_form.band[at])), why)
 
 
 # ---- the study ------------------------------------------------------------------------------------------------------
@@ -267,17 +276,17 @@ def gates() -> tuple[Gate, ...]:
 def curves() -> Mapping[str, Any]:
     """Return amplitude and phase over frequency: DDA as stepped, DDA exact in time, the continuum."""
     exact, stepped, _ = answers()
-    found = {
-        "dda as stepped": stepped.found("dda", DRAWN),  # type: ignore[arg-type]
-        "dda, exact in time": exact.found("dda", DRAWN),  # type: ignore[arg-type]
+    responses = {
+        "dda as stepped": stepped.reported("dda", DRAWN),  # type: ignore[arg-type]
+        "dda, exact in time": exact.reported("dda", DRAWN),  # type: ignore[arg-type]
         "continuum": response(exact.scene, DRAWN, "continuum"),
     }
-    return {"frequency": _short(DRAWN), "curves": [_curve(name, told) for name, told in found.items()]}
+    return {"frequency": _short(DRAWN), "curves": [_curve(name, reported) for name, reported in responses.items()]}
 
 
-def _curve(name: str, told: Response) -> dict[str, Any]:
-    parts = {column: [_short(part) for part in polar(values)] for column, values in told.columns.items()}
-    return {"name": name, "solver": told.solver, "exact": told.exact, "columns": parts}
+def _curve(name: str, reported: Response) -> dict[str, Any]:
+    parts = {column: [_short(part) for part in polar(values)] for column, values in reported.columns.items()}
+    return {"name": name, "solver": reported.solver, "exact": reported.exact, "columns": parts}
 
 
 def _short(values: Array) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -16,13 +17,14 @@ from validation.gates.wave_base import base_reflection
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import about, cases, near
+from validation.studies.bands import about, cases, fitted_order, near
 from validation.studies.waves.measure import Guide, column_of, joint_parts
 
 EXACT = 1e-10  # of k: what a measured wavenumber must keep
 JOINT = 1e-9  # of |T| and |R|
 COLUMNS = ("displacement_1", "displacement_2", "displacement_3")
-CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
+CONSTANT = (0.5, 1.0)
+AVERAGE = (0.25, 0.5)
 BLOCKS = {1.0e-3: (10,), 5.0e-4: (10,), 2.5e-4: (8, 10, 20), 1.0e-4: (40, 100)}  # a wavelength, by the time step
 OTHERS = {"waves-glue": (10,), "waves-discount": (20,), "waves-shear": (10, 16)}
 BASE = (8, 10, 20, 40)
@@ -72,40 +74,41 @@ class Wave:
         ValueError
             There is none.
         """
-        found = finished.history(self.scene.name, self.solver)
-        if found is None:
+        history = finished.history(self.scene.name, self.solver)
+        if history is None:
             raise ValueError(f"{self.scene.name}: must have a history of {self.solver}, got none")
-        return found
+        return history
 
 
 @functools.cache
 def travelling() -> tuple[Wave, ...]:
     """Return the waves whose speed and loss are measured."""
-    found = []
+    waves_measured = []
     for case in cases("waves-blocks"):
-        found += [Wave(case, blocks) for blocks in BLOCKS[case.time.step]]
-        found += [Wave(case, 10, "fem")] * (case.time.step == 5.0e-4)
+        waves_measured += [Wave(case, blocks) for blocks in BLOCKS[case.time.step]]
+        if case.time.step == 5.0e-4:
+            waves_measured.append(Wave(case, 10, "fem"))
     for scene, counts in OTHERS.items():
         for case in cases(scene):
-            found += [Wave(case, blocks) for blocks in counts]
-    return tuple(found)
+            waves_measured += [Wave(case, blocks) for blocks in counts]
+    return tuple(waves_measured)
 
 
 def travelled(wave: Wave, history: History) -> Mapping[str, Value]:
     """Return the measured error of the phase speed, and the share left after ten wavelengths."""
-    speed, left = wave.guide.told(wave.guide.measured(history, COLUMNS))
-    return {"wave.speed_error": speed, "wave.left": left}
+    speed, remaining_share = wave.guide.speed_error_and_share(wave.guide.measured(history, COLUMNS))
+    return {"wave.speed_error": speed, "wave.left": remaining_share}
 
 
 def travelling_gates() -> Iterator[Gate]:
     """Yield two gates a wave."""
     speed_reason = "closed form of glued affine blocks at the squared frequency of the scheme; band: 1e-10 of k"
-    left_reason = "the same, over ten wavelengths: 1e-10 of k is 63e-10 of what is left"
+    loss_reason = "the same, over ten wavelengths: 1e-10 of k is 63e-10 of what is left"
     for wave in travelling():
-        speed, left = wave.guide.told(wave.guide.wavenumber)
+        speed, remaining_share = wave.guide.speed_error_and_share(wave.guide.wavenumber)
         name = wave.scene.name, (wave.name,)
         yield Gate(*name, "wave.speed_error", *about(speed, 1.5 * EXACT), speed_reason)
-        yield Gate(*name, "wave.left", *near(left, 20 * np.pi * EXACT), left_reason)
+        yield Gate(*name, "wave.left", *near(remaining_share, 20 * np.pi * EXACT), loss_reason)
 
 
 # ---- joints ---------------------------------------------------------------------------------------------------------
@@ -114,7 +117,8 @@ def travelling_gates() -> Iterator[Gate]:
 @functools.cache
 def jointed() -> tuple[Wave, ...]:
     """Return the waves that meet a joint of kj = rho c w, with the scene of each."""
-    scene, found = load_scene("waves-joint"), []
+    scene = load_scene("waves-joint")
+    joint_waves = []
     for blocks, courant, (alpha, delta) in JOINTS:
         guide = Guide.of(scene, blocks)
         step = courant * guide.column.height / guide.speed
@@ -129,9 +133,10 @@ def jointed() -> tuple[Wave, ...]:
         }
         kind = "average" if (alpha, delta) == AVERAGE else "constant"
         case = scene.with_values(values).model_copy(update={"name": f"waves-joint-{blocks}-{kind}"})
-        found.append(Wave(case, blocks))
-        found += [Wave(case, blocks, "fem")] * ((blocks, kind) == (20, "average"))
-    return tuple(found)
+        joint_waves.append(Wave(case, blocks))
+        if (blocks, kind) == (20, "average"):
+            joint_waves.append(Wave(case, blocks, "fem"))
+    return tuple(joint_waves)
 
 
 def echoes(blocks: int, delta: float) -> float:
@@ -150,7 +155,8 @@ def joint_gates() -> Iterator[Gate]:
     discrete = "closed form of a joint between two columns of welded blocks; band: 1e-9"
     energy = "average acceleration takes no energy: what is not transmitted is reflected; band: 1e-9"
     for wave in jointed():
-        guide, name = wave.guide, (wave.scene.name, (wave.name,))
+        guide = wave.guide
+        name = (wave.scene.name, (wave.name,))
         W2 = guide.stepping.squared_frequency(guide.omega)
         T, R = waves.joint_in_column(guide.column, W2, column_of(wave.scene).joint[0].stiffness)
         yield Gate(*name, "joint.transmitted", *about(float(abs(T)), JOINT), discrete)
@@ -161,14 +167,14 @@ def joint_gates() -> Iterator[Gate]:
 
 def joint_order(finished: Finished) -> Mapping[str, Value]:
     """Return the order in 1/N at which |T| tends to that of the continuum, fitted with its sign."""
-    found = []
+    errors_by_blocks = []
     for wave in averaged():
         T, _ = joint_parts(wave.guide, wave.scene, wave.history(finished))
-        found.append((wave.blocks, abs(T) - float(waves.joint_transmission(1.0))))
-    blocks, errors = np.array(found).T
+        errors_by_blocks.append((wave.blocks, abs(T) - float(waves.joint_transmission(1.0))))
+    blocks, errors = np.array(errors_by_blocks).T
     if np.any(errors <= 0):
         return {"joint.order": "undefined"}
-    return {"joint.order": float(-np.polyfit(np.log(blocks), np.log(errors), 1)[0])}
+    return {"joint.order": -fitted_order(blocks, errors)}
 
 
 def averaged() -> list[Wave]:
@@ -188,7 +194,7 @@ def order_gate() -> Gate:
 @functools.cache
 def returned() -> tuple[Wave, ...]:
     """Return the waves that come down on a transmitting base."""
-    return tuple(Wave(case, blocks) for case in cases("waves-base") for blocks in BASE)
+    return tuple(itertools.starmap(Wave, itertools.product(cases("waves-base"), BASE)))
 
 
 def sent_back(wave: Wave, history: History) -> Mapping[str, Value]:
@@ -211,16 +217,16 @@ def base_gates() -> Iterator[Gate]:
 
 def curves() -> dict[str, list[dict[str, object]]]:
     """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
-    found: list[dict[str, object]] = []
+    drawn: list[dict[str, object]] = []
     blocks = np.geomspace(7.5, 110, 60)
     for case in cases("waves-blocks"):
         guide = Guide.of(case, 10)
         omega = 2 * np.pi * guide.speed / (blocks * guide.column.height)
         k = guide.column.wavenumber(guide.stepping.squared_frequency(omega))
-        left = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
+        remaining_share = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
         scheme = "(1/2, 1)" if (case.time.alpha, case.time.delta) == CONSTANT else "(1/4, 1/2)"
-        rounded = {"speed": omega / k.real / guide.speed - 1, "left": left, "blocks": blocks}
-        values = {name: [float(f"{x:.5g}") for x in part] for name, part in rounded.items()}
+        series = {"speed": omega / k.real / guide.speed - 1, "left": remaining_share, "blocks": blocks}
+        values = {name: [float(f"{x:.5g}") for x in part] for name, part in series.items()}
         courant = round(guide.speed * case.time.step / guide.column.height, 6)
-        found.append({"scheme": scheme, "courant": courant, **values})
-    return {"curves": found}
+        drawn.append({"scheme": scheme, "courant": courant, **values})
+    return {"curves": drawn}

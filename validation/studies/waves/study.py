@@ -12,7 +12,8 @@ from validation.studies.bands import APART
 from validation.studies.declaration import Study
 from validation.studies.waves import rows
 
-SITE, USUAL = "waves-site", {"time.alpha": 0.5, "time.delta": 1.0, "time.step": 0.01, "time.steps": 900}
+SITE = "waves-site"
+USUAL = {"time.alpha": 0.5, "time.delta": 1.0, "time.step": 0.01, "time.steps": 900}
 CONVERGED = 0.005  # of the surface's maximum and of the whole history
 
 

@@ -52,16 +52,16 @@ def points(results: Results, manifest: Manifest, prefix: str) -> list[Point]:
     rows = results.rows()
     compared = {(c["scene"], c["solver"], c["reference"]): c["metrics"] for c in manifest["comparisons"]}
     by_case = {(case["scene"], case["solver"]): rows[case["key"]] for case in manifest["cases"] if case["key"] in rows}
-    found = []
+    runs = []
     for case in manifest["cases"]:
         row = by_case.get((case["scene"], case["solver"]))
         scene = parse_scene(case["definition"], case["scene"])
         method = METHODS.get((case["solver"], scene.fem.degree if case["solver"] == "fem" else 1))
         quadratic_copy = case["solver"] != "fem" and "quadratic" in case["scene"]
-        wanted = scene_of(case["scene"]).startswith(prefix) and method is not None and not quadratic_copy
-        if wanted and row is not None and row.outcome is Outcome.COMPLETED:
-            found.append(Point(str(method), scene, row, _errors(case, row, by_case, compared)))
-    return found
+        is_drawn = scene_of(case["scene"]).startswith(prefix) and method is not None and not quadratic_copy
+        if is_drawn and row is not None and row.outcome is Outcome.COMPLETED:
+            runs.append(Point(str(method), scene, row, _errors(case, row, by_case, compared)))
+    return runs
 
 
 def _errors(
@@ -71,7 +71,7 @@ def _errors(
     compared: Mapping[tuple[str, str, str], Mapping[str, Value]],
 ) -> dict[tuple[str, str], float]:
     """Return the errors of a run against the bar (model form and mesh) and the continuum (everything)."""
-    found = {}
+    errors = {}
     for reference in ("bar", "continuum"):
         other = rows.get((case["scene"], reference))
         metrics = compared.get((case["scene"], case["solver"], reference))
@@ -82,8 +82,8 @@ def _errors(
             elif metrics is not None and other is not None:
                 value = _difference(row.metrics.get(metric), other.metrics.get(metric), relative="frequency" in name)
             if isinstance(value, int | float) and math.isfinite(value):
-                found[name, reference] = abs(float(value))
-    return found
+                errors[name, reference] = abs(float(value))
+    return errors
 
 
 def _difference(value: Value, reference: Value, relative: bool) -> Value:
@@ -94,24 +94,25 @@ def _difference(value: Value, reference: Value, relative: bool) -> Value:
 
 def front(candidates: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """Return the (cost, error) pairs that no other beats in both, cheapest first."""
-    best, kept = math.inf, []
+    best = math.inf
+    pareto_front = []
     for cost, error in sorted(candidates):
         if error < best:
             best = error
-            kept.append((cost, error))
-    return kept
+            pareto_front.append((cost, error))
+    return pareto_front
 
 
-def floor(found: Iterable[Point], quantity: str, reference: str) -> float | None:
+def floor(runs: Iterable[Point], quantity: str, reference: str) -> float | None:
     """Return the error of DDA at the finest step: its model form."""
-    own = [p for p in found if p.method == "dda" and (quantity, reference) in p.errors]
-    return min(own, key=lambda p: p.scene.time.step).errors[quantity, reference] if own else None
+    dda_runs = [run for run in runs if run.method == "dda" and (quantity, reference) in run.errors]
+    return min(dda_runs, key=lambda run: run.scene.time.step).errors[quantity, reference] if dda_runs else None
 
 
-def cheapest(found: Sequence[Point], error: float, reference: str = "continuum") -> Point | None:
+def cheapest(runs: Sequence[Point], error: float, reference: str = "continuum") -> Point | None:
     """Return the run of least seconds whose displacement and contact pressure are both within an error."""
-    reached = [point for point in found if point.reaches(error, reference)]
-    return min(reached, key=lambda p: p.seconds, default=None)
+    within_error = [point for point in runs if point.reaches(error, reference)]
+    return min(within_error, key=lambda run: run.seconds, default=None)
 
 
 def table(results: Results, manifest: Manifest) -> list[dict[str, Value]]:

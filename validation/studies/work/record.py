@@ -49,10 +49,10 @@ def load() -> dict[str, Any]:
         There is none, or it cannot be read.
     """
     try:
-        found: dict[str, Any] = strict.read(PATH, _Record, "write it with --update-record", "a record")
+        record: dict[str, Any] = strict.read(PATH, _Record, "write it with --update-record", "a record")
     except FileNotFoundError as error:
         raise InputError(f"{PATH}: the record of errors and work cannot be read: {error.strerror}") from None
-    return found
+    return record
 
 
 def measured(finished: Finished, cases: Sequence[tuple[str, str]]) -> dict[str, dict[str, Any]]:
@@ -73,20 +73,21 @@ def _entry(finished: Finished, case: str, solver: str) -> dict[str, Any]:
     return {"errors": errors, "work": work, "seconds": dict(row.seconds)}
 
 
-def ratios(now: Mapping[str, Entry], then: Mapping[str, Entry]) -> dict[str, float]:
+def ratios(current: Mapping[str, Entry], committed: Mapping[str, Entry]) -> dict[str, float]:
     """Return the worst ratio of an error, and of a work count, to the recorded one, over the cases of both.
 
     A number that only one of them has, or that is undefined, is infinitely worse; a part in which nothing can be
     compared is absent.
     """
-    found: dict[str, list[float]] = {}
-    for name in then.keys() & now.keys():
+    ratios_by_part: dict[str, list[float]] = {}
+    for name in committed.keys() & current.keys():
         for part, floor in (("errors", ROUNDING), ("work", 1)):
-            numbers, recorded = now[name][part], then[name][part]
-            found.setdefault(part, []).extend(
+            numbers = current[name][part]
+            recorded = committed[name][part]
+            ratios_by_part.setdefault(part, []).extend(
                 _ratio(numbers.get(key), recorded.get(key), floor) for key in numbers.keys() | recorded.keys()
             )
-    return {part: max(values) for part, values in found.items() if values}
+    return {part: max(values) for part, values in ratios_by_part.items() if values}
 
 
 def _ratio(now: Value, then: Value, floor: float) -> float:
@@ -95,7 +96,7 @@ def _ratio(now: Value, then: Value, floor: float) -> float:
     return max(now, floor) / max(then, floor)
 
 
-def compare(finished: Finished, cases: Sequence[tuple[str, str]], then: Mapping[str, Entry]) -> dict[str, float]:
+def compare(finished: Finished, cases: Sequence[tuple[str, str]], committed: Mapping[str, Entry]) -> dict[str, float]:
     """Return the worst ratios to the record.
 
     Raises
@@ -103,21 +104,23 @@ def compare(finished: Finished, cases: Sequence[tuple[str, str]], then: Mapping[
     ValueError
         A case is not recorded, or the record holds one that is not there.
     """
-    now = measured(finished, cases)
-    if not now.keys() & then.keys():
+    current = measured(finished, cases)
+    if not current.keys() & committed.keys():
         raise ValueError("holds no case of the study work-precision; nothing was compared")
-    for names, where in ((now.keys() - then.keys(), "lacks"), (then.keys() - now.keys(), "alone holds")):
+    unrecorded = current.keys() - committed.keys()
+    missing = committed.keys() - current.keys()
+    for names, defect in ((unrecorded, "lacks"), (missing, "alone holds")):
         if names:
-            raise ValueError(f"{where} {len(names)} cases, such as {min(names)}; write it anew with --update-record")
-    return ratios(now, then)
+            raise ValueError(f"{defect} {len(names)} cases, such as {min(names)}; write it anew with --update-record")
+    return ratios(current, committed)
 
 
 def compared(cases: tuple[tuple[str, str], ...]) -> Derived:
     """Return the row that compares a run with the record."""
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        found = compare(finished, cases, load()["cases"])
-        return {f"record.{part}": value for part, value in found.items()}
+        worst_ratios = compare(finished, cases, load()["cases"])
+        return {f"record.{part}": value for part, value in worst_ratios.items()}
 
     return Derived("work-precision", "record", cases, compute)
 

@@ -11,22 +11,24 @@ import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
+from validation.metrics.values import or_nan
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import OWN, about
+from validation.studies.bands import OWN, about, fitted_order
 from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
 SCHEMES = {"constant": (0.5, 1.0), "average": (0.25, 0.5)}
-LEVELS, ORDER_LEVELS = 6, 5
-COARSEST, WINDOW = 1.6e-3, 0.04  # s: step with 4 elements a side, and length of the histories
-ORDER_STEP, ORDER_STEPS = 2.5e-5, 200  # coarsest of the steps whose order is fitted, and how many of them
+LEVELS = 6
+ORDER_LEVELS = 5
+COARSEST = 1.6e-3  # s, the step with 4 elements a side
+WINDOW = 0.04  # s, the length of the histories
+ORDER_STEP = 2.5e-5  # s, the coarsest of the steps whose order is fitted
+ORDER_STEPS = 200  # how many of them
 REFERENCE = 2**8  # how much finer the reference of the orders in dt is
 MESHES = (8, 16, 32, 64)
 SAFETY = 1.25  # of the grid-convergence index, for three meshes and more
@@ -105,11 +107,6 @@ def scenes() -> tuple[Scene, ...]:
 # ---- orders ---------------------------------------------------------------------------------------------------------
 
 
-def order(sizes: list[float], errors: list[float]) -> float:
-    """Return the order, with its sign, fitted on all levels: error = C size^order."""
-    return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
-
-
 def named(name: str) -> Scene:
     """Return one of the scenes."""
     return next(scene for scene in scenes() if scene.name == name)
@@ -129,23 +126,21 @@ def order_in_time(name: str) -> Derived:
 
     def compute(finished: Finished) -> Mapping[str, Value]:
         exact = _columns(finished, reference, "dda", REFERENCE)
-        found = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
-        return _orders([case.time.step for case in levels], found, [exact] * len(levels))
+        solutions = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
+        return _orders([case.time.step for case in levels], solutions, [exact] * len(levels))
 
     needs = ((reference, "dda"), *((case.name, "dda") for case in levels))
     return Derived(name, "order", needs, compute)
 
 
-def _orders(sizes: list[float], found: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Mapping[str, Value]:
+def _orders(
+    sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]
+) -> Mapping[str, Value]:
     orders: dict[str, Value] = {}
-    for q in QUANTITIES:
-        errors = [_number(relative_l2(a[q], b[q])) for a, b in zip(found, exact, strict=True)]
-        orders[f"order.{q}"] = order(sizes, errors)
+    for quantity in QUANTITIES:
+        errors = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in zip(solutions, exact, strict=True)]
+        orders[f"order.{quantity}"] = fitted_order(sizes, errors)
     return orders
-
-
-def _number(value: Value) -> float:
-    return value if isinstance(value, float) else float("nan")
 
 
 def order_in_mesh(name: str) -> Derived:
@@ -153,9 +148,9 @@ def order_in_mesh(name: str) -> Derived:
     levels = named(name).expand()
 
     def compute(finished: Finished) -> Mapping[str, Value]:
-        found = [_columns(finished, case.name, "fem") for case in levels]
+        solutions = [_columns(finished, case.name, "fem") for case in levels]
         exact = [_columns(finished, case.name, "bar") for case in levels]
-        return _orders([1 / n for n in MESHES], found, exact)
+        return _orders([1 / n for n in MESHES], solutions, exact)
 
     needs = itertools.product((case.name for case in levels), ("fem", "bar"))
     return Derived(name, "order", tuple(needs), compute)
@@ -169,10 +164,11 @@ def grid_convergence() -> Derived:
     def compute(finished: Finished) -> Mapping[str, Value]:
         histories = [_columns(finished, case.name, "fem") for case in levels]
         metrics: dict[str, Value] = {}
-        for q in QUANTITIES:
-            changes = [_number(relative_l2(a[q], b[q])) for a, b in itertools.pairwise(histories)]
-            found = order([1 / n for n in MESHES[1:]], changes)
-            metrics |= {f"order.{q}": found, f"gci.{q}": SAFETY * changes[-1] / (2**found - 1)}
+        for quantity in QUANTITIES:
+            changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
+            order = fitted_order([1 / n for n in MESHES[1:]], changes)
+            metrics[f"order.{quantity}"] = order
+            metrics[f"gci.{quantity}"] = SAFETY * changes[-1] / (2**order - 1)
         return metrics
 
     return Derived(name, "gci", tuple((case.name, "fem") for case in levels), compute)
@@ -189,11 +185,11 @@ def derived() -> tuple[Derived, ...]:
 @functools.cache
 def study_cases() -> tuple[tuple[str, str], ...]:
     """Return the (case, solver) pairs whose errors and work the record keeps."""
-    found: list[tuple[str, str]] = []
+    pairs: list[tuple[str, str]] = []
     for scene in (*refined_together(), *refined_meshes()):
         for case in scene.expand():
-            found += [(case.name, solver) for solver in case.run.solvers]
-    return tuple(found)
+            pairs += [(case.name, solver) for solver in case.run.solvers]
+    return tuple(pairs)
 
 
 # ---- gates ----------------------------------------------------------------------------------------------------------
