@@ -151,8 +151,10 @@ def example() -> dict[str, object]:
 def test_the_example_of_ntdda(example: dict[str, object]) -> None:
     assert set(example) == {
         *("sentence", "causes", "values", "unexplained", "nearest", "alike", "departure", "opened", "scheme"),
-        *("ranking", "evidence"),
+        *("ranking", "evidence", "slips", "intervals"),
     }
+    assert example["slips"] == []
+    assert set(example["intervals"]) == set(example["values"])
     assert example["unexplained"] == 0 and example["nearest"] is None and example["alike"] == []
     assert set(example["values"]) == {"base-compliance", "own-weight"}
     assert [stage["stage"] for stage in example["evidence"]] == [

@@ -35,6 +35,7 @@ from validation.diagnosis.other_verdict import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.sentences import Said
 from validation.diagnosis.variant import Variant
+from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
 from validation.report.figures import histories as figures
@@ -538,3 +539,50 @@ def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answ
     for name, (time, values) in answer.curves.items():
         assert np.allclose(time, runs[name].time) and np.allclose(values, runs[name].displacement, rtol=1e-6)
     assert [line["misfit"] for line in answer.ranking] == sorted(line["misfit"] for line in answer.ranking)
+
+
+def test_damping_of_mass_and_stiffness_together_is_named() -> None:
+    data = Plain(steps=60, p=3e9, viscous=10.0, structural=1e-4)
+    v, p = run(data)
+    answer = compare(scene_of(data), Foreign(data.dt * np.arange(1, 61), v, p))
+    assert answer.causes == ["viscous-damping", "stiffness-damping"]
+    assert answer.values == pytest.approx({"viscous-damping": 10.0, "stiffness-damping": 1e-4}, rel=1e-5)
+
+
+@pytest.mark.parametrize("with_pressure", [True, False])
+def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction(with_pressure: bool) -> None:
+    weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
+    own = solve(weighty, "dda")
+    answer = compare(weighty, Foreign(own.time, -own.displacement, -own.contact_pressure if with_pressure else None))
+    assert answer.causes == ["unexplained"]
+    assert [(one["causes"], one["values"]) for one in answer.alike] == [
+        (["sign"], {}),
+        (["gravity-factor"], {"gravity-factor": -1.0}),
+    ]
+    assert answer.unexplained == 0 and answer.nearest is None
+    assert answer.departure is not None and answer.departure.step == 1
+    # the pressure alone stays: that is a sign, not a load
+    assert compare(weighty, Foreign(own.time, -own.displacement, own.contact_pressure)).causes == ["sign"]
+
+
+def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity() -> None:
+    weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
+    time = 0.002 * np.arange(1, 31)
+    answer = compare(weighty, Foreign(time, np.zeros(30), np.zeros(30)))
+    assert answer.causes == ["gravity-factor"] and answer.values == {"gravity-factor": 0.0}
+    with pytest.raises(InputError, match="must not be zero throughout"):
+        compare(SCENE, Foreign(time, np.zeros(30), np.zeros(30)))
+
+
+def test_the_interval_of_a_dead_band_ends_where_the_rows_change() -> None:
+    opening = {"contact.law": "unilateral", "contact.stiffness": 3e9, "time.step": 4e-4, "time.steps": 140}
+    plain = SCENE.with_values(opening)
+    banded = solve(plain.with_values({"contact.band": [1e-3, 1e-6]}), "dda")
+    answer = compare(plain, Foreign(banded.time, banded.displacement, banded.contact_pressure))
+    assert answer.causes == ["dead-band"]
+    low, high = answer.intervals["dead-band"]
+    assert low < 1e-3 < high
+    assert low <= answer.values["dead-band"] <= high
+    inside, outside = (solve(plain.with_values({"contact.band": [b, 1e-3 * b]}), "dda") for b in (low, 0.999 * low))
+    assert np.array_equal(inside.displacement, banded.displacement)
+    assert not np.array_equal(outside.displacement, banded.displacement)

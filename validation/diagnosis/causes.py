@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.fits.fit import NAMED, Fit, changed, fit, intervals
+from validation.diagnosis.fits.fit import NAMED, SPAN, Fit, changed, fit, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.stepping import UNEQUAL
 from validation.diagnosis.variant import Variant
@@ -116,7 +116,9 @@ PARTS = (2, 3, 4, 5, 8, 10, 20)  # steps of a program in one of the scene's
 UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
 LATE = (1.0, -1.0, 0.5, 2.0)  # steps, 1/2 the mean of two
 BANDS = tuple(float(b) for b in np.geomspace(1e-4, 0.5, 38))  # over the static displacement
-TRIALS = 41  # dead bands that are tried for the interval in which one lies
+TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
+WIDEST_BAND = 5.0  # over the fitted one, that is tried
+HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 1e-4
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 REOPENINGS = (0.0, 1e-3, 1.0)  # gap that opens over the penetration that closes; ntdda has 1e-3
 WRONG = (0.0, -1.0)  # missing, of the wrong sign
@@ -331,12 +333,15 @@ def intervals_of(target: Target, found: Fit, ids: Sequence[str]) -> dict[str, tu
     for name, interval in intervals(found).items():
         if not math.isfinite(interval.half_width):
             continue
-        low, high = (
-            values_of(target, ids, changed(found.variant, {name: interval.value + side * interval.half_width}))
-            for side in (-1.0, 1.0)
-        )
-        for cause in values:
-            if low[cause] != high[cause]:
+
+        def moved(by: float, name: str = name, value: float = interval.value) -> dict[str, float]:
+            return values_of(target, ids, changed(found.variant, {name: value + by}))
+
+        low = moved(-interval.half_width)
+        high = moved(interval.half_width)
+        elsewhere = moved(SPAN[name])  # an exact fit has no width, and still belongs to its value
+        for cause, value in values.items():
+            if elsewhere[cause] != value:
                 ends[cause] = (min(low[cause], high[cause]), max(low[cause], high[cause]))
     if "dead-band" in values:
         ends["dead-band"] = band_interval(target, found.variant)
@@ -345,17 +350,30 @@ def intervals_of(target: Target, found: Fit, ids: Sequence[str]) -> dict[str, tu
 
 def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
     """Return the penetrations between which a dead band gives the same rows: it lies between two that happened."""
-    trials = np.unique(np.concatenate([variant.band * np.geomspace(0.2, 5.0, TRIALS), [variant.band]]))
-    misfits = np.array([one.misfit for one in fit(target, [(replace(variant, band=float(b)), ()) for b in trials])])
-    here = int(np.argmin(np.abs(trials - variant.band)))
-    same = np.abs(misfits - misfits[here]) <= SAME_MISFIT * max(misfits[here], target.floor)
-    low = here
-    while low > 0 and same[low - 1]:
-        low -= 1
-    high = here
-    while high < len(trials) - 1 and same[high + 1]:
-        high += 1
-    return float(f"{trials[low]:.3g}"), float(f"{trials[high]:.3g}")
+    own = fit(target, [(variant, ())])[0].misfit
+
+    def same(bands: Sequence[float]) -> list[bool]:
+        misfits = [one.misfit for one in fit(target, [(replace(variant, band=band), ()) for band in bands])]
+        return [abs(misfit - own) <= SAME_MISFIT * max(own, target.floor) for misfit in misfits]
+
+    def end(farthest: float) -> float:
+        trials = np.geomspace(variant.band, variant.band * farthest, TRIALS)[1:].tolist()
+        inner = variant.band
+        outer = trials[-1]
+        for band, alike in zip(trials, same(trials), strict=True):
+            if not alike:
+                outer = band
+                break
+            inner = band
+        for _ in range(HALVINGS):
+            middle = math.sqrt(inner * outer)
+            if same([middle])[0]:
+                inner = middle
+            else:
+                outer = middle
+        return float(f"{inner:.4g}")
+
+    return end(1 / WIDEST_BAND), end(WIDEST_BAND)
 
 
 def roundest(low: float, high: float) -> float:

@@ -10,10 +10,12 @@ from validation.diagnosis.causes import causes_of, values_of
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.fitting import Found
+from validation.diagnosis.readings import Slip
 from validation.diagnosis.variant import Variant
 
 SAME_FACTOR = 1e-5  # relative
 SIDE = "load.gravity = 9.81: the weight is proportional to the area of the block"
+BESIDE_GRAVITY = "load.pressure beside the gravity: a reversed sign turns both, gravity upwards its own part"
 TELLS = {
     "gg": "another time step: gg acts per step, a drag per second",
     "scheme": "another time step",
@@ -58,10 +60,6 @@ def relatives(
         found.append(_relative(list(said), said, TELLS["side-factor"]))
     if list(ids) == ["stiffness-damping"]:
         found.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
-    if list(ids) == ["sign"] and target.column.gravity and not target.column.pressure:
-        found.append(_relative(["gravity-factor"], {"gravity-factor": -1.0}, TELLS["own-weight"]))
-    if list(ids) == ["gravity-factor"] and values["gravity-factor"] == -1 and not target.column.pressure:
-        found.append(_relative(["sign"], {}, TELLS["own-weight"]))
     if "base-compliance" in ids and variant.base == 0:
         found.append(_springs_for_base(ids, values, variant))
     if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:
@@ -69,6 +67,16 @@ def relatives(
         wider = _six(math.exp(variant.softness))
         found.append(_relative(["width-factor"], {"width-factor": wider}, TELLS["width-factor"]))
     return found
+
+
+def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:
+    """Return the two causes of a history whose columns are all reversed, where gravity is the only load."""
+    columns = 1 if target.pressure is None else 2
+    c = target.column
+    if list(ids) != ["sign"] or len(corrected) < columns or c.pressure or not c.gravity:
+        return []
+    upwards = _relative(["gravity-factor"], {"gravity-factor": -1.0}, BESIDE_GRAVITY)
+    return [_relative(["sign"], {}, BESIDE_GRAVITY), upwards]
 
 
 def _springs_for_base(ids: Sequence[str], values: Mapping[str, float], variant: Variant) -> dict[str, Any]:

@@ -75,7 +75,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
             f"got {', '.join(_beyond(scene))}"
         )
     features.refuse_sweep(scene)
-    if not np.any(foreign.displacement):
+    unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
+    if not (np.any(foreign.displacement) or (unloaded and column is not None)):
         raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
     if column is None:
         return _without_rectangle(scene, foreign)
@@ -174,25 +175,29 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     corrected = case.reading.corrected
     error = intervals(found)["softness"].half_width if "softness" in found.free else 0.0
     named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own, error)
+    either = families.sign_or_gravity(target, named_, corrected) if verdict.explained else []
+    left = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
+    if either:
+        verdict = replace(verdict, explained=False)
     ids = named_ if verdict.explained else [UNEXPLAINED]
     v = found.variant if verdict.explained else own
     steps = _opened(target, found.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
     expected = departure.expected(target, shown, own, ids)
-    gone = departure.departure(target, expected, ids, steps)
+    gone = departure.departure(target, expected, named_ if either else ids, steps)
     told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target, ids, v)
     ends = causes.intervals_of(target, found, ids) if verdict.explained else {}
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
     soft = causes.compliance(target, v)
-    alike = families.as_good(target, verdict) or families.relatives(target, ids, values, v)
-    nearest = None if verdict.explained or verdict.alike else _nearest(target, verdict, named_)
+    alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
+    nearest = None if verdict.explained or alike else _nearest(target, verdict, named_)
     if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
         stages = [evidence.surrounded(stage) for stage in stages]
     said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected, ends)
     if not verdict.explained:
-        sentence = sentences.not_explained(said, nearest, alike, verdict.left, stages)
+        sentence = sentences.not_explained(said, nearest, alike, left, stages)
     else:
         sentence = sentences.sentence(said, alike)
     time = np.cumsum(target.steps)[target.rows]
@@ -212,7 +217,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         found.misfit,
         {name: (time, curve) for name, curve in curves.items()},
         values,
-        float(f"{verdict.left:.4g}") if not verdict.explained else 0.0,
+        left,
         nearest,
         alike,
         tuple(stages),
@@ -342,7 +347,8 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
 def _alone(change: OneChange) -> dict[str, Any]:
     """Return one of several changes that give the same rows, as plain data."""
     values = {} if change.value is None else {change.id: change.value}
-    return {"causes": [change.id], "values": values, "further_scene": "another slope or coefficient of friction"}
+    scene = families.TELLS["springs-factor"] if "springs" in change.id else "another slope or coefficient of friction"
+    return {"causes": [change.id], "values": values, "further_scene": scene}
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:

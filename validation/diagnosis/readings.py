@@ -14,6 +14,7 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
 
+POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
 
 
@@ -30,7 +31,7 @@ class Slip:
         """The slip in words."""
         name = self.column.replace("_", " ")
         if self.cause == "sign":
-            return f"the sign of the {name} is reversed: upwards is positive, and compression"
+            return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
         return f"the {name} is in other units, {self.factor:g} times the scene's"
 
 

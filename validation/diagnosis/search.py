@@ -34,6 +34,7 @@ SINGLE = (
     *("dead-band", "hht", "generalised-alpha", "substeps", "exact-in-time", "velocity", "stiffness-damping"),
     *("load-ramp", "inertia", "one-spring"),
 )
+RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
 
 
@@ -72,6 +73,8 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
     if target.spread > 3 * HIDDEN_TWO * before.own.misfit:
         return before  # noise hides too much for two causes to be told
     pairs = [pair for pair in combinations(few, 2) if _together(pair)]
+    damping = tuple(move for move in moves(target, scene) if move.id in RAYLEIGH)
+    pairs += [damping] if len(damping) == len(RAYLEIGH) else []
     verdict = decided(target, before.own, fitted(target, scene, pairs))
     if verdict.reached or before.around < FAULT:
         return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))

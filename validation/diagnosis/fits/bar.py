@@ -92,6 +92,8 @@ def white(remainder: Array) -> bool:
 
 def within_digits(remainder: Array, rounding: Array, size: float) -> bool:
     """Whether a remainder is no more than rounding: of the printed digits, and of double precision."""
+    if size == 0:  # a column at rest has no digits
+        return not np.any(remainder)
     unit = rounding + ARITHMETIC * size
     return float(np.sqrt(np.mean((remainder / unit) ** 2))) <= WITHIN
 

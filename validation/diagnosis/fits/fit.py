@@ -186,7 +186,9 @@ def intervals(found: Fit) -> dict[str, Interval]:
     spread = np.where(told, 1 / np.where(told, s, 1.0), np.inf)
     with np.errstate(invalid="ignore"):
         parts = np.where(np.abs(vt.T) > 1e-9, np.abs(vt.T) * spread, 0.0)
-    half = NORMAL_95 * math.sqrt(variance) * np.sqrt(np.sum(parts**2, axis=1)) * span
+    width = np.sqrt(np.sum(parts**2, axis=1))
+    known = np.isfinite(width)  # of a number without effect nothing is known, also where nothing is left
+    half = np.where(known, NORMAL_95 * math.sqrt(variance) * np.where(known, width, 0.0) * span, np.inf)
     return {
         name: Interval(float(getattr(found.variant, name)), float(width))
         for name, width in zip(found.free, half, strict=True)

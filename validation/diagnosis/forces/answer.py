@@ -11,6 +11,7 @@ import numpy as np
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.fits.rectangle import upright
 from validation.diagnosis.forces.forward import at_step, displacements
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
@@ -29,6 +30,8 @@ KNOWN = frozenset(
 )
 UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
 NEAR_POWER = 0.5  # of the exponent: what creeps and slides differs by a factor of a few from program to program
+FRICTION_CAUSES = frozenset({"friction-factor", "cohesion", "shear-springs-factor"})
+NORMAL_CAUSES = frozenset({"springs-factor", "normal-springs-factor"})
 UNIFORM = 1e-3  # relative; times are often printed with four digits
 
 
@@ -74,8 +77,10 @@ def read(scene: Scene, foreign: Foreign) -> Read:
     if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
         raise InputError(f"{scene.name}: time: with friction all steps must be equal, in seconds, got others")
     place = np.column_stack([foreign.sideways, foreign.displacement])
-    no_digits = np.zeros(len(place))
-    units = [no_digits if unit is None else unit for unit in (foreign.sideways_rounding, foreign.rounding)]
+    units = [
+        last_digits(column) if unit is None else unit
+        for column, unit in zip(place.T, (foreign.sideways_rounding, foreign.rounding), strict=True)
+    ]
     signs = [_sign(column, load) for column, load in zip(place.T, body_of(scene).load, strict=True)]
     names = SIDEWAYS, DISPLACEMENT
     corrected = [Slip("sign", name, -1.0) for name, sign in zip(names, signs, strict=True) if sign < 0]
@@ -142,11 +147,17 @@ def stages(found: Found, read: Read) -> list[Stage]:
     right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
     pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
     run = found.run
-    left = None if math.isnan(run.left) else run.left
+    of_scene = found.scene_run if found.change else run
+    left = None if math.isnan(of_scene.left) else of_scene.left
     return [
         Stage("reading", not read.slips, right, {}),
-        Stage("motion", run.same, _motion(found), {"misfit": left}),
-        Stage("normal forces", found.normal <= NORMAL, pressed, {"misfit": found.normal, "allowed": NORMAL}),
+        Stage("motion", run.same and not found.change, _motion(found), {"misfit": left}),
+        Stage(
+            "normal forces",
+            found.normal <= NORMAL and not _faulty(found, NORMAL_CAUSES),
+            pressed,
+            {"misfit": found.normal, "allowed": NORMAL},
+        ),
         Stage(
             "friction",
             None if blurred else _law_holds(found),
@@ -156,18 +167,27 @@ def stages(found: Found, read: Read) -> list[Stage]:
     ]
 
 
+def _faulty(found: Found, causes: frozenset[str]) -> bool:
+    """Whether an explanation holds one of some causes."""
+    return found.explained and not causes.isdisjoint(found.causes)
+
+
 def _law_holds(found: Found) -> bool | None:
     """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
+    if found.change:
+        return False if _faulty(found, FRICTION_CAUSES) else None
     if found.first is not None or max(found.shares.values()) < MOST:
         return False
     return True if found.run.same else None
 
 
-def _motion(found: Found) -> str:
-    """Return what the suite's own run leaves of the displacements, in words."""
+def _motion(found: Found, with_change: bool = False) -> str:
+    """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
     run = found.run
     if math.isnan(run.left):
         return "the suite has no run of it"
+    if found.change and not with_change:
+        return f"the suite's own run of the scene leaves {per_cent(found.scene_run.left, 2)} % of the displacements"
     part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
     if run.same:
         return f"the suite's own run gives the displacements to their digits or noise{part}"
@@ -196,7 +216,7 @@ def sentence(scene: Scene, found: Found, ids: Sequence[str], corrected: Sequence
         return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
     if found.change:
         faults = [*(slip.words for slip in corrected), found.change]
-        return f"Departs: {' and '.join(faults)}; {_motion(found)}."
+        return f"Departs: {' and '.join(faults)}; {_motion(found, with_change=True)}."
     first = _first(found, ids)
     where = f" from step {first} on" if first else ""
     return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
@@ -208,6 +228,7 @@ def _fault(name: str, found: Found) -> str:
         "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
         "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
         "springs-factor": f"the contact springs are {value:.4g} times the scene's",
+        "normal-springs-factor": f"the normal springs alone are {value:.4g} times the scene's",
     }
     return words.get(name, CAUSES[name].words)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, white
+from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.forces.motion import STANDARD
 from validation.diagnosis.reading import SAME_STEP, SIDEWAYS
 from validation.errors import InputError
@@ -84,10 +85,20 @@ def _size(place: Array) -> Array:
     return np.asarray(np.maximum(np.max(np.abs(place), axis=0), np.finfo(float).tiny))
 
 
+@dataclass(frozen=True)
+class Surrounded:
+    """A run with what surrounds a block: what it leaves, and the springs that it has."""
+
+    run: Agreement = NO_RUN
+    springs: float = 1.0  # normal stiffness over the scene's [-]
+    error: float = 0.0  # of it: half width of its 95 % interval, relative
+    along: bool = True  # whether the springs along the base have the same factor
+
+
 def surrounded(
     scene: Scene, ids: Sequence[str], fitted: tuple[float, float], place: Array, rounding: Array
-) -> Agreement:
-    """Return whether a run under the block's own weight, on softer or other springs, gives a history.
+) -> Surrounded:
+    """Return the run under the block's own weight, on softer or other springs, that comes nearest to a history.
 
     Parameters
     ----------
@@ -99,12 +110,14 @@ def surrounded(
     """
     free = np.array(["own-weight" in ids, not {"base-compliance", "springs-factor"}.isdisjoint(ids)])
     follow = (True, False) if "base-compliance" in ids else (True,)
-    best = NO_RUN
+    best = Surrounded()
     for follows in follow:
-        found = agreement(_nearest(scene, free, np.where(free, fitted, 0.0), follows, place), place, rounding)
-        if found.same:
+        z, error = _nearest(scene, free, np.where(free, fitted, 0.0), follows, place)
+        run = agreement(_changed(scene, z, follows), place, rounding)
+        found = Surrounded(run, math.exp(-float(z[1])), error, follows)
+        if run.same:
             return found
-        best = found if not found.left >= best.left else best
+        best = found if not run.left >= best.run.left else best
     return best
 
 
@@ -134,8 +147,8 @@ def displacements(scene: Scene) -> Array | None:
     return np.column_stack([history.columns[SIDEWAYS], history.columns[DISPLACEMENT]])
 
 
-def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place: Array) -> Scene:
-    """Return the scene with the weight and the springs that suit the first steps best."""
+def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place: Array) -> tuple[Array, float]:
+    """Return the weight and the softness that suit the first steps best, and the 95 % half width of the softness."""
     from scipy.optimize import least_squares
 
     first = place[:FITTED]
@@ -152,7 +165,12 @@ def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place:
         return np.ones(first.size) if run is None else np.ravel((run - first) / size)
 
     found = least_squares(left, start[free], x_scale=np.array([1.0, 0.1])[free], xtol=1e-14, ftol=1e-14, max_nfev=12)
-    return _changed(scene, whole(found.x), follows)
+    if not free[1]:
+        return whole(found.x), 0.0
+    variance = 2 * found.cost / max(first.size - len(found.x), 1)
+    softness = -1  # the last of the free numbers
+    spread = math.sqrt(variance * float(np.linalg.pinv(found.jac.T @ found.jac)[softness, softness]))
+    return whole(found.x), NORMAL_95 * spread
 
 
 def _changed(scene: Scene, fitted: Array, follows: bool) -> Scene:

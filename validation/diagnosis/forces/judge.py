@@ -7,7 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.diagnosis.forces.forward import NO_RUN, SURROUNDINGS, Agreement, agreement, at_step, surrounded
+from validation.diagnosis.causes import round_factor
+from validation.diagnosis.forces.forward import (
+    NO_RUN,
+    SURROUNDINGS,
+    Agreement,
+    Surrounded,
+    agreement,
+    at_step,
+    surrounded,
+)
 from validation.diagnosis.forces.laws import Followed, follow
 from validation.diagnosis.forces.motion import Body, Scheme, body_of, motion_of
 from validation.diagnosis.forces.one_number import OneChange, one_number
@@ -42,7 +51,8 @@ class Found:
     tolerance: float  # of the limit of friction, within which a law holds
     first: int | None  # step, from 1, at which the scene's own law is left
     opened: tuple[int, int] | None  # first and last step with both corners open
-    run: Agreement = NO_RUN  # what the suite's own run leaves, of the scene, or of what surrounds the block
+    run: Agreement = NO_RUN  # what the suite's own run leaves: of the scene, with what surrounds the block or a change
+    scene_run: Agreement = NO_RUN  # what the run of the scene as it is leaves, where a change explains the history
     change: str = ""  # the one thing in the scene that explains it, in words
     alike: tuple[OneChange, ...] = ()  # changes of which each does
 
@@ -70,20 +80,36 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     if run.same and (run.until is None or found.shares[scene.contact.rules] >= MOST_SLIPS):
         return replace(found, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
     run = replace(run, same=False)
+    scene_run = run
     if found.explained and not set(found.causes) <= SURROUNDINGS:
         return replace(found, run=run)
     if found.explained and found.causes:
         around = surrounded(exact, found.causes, fitted, place, rounding)
-        if around.same:
-            return replace(found, explained=True, run=around)
-        run = around if around.left < run.left else run
+        if around.run.same:
+            return _springs_or_base(replace(found, explained=True, run=around.run), around, scene_run)
+        run = around.run if around.run.left < run.left else run
     change, alike = one_number(exact, place, rounding)
     if change is None:
         return replace(found, explained=False, run=run, alike=tuple(alike))
     values = {} if change.value is None else {change.id: change.value}
-    return replace(
-        found, causes=(change.id,), values=values, explained=True, first=1, run=change.run, change=change.words
-    )
+    named = replace(found, causes=(change.id,), values=values, explained=True, first=1)
+    return replace(named, run=change.run, scene_run=scene_run, change=change.words)
+
+
+def _springs_or_base(found: Found, around: Surrounded, scene_run: Agreement) -> Found:
+    """Return a history on a base with the springs that give the same rows: named where their factor is a round one."""
+    if "base-compliance" not in found.causes:
+        return found
+    name = "springs-factor" if around.along else "normal-springs-factor"
+    factor = float(f"{around.springs:.6g}")
+    words = f"the {'springs' if around.along else 'normal springs alone'} are {factor:.4g} times the scene's"
+    springs = OneChange(name, factor, words, around.run)
+    if not round_factor(around.springs, around.error):
+        return replace(found, alike=(springs,))
+    rest = {cause: value for cause, value in found.values.items() if cause != "base-compliance"}
+    causes = tuple(name if cause == "base-compliance" else cause for cause in found.causes)
+    change = words if len(causes) == 1 else ""
+    return replace(found, causes=causes, values=rest | {name: factor}, first=1, change=change, scene_run=scene_run)
 
 
 def _lags(scene: Scene) -> bool:
