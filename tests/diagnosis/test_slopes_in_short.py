@@ -116,8 +116,12 @@ def test_weight_and_a_softer_base_are_run(follows: bool) -> None:
     found = program(1.0, p=0.997e9, ps=4e8 * (0.997 if follows else 1.0))
     place, scene = np.column_stack([found.u, found.v]), at_step(SCENE, 2e-3, 30)
     causes = ("own-weight", "base-compliance")
-    assert surrounded(scene, causes, (1.0, -math.log(0.997)), place, np.zeros_like(place)).same
-    assert not surrounded(scene, ("own-weight",), (1.0, -math.log(0.997)), place, np.zeros_like(place)).same
+    around = surrounded(scene, causes, (1.0, -math.log(0.997)), place, np.zeros_like(place))
+    assert around.run.same
+    assert around.springs == pytest.approx(0.997, rel=1e-6)
+    assert around.along is follows
+    assert 0 <= around.error < 1e-6
+    assert not surrounded(scene, ("own-weight",), (1.0, -math.log(0.997)), place, np.zeros_like(place)).run.same
 
 
 def test_a_step_within_printed_digits_is_the_scene_s() -> None:

@@ -87,10 +87,6 @@ class Interval:
     value: float
     half_width: float
 
-    def holds(self, value: float) -> bool:
-        """Whether a value lies in the interval."""
-        return abs(value - self.value) <= self.half_width
-
 
 def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = 8) -> list[Fit]:
     """Fit variants with their free numbers, all at once.
@@ -214,8 +210,3 @@ def named(alpha: float, delta: float) -> str | None:
         if math.isclose(alpha, pair[0], abs_tol=1e-12) and math.isclose(delta, pair[1], abs_tol=1e-12):
             return name
     return None
-
-
-def schemes(alpha: float, delta: float) -> Mapping[str, tuple[float, float]]:
-    """Return the named schemes, and the scene's own first if it has no name."""
-    return NAMED if named(alpha, delta) else {"the scene's": (alpha, delta), **NAMED}
