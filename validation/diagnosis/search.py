@@ -72,7 +72,7 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
         return before  # one cause would do
     if target.spread > 3 * HIDDEN_TWO * before.own.misfit:
         return before  # noise hides too much for two causes to be told
-    pairs = [pair for pair in combinations(few, 2) if _together(pair)]
+    pairs: list[tuple[Move, ...]] = [pair for pair in combinations(few, 2) if _together(pair)]
     damping = tuple(move for move in moves(target, scene) if move.id in RAYLEIGH)
     pairs += [damping] if len(damping) == len(RAYLEIGH) else []
     verdict = decided(target, before.own, fitted(target, scene, pairs))
