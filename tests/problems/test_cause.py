@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
-from validation.problems.families import numbers
 from validation.problems.judge import Word, judge
 from validation.problems.problem import problem, problem_of
 from validation.runs.history import History
@@ -148,3 +148,17 @@ def test_a_named_cause_is_the_seeded_one(name: str) -> None:
             continue
         told = cause(problem(name), found, standard(problem(name)))
         assert told.sentence.startswith(NOT_EXPLAINED) or words[key] in told.sentence, (key, factor, told.sentence)
+
+
+def test_a_discount_beside_the_usual_scheme_is_named() -> None:
+    found = named("locked", get_solver("dda").solve(problem("locked").scene.with_values({"time.gg": 0.97})).history)
+    assert found.ids == ("scheme", "gg")
+    assert found.values["gg"] == pytest.approx(0.97, rel=1e-4)
+    assert "gg = 0.97 where the scene has 1" in found.sentence
+
+
+@pytest.mark.parametrize("factor", [0.87, pytest.param(1.13, marks=pytest.mark.long)])
+def test_a_factor_near_one_is_named(factor: float) -> None:
+    found = named("locked", fine("locked", {"contact.stiffness": factor * 1e9}))
+    assert found.ids == ("springs-factor",)
+    assert found.values["springs-factor"] == pytest.approx(factor, rel=2e-3)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from conftest import SCENE, refused
 
-from validation.compare.reading import read
+from validation.diagnosis.reading import read
 from validation.errors import InputError
 from validation.runs.files import read_csv, read_table
 from validation.runs.regular import regular

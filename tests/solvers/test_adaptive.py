@@ -10,7 +10,7 @@ import fem_reference
 from dda.scheme.adaptive import adapted_modes
 from validation import advise, damping, load_scene, response, solve
 from validation.advice.wave_advice import advise_wave
-from validation.compare.diagnosis import compare
+from validation.diagnosis.judgement import compare
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.solvers.dda import model_of, scheme_of

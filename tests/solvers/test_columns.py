@@ -8,8 +8,8 @@ import pytest
 
 from validation import InputError, load_scene, response, solve
 from validation.advice.spectra import damping
-from validation.compare.diagnosis import compare
-from validation.compare.reading import Foreign
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
 from validation.engine.case import Case
 from validation.metrics.transform import spectrum
 from validation.scenes import drive, features

@@ -439,6 +439,42 @@ def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypa
     monkeypatch.setattr(Results, "history", lambda self, key: History(x, {"displacement": x}))
     monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
     lines = block([failed])
-    assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-1].startswith(f"  {said}")
+    assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-2].startswith(f"  {said}")
     monkeypatch.setattr(evidence, "compare", lambda *given: 1 / 0)
-    assert block([failed])[-1] == "  nothing can be said: division by zero"
+    assert block([failed])[-2] == "  nothing can be said: division by zero"
+
+
+def test_the_block_ends_with_what_no_gate_saw() -> None:
+    square, rectangle = gates.starts()[0], gates.blocks()[0]
+    one = of(scene=square.name, study="own-solver")
+    assert block([one])[-1].startswith("\nno gate saw: a rectangle that is no square, Poisson's ratio, plane strain, ")
+    both = block([one, of(scene=rectangle.name, study="own-solver")])[-1]
+    assert "rectangle" not in both and "plane strain" in both
+    every = {scene: case.scene for (scene, _), case in gates.cases("own-solver").items()}.values()
+    assert gates.unseen(every) == ["gravity", "contact that opens", "friction", "a base that moves"]
+
+
+BLIND = {  # what a solver leaves out, and the datum of the scene that shows it
+    "plane strain": {"block.hypothesis": "plane stress"},
+    "Poisson's ratio": {"block.poisson": 0.0},
+    "shear springs": {"contact.shear_stiffness": 1e9},
+    "the load's place": {"load.eccentricity": 0.0},
+    "width and height": {"block.width": 1.2, "block.height": 3.0},
+}
+
+
+@pytest.mark.parametrize("blind", BLIND)
+def test_a_solver_that_leaves_out_a_datum_fails_a_gate_on_statics(blind: str) -> None:
+    """Each gate is on the displacement at rest; the suite's own static solution of the blind scene is outside."""
+    bitten = []
+    for gate in gates.START.gates():
+        scene = gates.cases("own-solver")[gate.scene, gates.JUDGED].scene
+        if gate.metric == "displacement.static":
+            solver = get_solver("dda")
+            assert gate.low <= solver.static(scene)["displacement"] <= gate.high  # type: ignore[attr-defined]
+            known = scene.definition()
+            there = all(known.get(key.split(".")[0], {}).get(key.split(".")[1]) is not None for key in BLIND[blind])
+            if there:
+                left = solver.static(scene.with_values(BLIND[blind]))["displacement"]  # type: ignore[attr-defined]
+                bitten.append(not gate.low <= left <= gate.high)
+    assert any(bitten)

@@ -13,7 +13,7 @@ from fem_reference.scheme.eigen import eigenvalues
 from validation import advise, damping, load_scene, response, solve
 from validation.advice.rayleigh import Rayleigh
 from validation.advice.wave_advice import advise_wave
-from validation.compare.diagnosis import compare
+from validation.diagnosis.judgement import compare
 from validation.errors import InputError
 from validation.solvers.registry import get_solver
 

@@ -12,7 +12,7 @@ from validation.cli.app import SetOption, app, one_case
 from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
-    from validation.compare.diagnosis import Answer
+    from validation.diagnosis.answer import Answer
 
 RANKING_LINES = 6
 
@@ -45,13 +45,13 @@ def compare(
     """Judge another program's history: same model and scheme, or where and how it departs, and why.
 
     The scene states what the program was asked to compute; the history's own time step is used. Exit status: 0 the
-    same, 1 it departs, 2 bad input.
+    scene's own history, 1 another one, 2 bad input.
 
     Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
     --scale displacement=-1e-3[/bold]
     """
-    from validation.compare.diagnosis import compare as judge
-    from validation.compare.reading import parse_columns, parse_scale, read
+    from validation.diagnosis.judgement import compare as judge
+    from validation.diagnosis.reading import parse_columns, parse_scale, read
 
     case = one_case(scene, assignments)
     answer = judge(case, read(history, parse_columns(columns), parse_scale(scale)), tolerance)
@@ -75,8 +75,8 @@ def _listed(alternative: dict[str, Any]) -> str:
 
 def _print(answer: Answer) -> None:
     """Print the sentence first, then what it rests on."""
-    from validation.compare.causes import CAUSES
-    from validation.compare.sentences import cleaned, per_cent, told_lines
+    from validation.diagnosis.causes import CAUSES
+    from validation.diagnosis.sentences import cleaned, per_cent, told_lines
 
     echo(answer.sentence)
     if answer.causes:

@@ -1,6 +1,3 @@
-"""Another program's history, judged against a scene.
+"""Another program's history, judged against a scene: the names under which `validation.diagnosis` is known."""
 
-Reading, fitting, naming causes, and the sentences that say so.
-"""
-
-from validation.compare.diagnosis import compare as compare
+from validation.diagnosis import compare as compare

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.diagnosis.changes import Values, friction, layers, sized, springs
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
-from validation.problems.variations import Values, friction, layers, sized, springs
 from validation.runs.history import Array, History
 from validation.scenes.scene import Scene, parse_scene
 

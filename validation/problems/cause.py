@@ -14,12 +14,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from validation.compare.causes import UNEXPLAINED
-from validation.compare.diagnosis import compare
-from validation.compare.reading import SIDEWAYS, Foreign
+from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.numbers import laws
+from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
-from validation.problems.families import Family, laws, of_damping, of_data, of_output
+from validation.problems.families import Family, of_damping, of_data, of_discount, of_output
 from validation.problems.models import Base, Columns, Runs
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
@@ -147,7 +148,7 @@ class Search:
                 yield _with(law.id, law.words, {}, left, base, self.runs.scene)
 
     def _families(self, base: Base, cheap: bool) -> Iterable[Cause]:
-        families = [*of_data(self.runs, base, cheap)]
+        families = [*of_data(self.runs, base, cheap), *of_discount(self.runs, base)]
         if base.exact:
             families += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.seen))]
         for family, start in self._pursued(families, cheap):

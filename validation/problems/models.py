@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from validation.compare.fits.fit import NAMED
-from validation.compare.sentences import scheme_words
+from validation.diagnosis.changes import accurate
+from validation.diagnosis.fits.fit import NAMED
+from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard
-from validation.problems.variations import accurate
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features

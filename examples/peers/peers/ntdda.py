@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, ClassVar
 
-from validation.compare.reading import read
+from validation.diagnosis.reading import read
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.compare.causes import CAUSES
-from validation.compare.diagnosis import Answer
-from validation.compare.sentences import told_lines
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.sentences import told_lines
 from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
 from validation.report.chapters.text import DASH, parameters, short
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import Panel
 from validation.report.typesetting import write_document
-from validation.runs.history import DISPLACEMENT, History
+from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import Scene
 
 FIGURE = "compare.svg"
@@ -33,19 +33,27 @@ def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
 
 def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence[Block]:
     """Return the blocks of the page; its figure is written to a directory."""
+    histories_by_name = {}
+    for name, (time, values) in answer.curves.items():
+        pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
+        histories_by_name[name] = History(time, {DISPLACEMENT: values, **pressure})
+    drawn = (DISPLACEMENT, PRESSURE) if answer.pressures else (DISPLACEMENT,)
     panel = Panel(
-        "displacement of the centroid",
-        {name: History(time, {DISPLACEMENT: values}) for name, (time, values) in answer.curves.items()},
+        "displacement of the centroid" + (", contact pressure" if answer.pressures else ""),
+        histories_by_name,
         {},
         next(iter(answer.curves)),
     )
-    caption = "The file, DDA on the scene allowing for what is no error, and the best explanation."
+    caption = (
+        "The file, DDA on the scene allowing for what is no error, and the best explanation; below, what they leave of "
+        "the file's displacement."
+    )
     rest = [*told_lines(answer.told, answer.untold), *answer.notes]
     return [
         Heading(f"{source} beside {scene.name}"),
         Callout(answer.sentence, "warn") if answer.departure else Paragraph(answer.sentence, "lead"),
         Paragraph(parameters(scene, set()), "small"),
-        histories.saved(motion.history_figure([panel], DISPLACEMENT, apart=True), directory, FIGURE, caption),
+        histories.saved(motion.history_figure([panel], *drawn, apart=True), directory, FIGURE, caption),
         *_facts(answer),
         *_evidence(answer),
         *([_ranking(answer)] if answer.ranking else []),

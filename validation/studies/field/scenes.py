@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import functools
 
+from validation.diagnosis.changes import accurate
 from validation.problems.bands import changed_scenes
 from validation.problems.problem import PREFIX, PROBLEMS, Problem, problem
-from validation.problems.variations import accurate
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.field.programs import ELEMENTS, HABIT, installed

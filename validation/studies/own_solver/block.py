@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from validation.gates.gate import Status
 from validation.runs.run import Outcome
+from validation.studies.own_solver import gates
 from validation.studies.own_solver.evidence import diagnosis
 from validation.studies.own_solver.gates import GROUPS
 from validation.studies.own_solver.session import LARGEST, Told
@@ -36,7 +37,7 @@ def block(told: Sequence[Told], every: bool = False) -> list[str]:
         *_endings(told),
         *_not_run(told),
     ]
-    return [*lines, *diagnosis(failed, first(judged, failed))]
+    return [*lines, *diagnosis(failed, first(judged, failed)), *_unseen(judged)]
 
 
 def _table(told: Sequence[Told]) -> Iterator[str]:
@@ -154,6 +155,14 @@ def _not_run(told: Sequence[Told]) -> Iterator[str]:
     for why in dict.fromkeys(t.why for t in absent):
         own = [t for t in absent if t.why == why]
         yield f"  {_gates(own)}: {why}"
+
+
+def _unseen(judged: Sequence[Told]) -> Iterator[str]:
+    """Yield what no gate has seen of the solver: a pass says nothing of it."""
+    found = {(t.study, t.scene): gates.cases(t.study).get((t.scene, gates.JUDGED)) for t in judged}
+    kinds = gates.unseen(case.scene for case in found.values() if case is not None)
+    if judged and kinds:
+        yield f"\nno gate saw: {', '.join(kinds)}; what passed says nothing of it"
 
 
 def _gates(own: Sequence[Told]) -> str:

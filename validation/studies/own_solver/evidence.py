@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from validation.compare import compare
-from validation.compare.reading import Foreign
+from validation.diagnosis import compare
+from validation.diagnosis.reading import Foreign
 from validation.runs.history import PRESSURE, History
 from validation.runs.results import Results
 from validation.studies.own_solver import gates

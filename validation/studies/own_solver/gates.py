@@ -7,8 +7,10 @@ damped motion ends, and with which root of the step it gets there (`history`).
 from __future__ import annotations
 
 import functools
-from collections.abc import Collection, Iterator, Mapping
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 from validation.engine.case import Case
 from validation.engine.finished import Derived
@@ -53,6 +55,60 @@ def _start() -> Iterator[Gate]:
             yield Gate(scene.name, pair, metric, 0, high, same)
 
 
+RESTING = "where a damped motion of some hundred steps ends, by the closed form of static equilibrium; rounding"
+
+
+def _blocks() -> Iterator[Gate]:
+    """Yield the gates on data of the block that the paper's scenes never change: its shape, its plane, its springs."""
+    for scene in blocks():
+        pressed = 1 - 2 * abs(scene.load.eccentricity) / closed_forms.size(scene)[0]
+        value = closed_forms.static_displacement(scene) * pressed
+        yield Gate(scene.name, (JUDGED,), "displacement.static", *near(value, 1e-9), RESTING)
+    rectangle = blocks()[0]
+    same = "same equations, rounding apart (see the core study)"
+    for metric in ("displacement.max", "pressure.max"):
+        yield Gate(rectangle.name, (JUDGED, "dda-textbook"), metric, 0, rounding(rectangle), same)
+
+
+@functools.cache
+def blocks() -> tuple[Scene, ...]:
+    """Return short scenes that come to rest, one for each datum that a solver may have left out.
+
+    The load of the last one has its middle beside the centroid: the part of the top edge that it presses is shorter,
+    and the centroid sinks by that share, since turning does not move it.
+    """
+    settles = {"time.step": 0.002, "time.steps": 300, "time.gg": 0.9}
+    plain = load_scene("figures-3-4").with_values(settles)
+    changes: tuple[dict[str, Any], ...] = (
+        {"block.width": 3.0, "block.height": 1.2, "contact.stiffness": 4.0e9},  # at p = E width and height are alike
+        {"block.poisson": 0.25},
+        {"block.poisson": 0.25, "block.hypothesis": "plane strain"},
+        {"block.poisson": 0.25, "contact.shear_stiffness": 3.0e8},
+        {"load.eccentricity": 0.3},
+    )
+    return tuple(plain.with_values(change, label=True) for change in changes)
+
+
+# what gates may see of a solver: a kind of scene in words, and whether a scene is of it
+KINDS: dict[str, Callable[[Scene], bool]] = {
+    "a rectangle that is no square": lambda s: math.dist(*s.block.outline[:2]) != math.dist(*s.block.outline[1:3]),
+    "Poisson's ratio": lambda s: s.block.poisson != 0,
+    "plane strain": lambda s: s.block.hypothesis == "plane strain" and s.block.poisson != 0,
+    "shear springs of their own stiffness": lambda s: s.contact.shear != s.contact.stiffness,
+    "an off-centre load": lambda s: s.load.eccentricity != 0,
+    "gravity": lambda s: s.load.gravity != 0,
+    "contact that opens": lambda s: s.contact.law == "unilateral",
+    "friction": lambda s: s.contact.friction is not None,
+    "a base that moves": lambda s: s.load.base_motion is not None,
+}
+
+
+def unseen(scenes: Iterable[Scene]) -> list[str]:
+    """Return the kinds of scenes that none of some scenes is."""
+    known = list(scenes)
+    return [kind for kind, is_one in KINDS.items() if not any(is_one(scene) for scene in known)]
+
+
 @functools.cache
 def starts() -> tuple[Scene, ...]:
     """Return the scenes in which the initial acceleration counts: average acceleration, with and without discount."""
@@ -64,10 +120,10 @@ def starts() -> tuple[Scene, ...]:
 START = Study(
     "own-solver",
     "Your own solver",
-    "Initial accelerations, of which the paper's scenes have one only.",
-    starts(),
+    "Initial accelerations, of which the paper's scenes have one only, and data of the block that they never change.",
+    (*starts(), *blocks()),
     (JUDGED, "dda-textbook"),
-    gates=lambda: tuple(_start()),
+    gates=lambda: (*_start(), *_blocks()),
 )
 
 
@@ -165,4 +221,5 @@ def shown_by_history(gate: Gate, scene: Scene) -> bool:
     """Whether the history shows what a gate of one solver asks for."""
     if len(gate.pair) != 1 or gate.metric not in SHOWN:
         return False
-    return scene.block.poisson == 0 and scene.block.vertices is None
+    own = gate.metric == "displacement.static" and scene in blocks()  # which come to rest by the last step
+    return own or (scene.block.poisson == 0 and scene.block.vertices is None)

@@ -1,0 +1,301 @@
+"""`compare`: the model that fits, against the suite's own DDA and against a DDA program of another make."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused, typed
+from faults import seams
+from oracles.shi_dda import Program, run, write_measured_point
+
+from validation import load_scene, solve
+from validation.diagnosis.fits.fit import fit, intervals, untold
+from validation.diagnosis.fits.rectangle import rectangle_of
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.other_solvers import Goal, slipped
+from validation.diagnosis.reading import Foreign, read
+from validation.diagnosis.sentences import span
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Variant
+from validation.scenes.scene import Scene
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda"
+
+
+def scene(**changes: object) -> Scene:
+    base = {"time.step": 0.002, "time.steps": 60}
+    return load_scene("figures-3-4").with_values(base | {k.replace("__", "."): v for k, v in changes.items()})
+
+
+# ---- the stepping of many variants ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"time__alpha": 0.25, "time__delta": 0.5, "time__gg": 0.98, "time__start": "consistent"},
+        {"block__poisson": 0.3, "time__step": 0.0007, "contact__stiffness": 3e9},
+        {"block__poisson": 0.2, "block__hypothesis": "plane strain", "load__gravity": 9.81, "time__gg": 0.9},
+        {"time__alpha": 0.0, "time__delta": 0.5, "time__step": 0.0005, "block__density": 1800.0},
+    ],
+)
+def test_a_locked_variant_is_the_suites_own_dda(changes: dict[str, object]) -> None:
+    s = scene(**changes)
+    t, column = s.time, rectangle_of(s)
+    own = Variant(t.alpha, t.delta, t.discount, t.start)
+    found = histories(column, [replace(own, gg=0.5), own], np.full(t.steps, t.step))
+    exact = solve(s, "dda")
+    # two formulations of one recursion over 60 steps: some tens of roundings
+    assert np.max(np.abs(found.displacement[:, 1] - exact.displacement)) < 1e-13 * np.max(np.abs(exact.displacement))
+    assert np.max(np.abs(found.pressure[:, 1] - exact.contact_pressure)) < 1e-13 * np.max(
+        np.abs(exact.contact_pressure)
+    )
+    assert column.static == pytest.approx(_static(s), rel=1e-12)
+
+
+def _static(s: Scene) -> float:
+    from validation.solvers.registry import get_solver
+
+    return float(get_solver("dda").static(s)["displacement"])
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"opens": True}, {"updated": True}, {"opens": True, "updated": True, "gg": 0.97}]
+)
+def test_every_variant_is_that_of_the_other_program(changes: dict[str, object]) -> None:
+    """The other program has a base of its own: so stiff here that it moves by 1e-6 of the displacement."""
+    stiff = {
+        "base_young": 1e16,
+        "fixed": 1e15,
+        "dt": 4e-4,
+        "steps": 60,
+        "g": 9.81,
+        "opens": False,
+        "updated": False,
+    }
+    program = Program(**(stiff | changes))
+    column = rectangle_of(scene())
+    assert column is not None
+    variant = Variant(0.5, 1.0, program.gg, weight=1.0, opens=program.opens, updated=program.updated)
+    found, other = histories(column, [variant], np.full(60, program.dt)), run(program)
+    assert np.max(np.abs(found.displacement[:, 0] - other.displacement)) < 2e-6 * np.max(np.abs(other.displacement))
+    assert np.max(np.abs(found.pressure[:, 0] - other.pressure)) < 1e-5 * np.max(np.abs(other.pressure))
+    np.testing.assert_array_equal(found.open[:, 0], other.open)
+    assert other.open.any() == program.opens
+
+
+# ---- fits ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_fit_finds_the_scheme_and_its_interval_holds_it() -> None:
+    column = rectangle_of(scene())
+    assert column is not None
+    steps, rng = np.full(80, 0.001), np.random.default_rng(3)
+    true = Variant(0.31, 0.7, 0.985, softness=0.02)
+    clean = histories(column, [true], steps).displacement[:, 0]
+    noisy = clean + 1e-5 * rng.standard_normal(80)
+    free = ("alpha", "delta", "gg", "softness")
+    (found,) = fit(Target(column, steps, np.arange(80), noisy), [(Variant(0.25, 0.5, 1.0), free)], rounds=20)
+    for name, interval in intervals(found).items():
+        # the interval is a 95 % one; twice it fails once in ten thousand
+        assert abs(interval.value - getattr(true, name)) < 2 * interval.half_width, name
+        assert interval.half_width < 0.1, name
+    assert untold(found) == []
+
+
+def test_what_one_settled_row_cannot_tell_is_said() -> None:
+    column = rectangle_of(scene())
+    assert column is not None
+    steps = np.full(140, 0.01)
+    v = Variant(0.5, 1.0, 1.0)
+    late = histories(column, [v], steps).displacement[100:, 0] * (1 + 1e-6 * np.sin(np.arange(40)))
+    target = Target(column, steps, np.arange(100, 140), late)
+    (found,) = fit(target, [(v, ("alpha", "delta", "gg", "softness"))])
+    assert {name for direction in untold(found) for name in direction} >= {"alpha", "delta", "gg"}
+
+
+@pytest.mark.long
+def test_a_base_that_gives_way_is_no_fault_of_the_integrator(tmp_path: Path) -> None:
+    """A heavy base that adds 1 % to the static displacement, and swings at 1.4 krad/s."""
+    program = Program(dt=5e-4, steps=60, base_young=1e12, fixed=5e9, gg=0.99)
+    history = run(program)
+    s = scene(time__step=program.dt, time__gg=program.gg)
+    answer = compare(s, read(write_measured_point(history, tmp_path / "m.m", program.dt)))
+    assert answer.causes == ["contact-opened", "base-compliance", "geometry-updated"]
+    assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": 0.99}
+    assert answer.ranking[0]["compliance"] == pytest.approx(0.01, abs=1e-3)
+    assert answer.opened == (1, 6) == tuple(history.opened or ())
+    assert {row["model"] for row in answer.ranking} == {"dda", "bar"}  # gg < 1: the damped continuum takes minutes
+
+
+def test_steps_are_written_as_runs() -> None:
+    assert span([1, 2, 3, 7, 9, 10]) == "1-3, 7, 9-10"
+
+
+# ---- answers --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def example() -> dict[str, object]:
+    done = typed("compare", EXAMPLE / "scene.toml", EXAMPLE / "ntdda-p1E-dt2ms_meas.m", "--json")
+    assert done.returncode == 1, done.stderr  # what surrounds the scheme is no fault, and not what the scene gives
+    return json.loads(done.stdout)
+
+
+@pytest.mark.long
+def test_the_example_of_ntdda(example: dict[str, object]) -> None:
+    assert set(example) == {
+        *("sentence", "causes", "values", "unexplained", "nearest", "alike", "departure", "opened", "scheme"),
+        *("ranking", "evidence", "slips", "intervals"),
+    }
+    assert example["slips"] == []
+    assert set(example["intervals"]) == set(example["values"])
+    assert example["unexplained"] == 0 and example["nearest"] is None and example["alike"] == []
+    assert set(example["values"]) == {"base-compliance", "own-weight"}
+    assert [stage["stage"] for stage in example["evidence"]] == [
+        *("reading", "bounded", "displacement", "statics", "frequency", "damping")
+    ]
+    assert example["scheme"] == {"alpha": 0.5, "delta": 1.0, "gg": 1.0}
+    assert example["causes"] == ["base-compliance", "own-weight", "geometry-updated"]
+    assert example["departure"] is None
+    assert example["opened"] is None
+    assert str(example["sentence"]).startswith("Same model, same scheme: constant acceleration")
+    ranking = example["ranking"]
+    assert (ranking[0]["model"], ranking[0]["name"]) == ("dda", "constant acceleration")
+    # seven digits over 200 rows leave some 1e-7; the numbers stand in the example's README
+    assert 1e-7 < ranking[0]["misfit"] < 5e-6
+    assert ranking[0]["compliance"] == pytest.approx(0.0015, abs=1e-4)
+    # the nearest rival scheme is a thousand times worse
+    assert ranking[1]["misfit"] > 1e3 * ranking[0]["misfit"]
+    assert {row["model"] for row in ranking} == {"dda", "bar", "continuum"}
+
+
+def example_target() -> Target:
+    foreign, s = read(EXAMPLE / "ntdda-p1E-dt2ms_meas.m"), load_scene(EXAMPLE / "scene.toml")
+    column = rectangle_of(s)
+    assert column is not None
+    return Target(column, np.full(200, 0.002), np.arange(200), foreign.displacement)
+
+
+@pytest.mark.long
+def test_the_swinging_base_of_the_examples_readme() -> None:
+    heavy = Variant(0.5, 1.0, 1.0, updated=True, base=10.0, softness=0.005, weight=1.0)
+    (swinging,) = fit(example_target(), [(heavy, ("softness", "base", "weight"))], rounds=30)
+    assert (f"{swinging.misfit:.0e}", round(swinging.variant.base, -1)) == ("5e-07", 20)
+    assert swinging.variant.weight == pytest.approx(0.943, abs=5e-4)
+
+
+def test_numbers_of_the_examples_readme() -> None:
+    plain = Variant(0.5, 1.0, 1.0)
+    moving = replace(plain, updated=True)
+    found = fit(
+        example_target(),
+        [(plain, ()), (moving, ("softness",)), (moving, ("softness", "load")), (moving, ("softness", "weight"))],
+    )
+    assert [f"{f.misfit:.1e}" for f in found] == ["8.7e-03", "2.0e-03", "1.4e-05", "1.9e-06"]
+    assert found[3].variant.weight == pytest.approx(0.970, abs=5e-4)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("program", "opened"),
+    [
+        (Program(dt=4e-3, p=2e9, gg=0.95, rho=3000.0, steps=40), None),
+        (Program(dt=1e-3, p=1e9, g=9.81), [1, 2]),
+        (Program(dt=5e-4, p=1e10, gg=0.98, g=9.81, rho=2300.0), None),
+        (Program(dt=2e-4, p=5e8, steps=100, g=9.81), None),
+    ],
+)
+def test_a_program_of_another_make(program: Program, opened: list[int] | None, tmp_path: Path) -> None:
+    """Base that yields, moving geometry, weight, opening: the scheme is named and the steps are found."""
+    history = run(program)
+    assert opened is None or history.opened == opened
+    s = scene(time__step=program.dt, contact__stiffness=program.p, block__density=program.rho, time__gg=program.gg)
+    answer = compare(s, read(write_measured_point(history, tmp_path / "m.m", program.dt)))
+    assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": program.gg}
+    assert answer.opened == (None if history.opened is None else tuple(history.opened))
+    assert ("contact-opened" in answer.causes) == (history.opened is not None)
+    assert not set(answer.causes) & {"scheme", "gg", "gg-in-one-formula", "start", "time-shift", "springs-factor"}
+    if history.opened:
+        assert answer.departure is not None and answer.departure.step == history.opened[0]
+        assert answer.sentence.startswith("Same scheme")
+    else:
+        assert answer.departure is None
+        assert answer.sentence.startswith("Same model, same scheme")
+
+
+@pytest.mark.long
+def test_a_history_of_finite_elements_is_named_so() -> None:
+    s = scene(time__steps=80)
+    run_ = solve(s.with_values({"fem.elements": 16}), "fem")
+    answer = compare(s, Foreign(run_.time, run_.displacement, run_.contact_pressure))
+    assert answer.ranking[0]["model"] == "bar"
+    assert answer.sentence.startswith("Same model as bar")
+    assert answer.departure is None and answer.causes == []
+
+
+@pytest.mark.long
+def test_a_polygon_is_compared_with_the_linear_models() -> None:
+    corners = [[0.0, 0.0], [2.0, 0.0], [1.7, 1.5], [0.2, 1.5]]
+    s = load_scene("figures-3-4").with_values(
+        {"block.vertices": corners, "time.step": 0.002, "time.steps": 60, "fem.elements": 4}
+    )
+    theirs = solve(s.with_values({"time.alpha": 0.5625}), "dda")
+    answer = compare(s.with_values({"time.alpha": 0.5625}), Foreign(theirs.time, theirs.displacement))
+    assert answer.scheme == {"alpha": 0.5625, "delta": 1.0, "gg": 1.0}
+    assert answer.departure is None
+
+
+# ---- the command line -----------------------------------------------------------------------------------------------
+
+
+def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) -> None:
+    exact = solve(scene(time__steps=30), "dda")
+    table = np.column_stack([1e3 * exact.time, -1e3 * exact.displacement])
+    path = tmp_path / "theirs.csv"
+    path.write_text("t;uy\n" + "\n".join(f"{t:.7g};{u:.7g}" for t, u in table))
+    arguments = ["compare", "figures-3-4", path, "--set", "time.step=0.002", "--columns", "time=t,displacement=uy"]
+    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--report", tmp_path / "a.pdf")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith(
+        "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); the"
+    )
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF-")
+    slipped = typed(*arguments, "--json")
+    assert slipped.returncode == 1  # it departs
+    answer = json.loads(slipped.stdout)
+    assert answer["causes"] == ["sign", "unit"]
+    assert answer["departure"] == {"step": 1, "kind": "amplitude"}
+
+
+def test_bad_input_is_one_line(tmp_path: Path) -> None:
+    assert "cannot be read" in refused("compare", "figures-3-4", tmp_path / "none.csv", "--set", "time.step=0.002")
+
+
+def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
+    s = scene(time__steps=20).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
+    run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")
+    seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor": "block.young"})
+    (found,) = slipped(s, "fem", Goal(np.arange(20), run_.displacement, run_.contact_pressure))
+    assert (found.slip, found.amount) == ("young-factor", pytest.approx(0.9, rel=1e-6))
+    assert found.misfit < 1e-9
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("changes", "cause", "factor"),
+    [({"block.young": 0.9e9}, "young-factor", 0.9), ({"contact.stiffness": 5e8}, "springs-factor", 0.5)],
+)
+def test_a_slip_in_finite_elements_is_that_slip(changes: dict[str, float], cause: str, factor: float) -> None:
+    """A softer spring is near a softer block: on the scene's own mesh the right one leaves nothing."""
+    s = scene(time__steps=60).with_values({"fem.elements": 4, "fem.degree": 1, "block.poisson": 0.25})
+    run_ = solve(s.with_values(changes), "fem")
+    answer = compare(s, Foreign(run_.time, run_.displacement, run_.contact_pressure))
+    assert answer.causes == [cause]
+    assert answer.values[cause] == pytest.approx(factor, rel=1e-4)

@@ -1,0 +1,588 @@
+"""What `compare` says: soft springs are never called benign, and every number in its words has its sign and unit."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from faults import seams
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import line_in
+from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
+
+from validation import load_scene, solve
+from validation.cli import compare as cli_compare
+from validation.diagnosis import departure
+from validation.diagnosis import sentences as wording
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor
+from validation.diagnosis.departure import Departure
+from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.fit import NAMED, Interval
+from validation.diagnosis.fits.rectangle import rectangle_of
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.judgement import MODEL_WORDS, compare
+from validation.diagnosis.other_solvers import Goal, Rival, rivals
+from validation.diagnosis.other_verdict import RivalVerdict
+from validation.diagnosis.other_verdict import _causes as causes_of_rival
+from validation.diagnosis.reading import Foreign
+from validation.diagnosis.sentences import Said
+from validation.diagnosis.variant import Variant
+from validation.errors import InputError
+from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
+from validation.report.chapters import compare as chapters_compare
+from validation.report.figures import histories as figures
+from validation.report.figures.curves import style_of
+
+SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
+OWN = Variant(0.5, 1.0, 1.0)
+
+
+def softened(solver: str, times: float, **changes: Any) -> Answer:
+    """Judge a history of the scene whose normal springs are so many times as stiff as they should be."""
+    scene = SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()})
+    c = scene.contact
+    values = {"contact.stiffness": times * c.stiffness, "contact.shear_stiffness": c.shear}
+    theirs = solve(scene.with_values(values), solver)
+    return compare(scene, Foreign(theirs.time, theirs.displacement, theirs.contact_pressure))
+
+
+# ---- soft springs -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def answer() -> Answer:
+    """At p = E half of the 10 mm is the springs': half as stiff, they add 50 % to the static displacement."""
+    return softened("dda", 0.5)
+
+
+def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> None:
+    assert answer.causes == ["springs-factor"]
+    assert answer.departure is not None and answer.departure.kind == "offset"
+    assert answer.ranking[0]["compliance"] == pytest.approx(0.5, rel=1e-3)
+    assert answer.sentence.startswith("Same scheme: constant acceleration")  # and not "same model"
+    assert "the contact springs are 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
+
+
+def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
+    answer = softened("dda", 1 / 1.04)
+    assert (answer.causes, answer.departure) == (["base-compliance"], None)
+    # the rows alone do not tell a base from softer springs, or from a wider block: the exit status says that it departs
+    assert answer.departs
+    assert [one["causes"] for one in answer.alike] == [["springs-factor"], ["width-factor"]]
+    assert answer.alike[0]["values"]["springs-factor"] == pytest.approx(1 / 1.04, rel=1e-5)
+    assert answer.alike[1]["values"]["width-factor"] == pytest.approx(1.04, rel=1e-5)
+    assert "allowing for a base that adds 2 % to the static displacement" in answer.sentence
+    # what is no fault is taken over into what is expected
+    assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
+
+
+@pytest.mark.parametrize("times", [0.5, *(pytest.param(f, marks=pytest.mark.long) for f in (0.2, 1.1, 2.0))])
+def test_springs_by_a_round_factor_are_never_a_base_however_stiff_they_are(times: float) -> None:
+    """At p = 100E springs half as stiff add 1 % to the static displacement, springs twice as stiff take 0.5 % off."""
+    answer = softened("dda", times, contact__stiffness=1e11)
+    assert answer.causes == ["springs-factor"] and answer.departs
+    assert answer.values["springs-factor"] == pytest.approx(times, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("factor", "error", "is_round"),
+    [(0.5, 1e-4, True), (0.8, 0.0, True), (1 / 1.1, 1e-5, True), (1 / 1.04, 0.0, False), (0.5, 0.01, False)],
+)
+def test_a_round_factor_has_two_digits_that_are_known(factor: float, error: float, is_round: bool) -> None:
+    assert round_factor(factor, error) is is_round
+
+
+def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
+    """Viscous damping is near to a discount: a compliance of 2e-6 beside it does not make it one."""
+    displacement, pressure = run(Plain(steps=60, p=2e10, viscous=10.0))
+    scene = scene_of(Plain(steps=60, p=2e10))
+    answer = compare(scene, Foreign(scene.time.step * np.arange(1, 61), displacement, pressure))
+    assert "gg" not in answer.causes
+
+
+def test_backward_euler_from_rest_has_delta_of_one_and_a_half() -> None:
+    """v1 = v + dt a1, x1 = x + dt v1, M a1 + K x1 = F: row by row Newmark's (1, 3/2) from a zero acceleration."""
+    w2, dt, force = 300.0**2, 1e-3, 1.0
+    x = v = 0.0
+    implicit = []
+    for _ in range(40):
+        v = (v + dt * (force - w2 * x)) / (1 + dt * dt * w2)
+        x += dt * v
+        implicit.append(x)
+    alpha, delta = NAMED["backward Euler"]
+    y = u = a = 0.0
+    newmark = []
+    for _ in range(40):
+        ahead = y + dt * u + dt * dt * (0.5 - alpha) * a
+        new = (force - w2 * ahead) / (1 + alpha * dt * dt * w2)
+        y = ahead + alpha * dt * dt * new
+        u += dt * ((1 - delta) * a + delta * new)
+        a = new
+        newmark.append(y)
+    assert np.allclose(newmark, implicit, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("times", "cause", "departs"),
+    [(0.5, "springs-factor", True), (1 / 1.04, "base-compliance", False)],
+)
+@pytest.mark.long
+def test_an_elastic_block_on_soft_springs_is_judged_alike(times: float, cause: str, departs: bool) -> None:
+    found = softened("bar", times, time__gg=0.98)
+    assert found.causes == [cause]
+    assert (found.departure is not None) == departs == (not found.sentence.startswith("Same model"))
+    assert found.departure is None or found.departure.kind == "offset"  # it comes to rest lower
+
+
+@pytest.mark.parametrize(("times", "cause"), [(0.5, "springs-factor"), (1 / 1.04, "base-compliance")])
+def test_a_solver_finds_the_springs_on_which_it_made_a_history(times: float, cause: str) -> None:
+    """What `compare` asks of every solver when no cause explains a history, here of the one that made it."""
+    c = SCENE.contact
+    softer = SCENE.with_values({"contact.stiffness": times * c.stiffness, "contact.shear_stiffness": c.shear})
+    run = solve(softer, "bar")
+    (found,) = rivals(SCENE, ["bar"], Goal(np.arange(30), run.displacement, run.contact_pressure), schemes=[])
+    assert found.softness == pytest.approx(-math.log(times), rel=1e-6) and found.misfit < 1e-9 < found.plain
+    assert causes_of_rival(SCENE, found)[0] == [cause]
+
+
+def target(**changes: Any) -> Target:
+    column = rectangle_of(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}))
+    assert column is not None
+    return Target(column, np.full(4, 0.002), np.arange(4), -np.ones(4))
+
+
+def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own() -> None:
+    """At p = E springs and block give half each; at p = 10E the springs give a twelfth of 5.5 mm, 0.5 mm."""
+    soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
+    assert compliance(target(), soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
+    assert compliance(target(contact__stiffness=1e10), soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("added", "mass", "benign"),
+    [
+        (0.049, 0.0, True),
+        (0.051, 0.0, False),
+        (0.5, 0.0, False),
+        (-0.009, 0.0, False),  # no base adds a negative compliance
+        (-1e-6, 10.0, False),
+        (0.19, 10.0, True),  # a base that is seen to swing explains itself
+        (0.21, 10.0, False),
+        (0.5, 10.0, False),
+    ],
+)
+def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
+    added: float, mass: float, benign: bool
+) -> None:
+    assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
+    v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
+    assert benign_springs(target(), v) is benign
+
+
+# ---- other faults -------------------------------------------------------------------------------------------------
+
+
+def judged(change: Any, **values: Any) -> Answer:
+    """Judge a history of DDA with other values against the scene at gg = 0.98, its columns changed."""
+    scene = SCENE.with_values({"time.gg": 0.98})
+    run = solve(scene.with_values({key.replace("__", "."): value for key, value in values.items()}), "dda")
+    return compare(scene, Foreign(run.time, *change(run.displacement, run.contact_pressure)))
+
+
+def test_a_pressure_in_kilopascals_is_a_slip_of_units_and_leaves_nothing_else() -> None:
+    answer = judged(lambda v, p: (v, -1e-3 * p))
+    assert answer.causes == ["sign", "unit"] and answer.misfit < 1e-6
+    assert answer.ranking[0]["gg"] == 0.98 and answer.ranking[0]["misfit"] < 1e-6
+
+
+def test_another_scheme_is_named_in_plain_data_as_it_is() -> None:
+    answer = judged(lambda v, p: (v, p), time__alpha=0.25, time__delta=0.5)
+    assert answer.causes == ["scheme"]
+    assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 0.98}
+
+
+@pytest.mark.parametrize(
+    ("late", "words"),
+    [(1, "the rows are 1 step late"), pytest.param(-1, "the rows are 1 step early", marks=pytest.mark.long)],
+)
+def test_rows_that_are_shifted_by_a_step_are_said_so(late: int, words: str) -> None:
+    def shifted(values: np.ndarray) -> np.ndarray:
+        return np.append(0.0, values[:-1]) if late > 0 else np.append(values[1:], values[-1])
+
+    answer = judged(lambda v, p: (shifted(v), shifted(p)))
+    assert answer.causes == ["time-shift"] and words in answer.sentence
+
+
+@pytest.mark.long
+def test_what_no_cause_explains_departs_by_no_known_cause() -> None:
+    wiggle = 0.06 * np.sin(2.1 * np.arange(30)) * (np.arange(30) > 9)
+    answer = judged(lambda v, p: (v * (1 + wiggle), None))
+    assert answer.departure is not None and answer.departure.step >= 10
+    assert answer.misfit > 0.02 and answer.sentence.startswith("Departs from step")
+
+
+# ---- words --------------------------------------------------------------------------------------------------------
+
+
+NUMBERS = {"springs-factor": 0.25, "load-factor": 1.25, "density-factor": 0.5, "young-factor": 0.8, "dead-band": 1e-3,
+           "reported-point": 1.0, "pressure-factor": 0.5, "side-factor": 1.1, "poisson": 0.3}  # fmt: skip
+
+
+def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
+    variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
+    scene = Variant(0.25, 0.5, 0.99, "consistent")
+    gone = Departure(7, "phase")
+    values = {name: NUMBERS[name] for name in causes if name in NUMBERS}
+    return wording.sentence(Said(variant, scene, causes, values, gone, [3, 4, 5, 9], 0.0123, soft))
+
+
+@pytest.mark.parametrize(
+    ("cause", "fields", "words"),
+    [
+        ("gg", {}, "gg = 0.97 where the scene has 0.99"),
+        ("scheme", {}, "a different scheme from the scene's average acceleration (alpha = 0.25, delta = 0.5, gg = 0.99)"
+         "; the history matches constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"),
+        ("start", {"start": "zero"}, 'the initial acceleration is "zero", not "consistent"'),
+        ("gg-in-one-formula", {"discounted": "velocity"}, "gg is applied only in the formula for the velocity (7)"),
+        ("gg-in-one-formula", {"discounted": "displacement"}, "applied only in the formula for the displacement (6)"),
+        ("time-shift", {"shift": 1}, "the rows are 1 step late"),
+        ("time-shift", {"shift": -1}, "the rows are 1 step early"),
+        ("springs-factor", {"softness": math.log(4)}, "the contact springs are 0.25 times the scene's"),
+        ("load-factor", {"load": 1.25}, "the load, or the displacement, is 1.25 times the scene's"),
+        ("contact-opened", {"opens": True}, "the contact opened in steps 3-5, 9"),
+        ("time-shift", {"shift": 2}, "the rows are 2 steps late"),
+        ("density-factor", {}, "the density is 0.5 times the scene's"),
+        ("young-factor", {}, "Young's modulus is 0.8 times the scene's"),
+        ("side-factor", {}, "the side of the block is 1.1 times the scene's"),
+        ("poisson", {}, "Poisson's ratio is 0.3"),
+        ("dead-band", {}, "an open contact closes only beyond a penetration of about 0.001 m"),
+        ("reported-point", {"point": 1.0}, "a point +1 m above the centroid, the top edge"),
+        ("pressure-shift", {"late": 1.0}, "the pressure is 1 step late, the displacement is right"),
+        ("pressure-shift", {"late": -1.0}, "the pressure is 1 step early"),
+        ("pressure-shift", {"late": 0.5}, "the pressure is the mean of this step and the one before"),
+        ("pressure-factor", {}, "the reported pressure is 0.5 times the scene's"),
+        ("load-row", {"strain_load": -1.0}, "the load has the wrong sign in the row of ey"),
+        ("coupling", {"coupling": 0.0}, "the springs' coupling of v and ey is missing"),
+        ("stress-not-kept", {"kept": "stress"}, "only the stress is carried over"),
+    ],
+)  # fmt: skip
+def test_each_fault_is_told_with_its_number(cause: str, fields: dict[str, Any], words: str) -> None:
+    text = said([cause], **fields)
+    assert words in text
+    assert "eparts from step 7 on, mainly in phase" in text and text.endswith("the remaining difference is 1.2 %.")
+
+
+def test_what_is_no_fault_is_told_with_its_number() -> None:
+    text = said(["gg", "base-compliance", "own-weight"], soft=0.031, weight=0.97)
+    assert (
+        "allowing for a base that adds 3.1 % to the static displacement and the block's own weight (0.97 x 9.81" in text
+    )
+
+
+def rival(model: str, *scheme: float | None, causes: list[str], explained: bool = True) -> RivalVerdict:
+    best = Rival(model, *(scheme or (None, None, None)), 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    return RivalVerdict(best, [best], causes, {}, np.zeros(1), explained, 0.25)
+
+
+def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
+    scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
+    bar = "bar (the exact bar, which fine finite elements converge to)"
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["base-compliance"])
+    assert wording.rival_sentence(found, found.causes, None, MODEL_WORDS) == (
+        f"Same model as {bar}, same scheme: {scheme}; a slightly compliant base; the remaining difference is 1.2 %."
+    )
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["scheme"])
+    assert wording.rival_sentence(found, found.causes, Departure(7, "phase"), MODEL_WORDS) == (
+        f"Closest match: {bar}, a different scheme: {scheme}; departs from step 7 on, mainly in phase; "
+        "a different scheme; the remaining difference is 1.2 %."
+    )
+    found = rival("continuum", causes=[])
+    assert "same scheme: exact in time; the" in wording.rival_sentence(found, [], None, MODEL_WORDS)
+    found = rival("bar", 0.5, 1.0, 0.97, causes=["young-factor"], explained=False)
+    text = wording.rival_sentence(found, ["unexplained"], Departure(7, "phase"), MODEL_WORDS)
+    assert text.startswith("Departs, not explained: nearest is bar") and "25 % of the difference left" in text
+
+
+def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
+    variant = Variant(0.5, 1.0, 1.0)
+    about = Said(variant, variant, ["unexplained"], {}, Departure(7, "phase"), [], 0.0123, 0.0)
+    stages = [Stage("statics", True, "", {}), Stage("frequency", False, "", {}), Stage("damping", None, "", {})]
+    near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
+    assert wording.not_explained(about, near, [], 0.034, stages) == (
+        "Departs from step 7 on, mainly in phase, not explained: nearest is gg 0.98 and density-factor 1.01, "
+        "3.4 % left; right so far: statics; wrong: frequency."
+    )
+    alike = [near | {"further_scene": "another time step"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
+    text = wording.not_explained(about, None, alike, 0.034, stages)
+    assert "gg 0.98 and density-factor 1.01 or scheme give the same rows" in text
+    assert text.endswith("to tell them apart, try another time step.")
+
+
+# ---- where and how a history departs ------------------------------------------------------------------------------
+
+T = np.arange(1, 201) / 200
+WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
+
+
+@pytest.mark.parametrize(
+    ("kind", "given"),
+    [
+        ("offset", WANTED - 0.1),
+        ("amplitude", -1 + 1.3 * np.exp(-2 * T) * np.cos(40 * T)),
+        ("damping", -1 + np.exp(-2.6 * T) * np.cos(40 * T)),
+        ("phase", -1 + np.exp(-2 * T) * np.cos(40.4 * T)),
+    ],
+)
+def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
+    assert departure.measured(WANTED, given, np.arange(200), 0.0).kind == kind
+
+
+@pytest.mark.parametrize(
+    ("rows", "noise", "step"),
+    [
+        (np.arange(200), 0.0, 100),
+        (4 * np.arange(200) + 3, 0.0, 400),  # every fourth step was recorded
+        (np.arange(200), 0.002, 100),
+        (np.arange(200), 0.003, 150),  # four standard deviations hide one per cent
+    ],
+)
+def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noise: float, step: int) -> None:
+    given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
+    assert departure.measured(WANTED, given, rows, noise).step == step
+
+
+def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    seams.DIAGNOSIS_OPENED.put(monkeypatch, lambda target, found: [3, 4, 9])
+    assert softened("dda", 1.0).opened == (3, 9)
+
+
+# ---- what is printed ----------------------------------------------------------------------------------------------
+
+
+def row(model: str, misfit: float, soft: float | None, name: str | None, alpha: float | None) -> dict[str, Any]:
+    return {"model": model, "name": name, "alpha": alpha, "delta": alpha and 1.0, "gg": 1.0, "misfit": misfit,
+            "compliance": soft}  # fmt: skip
+
+
+CURVES = {name: (0.1 * np.arange(1, 6), -1e-3 * scale * np.ones(5)) for name, scale in
+          (("the file", 4.0), ("dda", 5.0), ("best", 6.0))}  # fmt: skip
+ANSWER = Answer(
+    {"alpha": 0.5, "delta": 1.0, "gg": 0.97},
+    [row("dda", 0.0123, 0.045, "constant acceleration", 0.5), row("dda", 0.4, 0.0678, None, 0.31),
+     row("continuum", 0.87, None, None, None)],
+    Departure(17, "damping"),
+    ["gg", "contact-opened"],
+    (3, 41),
+    "It departs.",
+    ("a note",),
+    {"alpha": Interval(0.51, 0.02)},
+    [{"alpha": 0.7, "gg": -0.7}],
+    0.0123,
+    CURVES,
+)  # fmt: skip
+
+
+def test_the_command_prints_misfit_and_compliance_in_per_cent(capsys: pytest.CaptureFixture[str]) -> None:
+    cli_compare._print(ANSWER)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "It departs."
+    assert "the contact opened: first step 3, last 41" in lines
+    (head,) = [i for i, line in enumerate(lines) if "misfit [%]" in line]
+    shown = [line.split() for line in lines[head + 1 : head + 4]]
+    assert lines[head].split() == ["model", "scheme", "misfit", "[%]", "compliance", "[%]"]
+    assert shown == [
+        ["dda", "constant", "acceleration", "1.23", "4.5"],
+        ["dda", "0.31,", "1", "40", "6.78"],
+        ["continuum", "exact", "in", "time", "87", "-"],
+    ]
+    assert lines[head + 4 :] == [
+        "fitted alpha = 0.51 +- 0.02 (95 %)",
+        "not determined by the data: +0.70 alpha, -0.70 gg",
+        "note: a note",
+    ]
+
+
+def test_the_best_schemes_are_listed_and_each_stage_is_right_or_wrong(capsys: pytest.CaptureFixture[str]) -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(cli_compare.RANKING_LINES + 2)]
+    stages = [Stage(name, agrees, "words", {}) for name, agrees in (("rest", True), ("period", False), ("load", None))]
+    cli_compare._print(replace(ANSWER, ranking=ranked, evidence=tuple(stages)))
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [line[0] for line in lines if len(line) > 2 and line[1:2] == ["n"]] == [f"m{i}" for i in range(6)]
+    marks = {line[0]: line[1] for line in lines if line[2:] == ["words"]}
+    assert marks == {"rest": "right", "period": "wrong", "load": "-"}
+
+
+def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.CaptureFixture[str]) -> None:
+    exact = [row("dda", 5e-14, -3e-16, "constant acceleration", 0.5)]
+    told = {"alpha": Interval(0.5, 4e-15), "softness": Interval(-3e-17, 2e-7)}
+    cli_compare._print(replace(ANSWER, ranking=exact, told=told, untold=[], causes=[]))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-4].split() == ["dda", "constant", "acceleration", "below", "1e-10", "0"]
+    assert lines[-3:-1] == ["fitted alpha = 0.5 +- less than 1e-12 (95 %)", "fitted softness = 0 +- 2e-07 (95 %)"]
+    variant = Variant(0.5, 1.0, 1.0)
+    text = wording.sentence(Said(variant, variant, [], {}, None, [], 5e-14, 0.0))
+    assert text.endswith("gg = 1); the remaining difference is below 1e-10 %.")
+
+
+def test_plain_data_hold_scheme_ranking_departure_and_open_steps() -> None:
+    found = json.loads(json.dumps(ANSWER.as_dict()))
+    assert found["scheme"] == {"alpha": 0.5, "delta": 1.0, "gg": 0.97}
+    assert found["departure"] == {"step": 17, "kind": "damping"}
+    assert (found["opened"], found["causes"], found["sentence"]) == ([3, 41], ["gg", "contact-opened"], "It departs.")
+    assert [line["misfit"] for line in found["ranking"]] == [0.0123, 0.4, 0.87]
+
+
+def test_the_page_shows_the_same_in_per_cent_and_the_curves_in_millimetres(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    caught: list[Figure] = []
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure))
+    blocks = chapters_compare.page(SCENE, "theirs.csv", ANSWER, tmp_path)
+    assert [b for b in blocks if isinstance(b, Callout)] == [Callout("It departs.", "warn")]
+    facts, ranking = (b for b in blocks if isinstance(b, Table))
+    assert facts.rows[2:] == (
+        ("departure", "step 17, mainly in damping"),
+        ("contact open", "first step 3, last 41"),
+    )
+    assert [c.title for c in ranking.columns] == ["Model", "Scheme", "Misfit [%]", "Compliance [%]"]
+    assert ranking.rows == (
+        ("dda", "constant acceleration", "1.23", "4.5"),
+        ("dda", "α = 0.31, δ = 1", "40", "6.78"),
+        ("continuum", "exact in time", "87", "–"),
+    )
+    top, below = caught[0].axes
+    for name, (_, values) in CURVES.items():
+        _, y = line_in(top, to_hex(style_of(name).color))
+        assert np.allclose(y, 1e3 * values)
+    _, y = line_in(below, to_hex(style_of("dda").color))
+    assert np.allclose(y, 0.25)  # of the file's largest value
+    assert any(isinstance(b, FigureBlock) for b in blocks) and Paragraph("a note", "small") in blocks
+
+
+def test_the_page_draws_the_pressure_below_the_displacement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    caught: list[Figure] = []
+    monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure))
+    pressures = {name: 1e6 * scale * np.ones(5) for name, scale in (("the file", 4.0), ("dda", 5.0), ("best", 6.0))}
+    chapters_compare.page(SCENE, "theirs.csv", replace(ANSWER, pressures=pressures), tmp_path)
+    top, middle, below = caught[0].axes
+    for name, values in pressures.items():
+        _, y = line_in(middle, to_hex(style_of(name).color))
+        assert np.allclose(y, 1e-6 * values)
+    assert top.get_ylabel() != middle.get_ylabel() and below.get_yscale() == "log"
+
+
+def test_the_exact_continuum_is_not_the_same_scheme() -> None:
+    """In space and in time it is another model than the scene's own run by DDA, which the status says."""
+    scene = SCENE.with_values({"time.step": 5e-4})
+    run = solve(scene, "continuum")
+    answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
+    assert answer.causes == ["exact-in-time"] and answer.departs and answer.departure is not None
+    assert answer.sentence.startswith("Closest match: continuum") and "a different scheme" in answer.sentence
+    assert not [stage for stage in answer.evidence if stage.agrees is False]
+
+
+@pytest.mark.long
+def test_what_surrounds_a_block_leaves_no_wrong_stage() -> None:
+    run = solve(SCENE.with_values({"load.gravity": 9.81}), "dda")
+    answer = compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
+    assert answer.causes == ["own-weight"] and answer.sentence.startswith("Same model, same scheme")
+    assert not [stage for stage in answer.evidence if stage.agrees is False]
+    assert answer.intervals["own-weight"] == pytest.approx((1, 1), abs=1e-6)
+
+
+def test_a_wrong_pressure_dates_the_departure_by_itself() -> None:
+    answer = judged(lambda v, p: (v, 0.5 * p))
+    assert answer.causes == ["pressure-factor"]
+    assert answer.departure is not None and answer.departure.step == 1
+    assert answer.sentence.count("the displacement is right") == 1
+
+
+def test_a_slip_of_sign_and_unit_is_told_with_its_column_and_factor() -> None:
+    answer = judged(lambda v, p: (v, -1e-3 * p))
+    assert [(slip.cause, slip.column, slip.factor) for slip in answer.slips] == [
+        ("sign", "contact_pressure", -1.0),
+        ("unit", "contact_pressure", 1e-3),
+    ]
+    assert "the contact pressure is in other units, 0.001 times the scene's" in answer.sentence
+    assert answer.as_dict()["slips"][1] == {"cause": "unit", "column": "contact_pressure", "factor": 1e-3}
+
+
+def test_the_page_lists_the_best_schemes_what_is_left_and_which_stages_are_right() -> None:
+    ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(chapters_compare.LINES + 2)]
+    marks = (("at_rest", True), ("period", False), ("load", None))
+    stages = tuple(Stage(name, agrees, "words", {}) for name, agrees in marks)
+    given = replace(ANSWER, causes=[], ranking=ranked, nearest={"causes": ["gg"]}, unexplained=0.25, evidence=stages)
+    assert [line[0] for line in chapters_compare._ranking(given).rows] == [f"m{i}" for i in range(5)]
+    (facts,), (evidence,) = chapters_compare._facts(given), chapters_compare._evidence(given)
+    assert isinstance(facts, Table) and facts.rows[0] == ("nearest", "gg: 25 % left")
+    assert isinstance(evidence, Table)
+    assert [line[:2] for line in evidence.rows] == [("at rest", "right"), ("period", "wrong"), ("load", "–")]
+
+
+def test_causes_that_give_the_same_rows_are_named_with_their_numbers() -> None:
+    one = {"causes": ["gg", "sign"], "values": {"gg": 0.9812345}}
+    assert cli_compare._listed(one) == "gg 0.98123 and sign"
+
+
+def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answer) -> None:
+    runs = {name: solve(SCENE.with_values({"contact.stiffness": p, "contact.shear_stiffness": 1e9}), "dda")
+            for name, p in (("the file", 5e8), ("dda", 1e9), ("best", 5e8))}  # fmt: skip
+    assert list(answer.curves) == list(runs)
+    for name, (time, values) in answer.curves.items():
+        assert np.allclose(time, runs[name].time) and np.allclose(values, runs[name].displacement, rtol=1e-6)
+    assert [line["misfit"] for line in answer.ranking] == sorted(line["misfit"] for line in answer.ranking)
+
+
+def test_damping_of_mass_and_stiffness_together_is_named() -> None:
+    data = Plain(steps=60, p=3e9, viscous=10.0, structural=1e-4)
+    v, p = run(data)
+    answer = compare(scene_of(data), Foreign(data.dt * np.arange(1, 61), v, p))
+    assert answer.causes == ["viscous-damping", "stiffness-damping"]
+    assert answer.values == pytest.approx({"viscous-damping": 10.0, "stiffness-damping": 1e-4}, rel=1e-5)
+
+
+@pytest.mark.parametrize("with_pressure", [True, False])
+def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction(with_pressure: bool) -> None:
+    weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
+    own = solve(weighty, "dda")
+    answer = compare(weighty, Foreign(own.time, -own.displacement, -own.contact_pressure if with_pressure else None))
+    assert answer.causes == ["unexplained"]
+    assert [(one["causes"], one["values"]) for one in answer.alike] == [
+        (["sign"], {}),
+        (["gravity-factor"], {"gravity-factor": -1.0}),
+    ]
+    assert answer.unexplained == 0 and answer.nearest is None
+    assert answer.departure is not None and answer.departure.step == 1
+    # the pressure alone stays: that is a sign, not a load
+    assert compare(weighty, Foreign(own.time, -own.displacement, own.contact_pressure)).causes == ["sign"]
+
+
+def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity() -> None:
+    weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
+    time = 0.002 * np.arange(1, 31)
+    answer = compare(weighty, Foreign(time, np.zeros(30), np.zeros(30)))
+    assert answer.causes == ["gravity-factor"] and answer.values == {"gravity-factor": 0.0}
+    with pytest.raises(InputError, match="must not be zero throughout"):
+        compare(SCENE, Foreign(time, np.zeros(30), np.zeros(30)))
+
+
+def test_the_interval_of_a_dead_band_ends_where_the_rows_change() -> None:
+    opening = {"contact.law": "unilateral", "contact.stiffness": 3e9, "time.step": 4e-4, "time.steps": 140}
+    plain = SCENE.with_values(opening)
+    banded = solve(plain.with_values({"contact.band": [1e-3, 1e-6]}), "dda")
+    answer = compare(plain, Foreign(banded.time, banded.displacement, banded.contact_pressure))
+    assert answer.causes == ["dead-band"]
+    low, high = answer.intervals["dead-band"]
+    assert low < 1e-3 < high
+    assert low <= answer.values["dead-band"] <= high
+    inside, outside = (solve(plain.with_values({"contact.band": [b, 1e-3 * b]}), "dda") for b in (low, 0.999 * low))
+    assert np.array_equal(inside.displacement, banded.displacement)
+    assert not np.array_equal(outside.displacement, banded.displacement)

@@ -1,0 +1,104 @@
+"""Fifty histories of known origin: the confusion matrix of the documentation is what the code does, and is gated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from conftest import thinned
+from faults import seams
+from oracles import confusion
+from oracles.pages import page_with
+
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES
+
+pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
+
+
+@pytest.fixture(scope="module")
+def fifty():
+    return confusion.judge()
+
+
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, marks=pytest.mark.long) for name in ("one of each cause", "fifty")]
+)
+def judged(request: pytest.FixtureRequest):
+    return request.getfixturevalue("fifty") if request.param == "fifty" else confusion.judge(first=True)
+
+
+@pytest.mark.long
+def test_there_are_fifty(fifty) -> None:
+    assert len(fifty) == 50
+
+
+def hidden(one: confusion.Known, answer: Answer) -> bool:
+    """Whether nothing is named where noise may hide what tells one scheme from a strange integrator."""
+    return one.cause == "scheme" and one.noise > 0 and answer.causes == ["unexplained"]
+
+
+def test_every_history_is_given_its_own_cause(judged) -> None:
+    wrong = [
+        (i, one.cause, answer.causes)
+        for i, (one, answer, _) in enumerate(judged)
+        if confusion.told(answer) != one.cause and not hidden(one, answer)
+    ]
+    assert wrong == []
+    assert sum(hidden(one, answer) for one, answer, _ in judged) <= 1
+
+
+def test_the_scheme_is_named_and_the_open_steps_are_found(judged) -> None:
+    for i, (one, answer, history) in enumerate(judged):
+        if hidden(one, answer):
+            continue
+        p = one.program
+        # a fitted number is known to noise / sqrt(rows) over what it does to a history, a tenth or more; without
+        # noise a fit stops where it gains no more than a thousandth of seven digits' misfit
+        allowed = 1e-4 + 2 * one.noise
+        given = (answer.scheme["alpha"], answer.scheme["delta"], answer.scheme["gg"])
+        assert given == pytest.approx((p.alpha, p.delta, p.gg), abs=allowed), i
+        assert (None if answer.opened is None else list(answer.opened)) == history.opened, i
+
+
+def test_a_departure_is_where_a_fault_is(judged) -> None:
+    for i, (one, answer, _) in enumerate(judged):
+        faulty = one.cause != confusion.SAME and not CAUSES[one.cause].benign
+        assert (answer.departure is not None) == faulty, i
+        if answer.departure is not None:
+            assert 1 <= answer.departure.step <= 3, i  # every fault here is there from the start
+
+
+@pytest.mark.long
+def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
+    page = confusion.PAGE.read_text()
+    found = page_with(confusion.matrix(fifty), page, confusion.BEGIN, confusion.END)
+    assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
+
+
+def first(cause: str) -> tuple[int, confusion.Known]:
+    return next((i, one) for i, one in enumerate(confusion.known()) if one.cause == cause)
+
+
+def without(*unwanted: str) -> Callable[..., Callable[..., object]]:
+    """Take some causes out of the catalogue."""
+    return lambda sound: lambda *given: [move for move in sound(*given) if move.id not in unwanted]
+
+
+# the seam, what is made of it, and the history that is then misjudged
+FAULTS = {
+    "no shift is tried": (seams.SEARCH_MOVES, without("time-shift"), "time-shift"),
+    "gg is in both formulas": (seams.SEARCH_MOVES, without("gg-in-one-formula"), "gg-in-one-formula"),
+    "anything is left too much": (seams.DECISION_ACCEPTED, lambda sound: lambda *a, **k: False, "start"),
+    "no sign is turned": (seams.READINGS_FACTORS, lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
+}
+
+
+@pytest.mark.parametrize("name", thinned(FAULTS, 4))
+@pytest.mark.long
+def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    seam, wrap, cause = FAULTS[name]
+    seam.wrap(monkeypatch, wrap)
+    seed, one = first(cause)
+    answer, _ = one.judged(seed)
+    assert confusion.told(answer) != cause

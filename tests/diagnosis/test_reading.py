@@ -1,0 +1,138 @@
+"""Histories of other programs: what is read, and what is refused in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.shi_dda import Program, run, write_measured_point
+
+from validation.diagnosis.reading import Foreign, parse_columns, parse_scale, read, steppings
+from validation.errors import InputError
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "ntdda-p1E-dt2ms_meas.m"
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "h.csv"
+    path.write_text(text)
+    return path
+
+
+def test_the_measured_point_of_ntdda() -> None:
+    found = read(EXAMPLE)
+    assert len(found.time) == 200
+    assert found.displacement[0] == -1.839377e-03
+    assert found.displacement[-1] == -1.008814e-02
+    np.testing.assert_allclose(found.steps, 0.002)
+
+
+def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path: Path) -> None:
+    program = Program(dt=5e-4, steps=60, q=-5e6, p=2e9, opens=False)
+    history = run(program)
+    assert history.displacement.min() >= 0 or history.displacement.max() > 0
+    found = read(write_measured_point(history, tmp_path / "m.m", program.dt))
+    # seven digits of each size
+    np.testing.assert_allclose(found.displacement, history.displacement, rtol=1e-6)
+
+
+def test_an_interrupted_measured_point_file(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text()
+    cut = tmp_path / "cut.m"
+    cut.write_text(text[: len(text) // 2])
+    assert 90 < len(read(cut).time) < 110
+
+
+def test_a_point_is_picked_by_name(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text()
+    both = tmp_path / "both.m"
+    both.write_text(text + text.replace("measpoint1", "measpoint2").replace("1.839377e-03", "1.839900e-03"))
+    assert read(both, {"displacement": "measpoint2"}).displacement[0] == -1.8399e-3
+    with pytest.raises(InputError, match="no measured point 'measpoint3'; it has measpoint1, measpoint2"):
+        read(both, {"displacement": "measpoint3"})
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", " "])
+def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str) -> None:
+    rows = [("t", "uy", "sig"), (0, 0, 0), (2, 1.5, 0.5), (4, 2.5, 1), (6, 3, 2), (8, 3.5, 2.5)]
+    text = "# made elsewhere\n" + "\n".join(separator.join(map(str, row)) for row in rows)
+    columns = parse_columns("time=T,displacement=uy,contact_pressure=3")
+    scale = parse_scale("time=1e-3,displacement=-1e-3,contact_pressure=1e6")
+    found = read(written(tmp_path, text), columns, scale)
+    np.testing.assert_allclose(found.time, [0.002, 0.004, 0.006, 0.008])
+    np.testing.assert_allclose(found.displacement, [-0.0015, -0.0025, -0.003, -0.0035])
+    assert found.pressure is not None
+    np.testing.assert_allclose(found.pressure, [0.5e6, 1e6, 2e6, 2.5e6])
+    assert "the row at t = 0 is ignored" in found.notes
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "empty"),
+        ("time,displacement\n1,2\n2,3\n3,4\n", "at least 4 rows after t = 0, got 3"),
+        ("time,uy\n1,2\n2,3\n3,4\n4,5\n", "no column 'displacement' for displacement; it has time, uy; name it with"),
+        ("time,displacement\n1,2\n1,3\n3,4\n4,5\n", "time: must increase from row to row, got 1 in row 2"),
+        (
+            "time,displacement\n1,2\n2,nan\n3,4\n4,5\n",
+            "displacement: must be finite numbers below 1e+100 in size, got nan",
+        ),
+        ("time,displacement\n1,2\n2,3\n3,4\n4,1e300\n", "got 1e+300 in row 4"),
+        ("time,displacement\n1,2\n2,3,4\n3,4\n4,5\n", "row 2: must be 2 numbers"),
+        ("measpoint1=[\n1 2 3\n4 5 6\n];", "must hold rows of 9 numbers"),
+    ],
+)
+def test_a_file_that_is_no_history(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(InputError, match=r"h\.csv") as error:
+        read(written(tmp_path, text))
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("text", ["uy", "displacement=", "force=f", "displacement=nan", "displacement=0"])
+def test_options_that_say_nothing(text: str) -> None:
+    with pytest.raises(InputError, match="--"):
+        (parse_scale if "=n" in text or "=0" in text else parse_columns)(text)
+
+
+def history_at(times: list[float] | np.ndarray) -> Foreign:
+    return Foreign(np.asarray(times, dtype=float), np.ones(len(times)))
+
+
+def test_times_name_the_steps() -> None:
+    step = 0.002
+    every = steppings(history_at(step * np.arange(1, 9)), step)
+    assert [(len(s.steps), s.note) for s in every] == [(8, "")]
+    third = steppings(history_at(3 * step * np.arange(1, 9)), step)
+    assert "every 3 steps" in third[0].note
+    np.testing.assert_array_equal(third[0].rows, 3 * np.arange(1, 9) - 1)
+    assert "the program's step is 0.006" in third[1].note
+    some = steppings(history_at(step * np.array([1, 2, 4, 7, 9])), step)[0]
+    assert "non-uniform" in some.note
+    np.testing.assert_array_equal(some.rows, [0, 1, 3, 6, 8])
+    other = steppings(history_at(0.0005 * np.arange(1, 9)), step)[0]
+    np.testing.assert_allclose(other.steps, 0.0005)
+    assert "compared at the program's" in other.note
+    free = steppings(history_at([0.001, 0.0021, 0.0033, 0.0041]), step)[0]
+    np.testing.assert_allclose(free.steps, [0.001, 0.0011, 0.0012, 0.0008])
+    assert "each row is taken as one step" in free.note
+
+
+def test_times_in_milliseconds_are_a_slip_of_units() -> None:
+    found = steppings(history_at(2.0 * np.arange(1, 9)), 0.002)[0]
+    assert found.factor == 1000
+    np.testing.assert_allclose(found.steps, 0.002)
+
+
+def test_the_names_of_the_former_room_still_work() -> None:
+    from validation import compare as room
+    from validation.compare import causes, diagnosis, reading
+    from validation.diagnosis import answer, judgement
+    from validation.diagnosis import causes as table
+    from validation.diagnosis import reading as files
+
+    assert room.compare is diagnosis.compare is judgement.compare
+    assert diagnosis.Answer is answer.Answer
+    assert causes.CAUSES is table.CAUSES
+    assert (reading.Foreign, reading.read) == (files.Foreign, files.read)

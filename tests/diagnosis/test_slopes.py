@@ -1,0 +1,337 @@
+"""`compare` on slopes: the law that a history obeys, from programs that are not the suite's."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import thinned, typed
+from oracles.sliding_dda import Motion, Slider, run
+
+from validation import load_scene
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign, read
+from validation.errors import InputError
+from validation.scenes.scene import Scene
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda"
+FILE = EXAMPLE / "ntdda-phi22-slope20-dt2ms_meas.m"
+LOAD, WEIGHT, SLOPE = 1e6, 10800 * 9.81, math.radians(20)
+SOFT = 3e-3  # of the normal springs: the base of such a program
+BANDS = (1e-3, 1e-6)  # m
+
+
+def scene(**changes: object) -> Scene:
+    return load_scene(EXAMPLE / "slope.toml").with_values({k.replace("__", "."): v for k, v in changes.items()})
+
+
+def foreign(found: Motion) -> Foreign:
+    return Foreign(found.time, found.v, sideways=found.u)
+
+
+def program(**changes: object) -> Motion:
+    """A program that adds the block's weight, straight down, on a base that yields a little."""
+    force = (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE) - WEIGHT)
+    data: dict[str, object] = {"phi": 22.0, "dt": 2e-3, "steps": 300, "force": force, "p": 1e9 * (1 - SOFT)}
+    return run(Slider(**(data | changes)))
+
+
+def sound(**changes: object) -> Motion:
+    """A program without weight on a base that does not yield: the scene's own model."""
+    plain: dict[str, object] = {"steps": 500, "force": (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE)), "p": 1e9}
+    return program(**(plain | changes))
+
+
+def judged(found: Motion, **changes: object) -> Answer:
+    return compare(scene(**changes), foreign(found))
+
+
+def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight() -> None:
+    answer = compare(scene(), read(FILE))
+    assert answer.causes == ["lagged-friction", "base-compliance", "own-weight"]
+    assert answer.values["own-weight"] == pytest.approx(1, abs=0.01)
+    assert answer.values["base-compliance"] == pytest.approx(2e-3, rel=0.2)  # of its other history: 0.15 to 0.26 %
+    held = answer.evidence[-1].numbers
+    assert held["lagged"] == 1.0  # every one of 500 steps
+    assert (held["consistent"] or 1.0) < 0.3
+    assert answer.departure is not None and answer.departure.kind == "offset"
+    assert "friction lags" in answer.sentence
+
+
+CASES = [(1e-2, 30), (2e-3, 22), (2e-3, 15), (2e-4, 22), (2e-4, 30), (1e-3, 30), (1e-4, 15)]
+
+
+@pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
+def test_creep_and_sliding_of_such_a_program_are_named(step: float, phi: float) -> None:
+    steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
+    found = program(dt=step, phi=phi, steps=steps, lagged=True, band=BANDS)
+    answer = judged(found, time__step=step, contact__friction=phi)
+    flies = step < 5e-4  # else no corner opens, and a dead band has no effect
+    band = ["dead-band"] if flies else []
+    assert answer.causes == ["lagged-friction", *band, "base-compliance", "own-weight"]
+    assert answer.values["own-weight"] == pytest.approx(1, abs=1e-3)
+    if flies:
+        assert 0.9 * BANDS[0] < answer.values["dead-band"] <= BANDS[0]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("step", "phi"), CASES)
+def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step: float, phi: float) -> None:
+    """A base 18 times as heavy as the block that adds 0.2 % to the static displacement, as that of ntdda does."""
+    steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
+    found = program(dt=step, phi=phi, steps=steps, lagged=True, band=BANDS, p=1e9, base=(18.0, 400.0))
+    answer = judged(found, time__step=step, contact__friction=phi)
+    band = ["dead-band"] if step < 5e-4 else []
+    assert answer.causes == ["lagged-friction", *band, "base-compliance", "own-weight"]
+    assert answer.values["base-compliance"] == pytest.approx(2e-3, rel=0.3)
+
+
+@pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
+def test_a_sound_program_is_the_same_model(step: float, phi: float) -> None:
+    found = sound(dt=step, phi=phi, steps=100 if step == 1e-2 else 500)
+    answer = judged(found, time__step=step, contact__friction=phi)
+    assert answer.causes == []
+    assert not answer.departs
+    assert answer.sentence.startswith("Same model, same scheme")
+
+
+AVERAGE: dict[str, object] = {"time__alpha": 0.25, "time__delta": 0.5}
+SWINGS = [(2e-3, True), (5e-3, False), (5e-3, True), (2e-3, False), (1e-3, False), (1e-3, True)]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("step", "consistent"), SWINGS)
+def test_a_sound_program_without_damping_is_the_same_model(step: float, consistent: bool) -> None:
+    """At 5 ms from a consistent start two programs fall apart after 200 steps by their rounding alone."""
+    steps = 500 if step == 5e-3 else 250
+    found = sound(dt=step, steps=steps, alpha=0.25, delta=0.5, consistent_start=consistent)
+    start = "consistent" if consistent else "zero"
+    answer = judged(found, time__step=step, time__start=start, **AVERAGE)
+    assert answer.causes == []
+    assert not answer.departs
+    falls_apart = (step, consistent) == (5e-3, True)
+    assert ("up to step" in answer.sentence) == falls_apart
+
+
+@pytest.mark.long
+def test_noise_hides_no_model() -> None:
+    found = sound(steps=300)
+    noise = np.random.default_rng(1).standard_normal((2, 300)) * 1e-3 * np.max(np.abs(found.v))
+    shaken = Foreign(found.time, found.v + noise[0], sideways=found.u + noise[1])
+    assert compare(scene(), shaken).causes == []
+    # tan(22 deg) over tan(21.5 deg); noise of 0.1 % leaves the other numbers several times as much
+    wrong = compare(scene(contact__friction=21.5), shaken)
+    assert wrong.causes == ["friction-factor"]
+    assert wrong.values["friction-factor"] == pytest.approx(1.02567, rel=2e-3)
+
+
+LIGHT: dict[str, object] = {"force": (0.0, 0.0), "gravity": 9.81}
+LIGHT_SCENE: dict[str, object] = {"load__gravity": 9.81, "load__slope": 15.2, "contact__friction": 15.0}
+
+
+def factor_on_friction(theirs: float, ours: float) -> float:
+    """Return tan(phi) of a history over that of its scene, phi in degrees."""
+    return math.tan(math.radians(theirs)) / math.tan(math.radians(ours))
+
+
+# what the history was made with, what its scene has, and the number that is wrong with its value
+BIASES: list[tuple[dict[str, object], dict[str, object], str, float]] = [
+    ({"p": 1.01e9}, {}, "normal-springs-factor", 1.01),
+    ({"p": 1.1e9}, {}, "normal-springs-factor", 1.1),
+    ({"p": 0.95e9}, {}, "normal-springs-factor", 0.95),
+    ({"p": 0.95e9, "ps": 0.38e9}, {}, "springs-factor", 0.95),
+    ({"dt": 1e-3, "gg": 0.999}, {}, "gg", 0.999),
+    ({"dt": 2e-4, "gg": 0.9998, "steps": 1000}, {}, "gg", 0.9998),
+    ({"dt": 5e-4, "ps": 4.4e8}, {}, "shear-springs-factor", 1.1),
+    ({"dt": 2e-4, "ps": 4.8e8, "steps": 1000}, {}, "shear-springs-factor", 1.2),
+    ({"phi": 22.02, "alpha": 0.25, "delta": 0.5}, AVERAGE, "friction-factor", factor_on_friction(22.02, 22)),
+    (LIGHT | {"slope": 15.2, "phi": 15.1}, LIGHT_SCENE, "friction-factor", factor_on_friction(15.1, 15)),
+    (LIGHT | {"slope": 15.1, "phi": 15.0}, LIGHT_SCENE, "slope-factor", 15.1 / 15.2),
+    (
+        *(LIGHT | {"slope": 16.0, "phi": 15.1}, LIGHT_SCENE | {"load__slope": 16.0}),
+        *("friction-factor", factor_on_friction(15.1, 15)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("theirs", "ours", "cause", "value"), thinned(BIASES, 11))
+def test_a_bias_within_the_tolerance_of_every_force_adds_up_and_is_named(
+    theirs: dict[str, object], ours: dict[str, object], cause: str, value: float
+) -> None:
+    """Each leaves less than one per cent of the limit of friction at a step, and some per cent of the motion."""
+    answer = judged(sound(**theirs), time__step=theirs.get("dt", 2e-3), **ours)
+    assert answer.causes == [cause]
+    assert answer.values[cause] == pytest.approx(value, rel=1e-4)
+    assert answer.departs
+    stages = {stage.name: stage for stage in answer.evidence}
+    assert stages["motion"].agrees is False  # of the scene as it is, whatever another number explains
+    assert (stages["friction"].agrees is False) == (cause in ("friction-factor", "shear-springs-factor"))
+    assert (stages["normal forces"].agrees is False) == (cause in ("springs-factor", "normal-springs-factor"))
+
+
+def test_springs_that_give_the_rows_of_a_base_are_told_beside_it() -> None:
+    answer = judged(program())  # its springs are softer by a factor that nobody types
+    assert answer.causes == ["base-compliance", "own-weight"]
+    assert [one["causes"] for one in answer.alike] == [["normal-springs-factor"]]
+    assert answer.alike[0]["values"]["normal-springs-factor"] == pytest.approx(1 - SOFT, rel=1e-5)
+
+
+def test_digits_are_those_of_the_columns_where_none_are_stated() -> None:
+    found = sound(phi=24.2, steps=200)
+    printed = [np.array([float(f"{x:.6e}") for x in column]) for column in (found.v, found.u)]
+    answer = compare(scene(), Foreign(found.time, printed[0], sideways=printed[1]))
+    assert answer.causes == ["friction-factor"]
+
+
+def test_a_bias_of_no_single_number_is_not_explained() -> None:
+    """A Poisson's ratio, which no candidate changes on a slope."""
+    answer = judged(sound(mu=0.05, steps=250))
+    assert answer.causes == ["unexplained"]
+    assert answer.departs
+    assert answer.unexplained > 1e-4
+
+
+@pytest.mark.long
+def test_what_surrounds_a_block_is_named_only_where_nothing_else_is_left() -> None:
+    assert judged(program()).causes == ["base-compliance", "own-weight"]
+    assert judged(program(phi=22.1)).causes == ["unexplained"]
+    assert judged(program(p=1e9, base=(18.0, 400.0))).causes == ["unexplained"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("lagged", [True, False])
+def test_a_factor_on_springs_across_the_base_alone_is_no_factor_on_all(lagged: bool) -> None:
+    assert "springs-factor" not in judged(sound(p=1.1e9, lagged=lagged)).causes
+    assert "springs-factor" not in judged(sound(p=2e9, ps=6e8, lagged=lagged)).causes
+    assert "springs-factor" in judged(sound(p=1.1e9, ps=4.4e8, lagged=lagged)).causes
+
+
+@pytest.mark.long
+def test_a_lagged_program_is_what_a_lagged_scene_asks_for() -> None:
+    found = program(lagged=True, band=BANDS, dt=2e-4, steps=600)
+    changes = {"time__step": 2e-4, "contact__rules": "lagged", "contact__band": list(BANDS)}
+    assert judged(found, **changes).causes == ["base-compliance", "own-weight"]
+    assert judged(program(), contact__rules="lagged").causes == ["unexplained"]
+
+
+TRAPS: list[dict[str, object]] = [
+    {"phi": 24.2},
+    {"gg": 0.99},
+    {"alpha": 0.25, "delta": 0.5},
+    {"ps": 1e9},
+    {"force": (LOAD * math.sin(0.38), -LOAD * math.cos(0.38))},
+    {"E": 2e9},
+    {"rho": 3000.0},
+    {"cohesion": 2e4},
+    {"height": 2.5},
+    {"phi": 0.1},
+    {"mu": 0.2},
+]
+
+
+@pytest.mark.parametrize("lagged", thinned([True, False], 2))
+@pytest.mark.parametrize("trap", thinned(TRAPS, 11))
+def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagged: bool) -> None:
+    answer = judged(program(lagged=lagged, steps=200, **trap))
+    assert answer.causes == ["unexplained"]
+    assert answer.departs
+    assert answer.nearest is not None
+    assert "not explained" in answer.sentence
+
+
+NUMBERS = [
+    ({"phi": math.degrees(math.atan(1.1 * math.tan(math.radians(22))))}, "friction-factor", 1.1),
+    ({"ps": 1e9}, "shear-springs-factor", 2.5),
+    ({"gg": 0.99}, "gg", 0.99),
+    ({"rho": 2970.0}, "density-factor", 1.1),
+    ({"cohesion": 2e4}, "cohesion", 2e4),
+    ({"p": 1.2e9}, "normal-springs-factor", 1.2),
+]
+
+
+@pytest.mark.parametrize(("slip", "cause", "value"), thinned(NUMBERS, 6))
+def test_one_wrong_number_is_named_by_a_run_that_gives_the_history(
+    slip: dict[str, object], cause: str, value: float
+) -> None:
+    answer = judged(sound(steps=200, **slip))
+    assert answer.causes == [cause] and answer.departs
+    assert answer.values[cause] == pytest.approx(value, rel=1e-3)
+    stages = {stage.name: stage for stage in answer.evidence}
+    assert stages["motion"].agrees  # of the scene with that number
+
+
+def test_a_wrong_coefficient_of_friction_is_not_called_right_by_its_forces() -> None:
+    answer = judged(sound(steps=200, phi=24.0, mu=0.2))
+    stages = {stage.name: stage for stage in answer.evidence}
+    assert answer.causes == ["unexplained"] and stages["friction"].agrees is False
+
+
+def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
+    found = sound(steps=200)
+    answer = compare(scene(), Foreign(found.time, 1e3 * found.v, sideways=1e3 * found.u))
+    assert answer.causes == ["unit"]
+    assert [(slip.column, slip.factor) for slip in answer.slips] == [
+        ("horizontal_displacement", 1e3),
+        ("displacement", 1e3),
+    ]
+
+
+@pytest.mark.long
+def test_another_factor_on_all_springs_and_a_turned_sign_are_named() -> None:
+    found = program(p=2e9, ps=8e8, lagged=True)
+    answer = judged(found)
+    assert answer.causes == ["springs-factor", "lagged-friction", "own-weight"]
+    assert answer.values["springs-factor"] == pytest.approx(2, rel=1e-6)
+    turned = compare(scene(), Foreign(found.time, found.v, sideways=-found.u))
+    assert turned.causes == ["sign", *answer.causes]
+    assert turned.departure is not None and turned.departure.step == 1
+
+
+@pytest.mark.long
+def test_digits_that_hide_the_forces_are_told() -> None:
+    found = program(phi=15, steps=500)  # it slides two metres: the sixth digit is 10 um
+    rounded = np.array([float(f"{x:.5e}") for x in found.u])
+    unit = 10.0 ** (np.floor(np.log10(np.abs(rounded))) - 5)
+    answer = compare(
+        scene(contact__friction=15), Foreign(found.time, found.v, sideways=rounded, sideways_rounding=unit)
+    )
+    assert answer.causes == ["unexplained"]
+    assert "digits of the file do not show" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"run__geometry": "updated"}, "takes an upright rectangle at rest"),
+        ({"time__alpha": 0.0, "time__delta": 0.5, "time__step": 1e-4}, "alpha = 0"),
+        ({"contact__gap": 1e-3}, "takes an upright rectangle at rest"),
+    ],
+)
+def test_scenes_that_it_does_not_take_are_refused(changes: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        judged(program(steps=20), **changes)
+
+
+def test_a_history_needs_both_directions_and_every_step() -> None:
+    found = program(steps=40)
+    with pytest.raises(InputError, match="horizontal_displacement"):
+        compare(scene(), Foreign(found.time, found.v))
+    with pytest.raises(InputError, match="every step"):
+        compare(scene(), Foreign(found.time[::2], found.v[::2], sideways=found.u[::2]))
+    with pytest.raises(InputError, match=r"rows are 0\.002 s apart, the scene's step is 0\.001 s.*time\.step=0\.002"):
+        compare(scene(time__step=1e-3), foreign(found))
+
+
+def test_the_command_reads_a_table_with_both_directions(tmp_path: Path) -> None:
+    found = program(steps=100, lagged=True)
+    rows = np.column_stack([found.time, found.u, found.v])
+    table = tmp_path / "theirs.csv"
+    np.savetxt(table, rows, delimiter=",", header="t,ux,uy", comments="", fmt="%.12e")
+    names = "time=t,displacement=uy,horizontal_displacement=ux"
+    done = typed("compare", EXAMPLE / "slope.toml", table, "--columns", names, "--json")
+    assert done.returncode == 1, done.stderr
+    assert json.loads(done.stdout)["causes"] == ["lagged-friction", "base-compliance", "own-weight"]

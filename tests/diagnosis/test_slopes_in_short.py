@@ -1,0 +1,138 @@
+"""What `compare` says of few steps on a slope: causes, first steps, digits, noise, and the suite's own run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.sliding_dda import Motion, Slider, run
+
+from validation import load_scene, solve
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.forces.forward import Agreement, agreement, at_step, surrounded
+from validation.diagnosis.forces.judge import _law
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+from validation.errors import InputError
+from validation.scenes.scene import Scene
+
+SCENE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
+LOAD, WEIGHT, SLOPE = 1e6, 10800 * 9.81, math.radians(20)
+PLACE = ("horizontal_displacement", "displacement")
+
+
+def program(weight: float = 0.0, **changes: Any) -> Motion:
+    """A program of someone else's in which a share of the block's weight acts straight down."""
+    force = (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE) - weight * WEIGHT)
+    return run(replace(Slider(phi=22.0, dt=2e-3, steps=30, force=force), **changes))
+
+
+def judged(found: Motion, sign: float = 1.0) -> Answer:
+    return compare(SCENE, Foreign(found.time, found.v, sideways=sign * found.u))
+
+
+LAGS = {"lagged": True}
+SPRINGS = {"p": 2e9, "ps": 8e8}
+
+
+@pytest.mark.parametrize(
+    ("theirs", "sign", "causes", "first"),
+    [
+        (LAGS, 1, ["lagged-friction"], 6),
+        (SPRINGS | LAGS, -1, ["sign", "springs-factor", "lagged-friction"], 1),
+        (SPRINGS | LAGS, 1, ["springs-factor", "lagged-friction"], 5),
+        (SPRINGS, 1, ["springs-factor"], 1),
+        ({"p": 1.025e9} | LAGS, 1, ["unexplained"], 6),  # springs across the base alone
+        ({"weight": 0.5} | LAGS, 1, ["unexplained"], 6),
+    ],
+)
+def test_few_steps_tell_the_law(theirs: dict[str, Any], sign: float, causes: list[str], first: int) -> None:
+    answer = judged(program(**theirs), sign)
+    assert answer.causes == causes
+    assert answer.values == ({"springs-factor": pytest.approx(2, rel=1e-6)} if "springs-factor" in causes else {})
+    assert answer.departure is not None and answer.departure.step == first
+    assert (f"from step {first} on" in answer.sentence) == (causes != ["unexplained"])
+
+
+@pytest.mark.parametrize(("digits", "causes"), [(3, ["unexplained"]), (6, ["lagged-friction"])])
+def test_digits_show_a_law_or_hide_it(digits: int, causes: list[str]) -> None:
+    found = program(lagged=True)
+    u = np.array([float(f"{x:.{digits}e}") for x in found.u])
+    units = 10.0 ** (np.floor(np.log10(np.abs(u))) - digits)
+    answer = compare(SCENE, Foreign(found.time, found.v, sideways=u, sideways_rounding=units))
+    assert answer.causes == causes
+    assert ("digits of the file do not show" in answer.sentence) == (causes == ["unexplained"])
+
+
+def test_of_two_laws_the_scene_s_own_stands_unless_it_is_seen_to_fail() -> None:
+    some, all_steps = np.arange(10) < 5, np.ones(10, bool)
+    right = {"consistent": some, "lagged": all_steps}
+    assert _law(right, all_steps, "consistent") == "consistent"
+    assert _law(right | {"consistent": ~all_steps}, all_steps, "consistent") == "lagged"
+    assert _law(right | {"consistent": ~all_steps}, np.arange(10) < 1, "consistent") == "consistent"
+
+
+# ---- the suite's own run --------------------------------------------------------------------------------------------
+
+
+def own(scene: Scene) -> np.ndarray:
+    history = solve(scene, "dda").history
+    assert history is not None
+    return np.column_stack([history.columns[name] for name in PLACE])
+
+
+def beside(scene: Scene, place: np.ndarray) -> Agreement:
+    return agreement(scene, place, np.zeros_like(place))
+
+
+def test_noise_is_no_departure_and_a_shape_is_one() -> None:
+    scene = at_step(SCENE, 2e-3, 120)
+    place = own(scene)
+    noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=0)
+    assert beside(scene, place).left == 0
+    assert beside(scene, place + 1e-3 * noise).same
+    assert not beside(scene, place + 3e-2 * noise).same
+    assert not beside(scene, place * (1 + 1e-3)).same
+
+
+def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step() -> None:
+    values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+    scene = at_step(SCENE.with_values(values), 1e-2, 80)
+    place = own(scene.with_values({"contact.stiffness": scene.contact.stiffness * (1 + 2e-13)}))
+    found = beside(scene, place)
+    # Rounding grows at each switch: where it takes over differs between programs, but not before the later difference.
+    assert found.same and found.until is not None and 20 < found.until < 80
+    moved = np.where(np.arange(80) < 20, 0.0, 1e-5)[:, None] * np.max(np.abs(place), axis=0)
+    assert not beside(scene, place + moved).same
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_weight_and_a_softer_base_are_run(follows: bool) -> None:
+    """The springs along the base are softer as those across it, or the scene's."""
+    found = program(1.0, p=0.997e9, ps=4e8 * (0.997 if follows else 1.0))
+    place, scene = np.column_stack([found.u, found.v]), at_step(SCENE, 2e-3, 30)
+    causes = ("own-weight", "base-compliance")
+    around = surrounded(scene, causes, (1.0, -math.log(0.997)), place, np.zeros_like(place))
+    assert around.run.same
+    assert around.springs == pytest.approx(0.997, rel=1e-6)
+    assert around.along is follows
+    assert 0 <= around.error < 1e-6
+    assert not surrounded(scene, ("own-weight",), (1.0, -math.log(0.997)), place, np.zeros_like(place)).run.same
+
+
+def test_a_step_within_printed_digits_is_the_scene_s() -> None:
+    assert at_step(SCENE, 2e-3 * (1 + 1e-7), 10).time.step == 2e-3
+    assert at_step(SCENE, 1e-3, 10).time.step == 1e-3
+
+
+def test_a_scene_of_many_values_or_another_unit_of_time_is_refused() -> None:
+    found = program()
+    many = SCENE.model_copy(update={"sweep": load_scene("slope-sliding").sweep})
+    with pytest.raises(InputError, match="one value must be picked"):
+        compare(many, Foreign(found.time, found.v, sideways=found.u))
+    with pytest.raises(InputError, match="in seconds"):
+        compare(SCENE, Foreign(1e3 * found.time, found.v, sideways=found.u))

@@ -1,0 +1,162 @@
+"""One slip at a time in a plain DDA code of someone else's: each is named, and what is no slip is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import typed
+from faults import seams
+from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
+
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+
+PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms
+
+
+def judged(base: Plain = PLAIN, pressure: bool = True, **slip: Any) -> Answer:
+    displacement, contact = run(replace(base, **slip))
+    time = base.dt * np.arange(1, base.steps + 1)
+    return compare(scene_of(base), Foreign(time, displacement, contact if pressure else None))
+
+
+MORE = [
+    ({"rho": 2970.0}, ["density-factor"], {"density-factor": 1.1}),
+    ({"E": 1.1e9}, ["young-factor"], {"young-factor": 1.1}),
+    ({"point": 1.0}, ["reported-point"], {"reported-point": 1.0}),
+    ({"p": 0.5e9}, ["springs-factor"], {"springs-factor": 0.5}),
+    ({"E": 0.8e9}, ["young-factor"], {"young-factor": 0.8}),
+    ({"averaged": True}, ["pressure-shift"], {"pressure-shift": 0.5}),
+    ({"pressure_times": 0.5}, ["pressure-factor"], {"pressure-factor": 0.5}),
+    ({"displacement_times": 0.5}, ["load-factor"], {"load-factor": 0.5}),
+    ({"q": 2.5e6}, ["load-factor"], {"load-factor": 0.5}),
+    ({"side": 1.9}, ["side-factor"], {"side-factor": 0.95}),
+    ({"mu": 0.3}, ["poisson"], {"poisson": 0.3}),
+    ({"row_sign": -1.0}, ["load-row"], {"load-row": -1.0}),
+    ({"coupling": 0.0}, ["coupling"], {"coupling": 0.0}),
+    ({"keeps_stress": False}, ["stress-not-kept"], {}),
+    ({"keeps_springs": False}, ["stress-not-kept"], {}),
+    ({"gg": 0.98}, ["gg"], {"gg": 0.98}),
+    ({"g": 9.81}, ["own-weight"], {"own-weight": 1.0}),
+    ({"alpha": 0.25, "delta": 0.5}, ["scheme"], {}),
+    ({"viscous": 10.0}, ["viscous-damping"], {"viscous-damping": 10.0}),
+    ({"structural": 1e-4}, ["stiffness-damping"], {"stiffness-damping": 1e-4}),
+    ({"ramp": 0.01}, ["load-ramp"], {"load-ramp": 0.01}),
+    ({"E": 1e12}, ["young-factor"], {"young-factor": 1e3}),
+    ({"rho": 2.7}, ["density-factor"], {"density-factor": 1e-3}),
+    ({"p": 1e6}, ["springs-factor"], {"springs-factor": 1e-3}),
+    ({"rho": 2.7e6}, ["density-factor"], {"density-factor": 1e3}),
+    (
+        {"E": 0.9e9, "rho": 2000.0},
+        ["density-factor", "young-factor"],
+        {"density-factor": 0.740741, "young-factor": 0.9},
+    ),
+    ({"E": 1.2e9, "p": 1.2e9}, ["young-factor", "springs-factor"], {"young-factor": 1.2, "springs-factor": 1.2}),
+]
+
+
+@pytest.mark.parametrize(
+    ("slip", "causes", "values"), [({}, [], {}), *(pytest.param(*m, marks=pytest.mark.long) for m in MORE)]
+)
+def test_a_slip_is_named_with_its_number(slip: dict[str, Any], causes: list[str], values: dict[str, float]) -> None:
+    named(judged(**slip), causes, values)
+
+
+GIVEN = replace(PLAIN, q=2e5, g=9.81)  # a scene with gravity, which a program may have forgotten or turned
+
+
+@pytest.mark.parametrize("factor", [0.0, pytest.param(-1.0, marks=pytest.mark.long)])
+def test_gravity_that_is_missing_or_upwards_is_named(factor: float) -> None:
+    named(judged(GIVEN, g=9.81 * factor), ["gravity-factor"], {"gravity-factor": factor})
+
+
+def named(answer: Answer, causes: list[str], values: dict[str, float]) -> None:
+    """Causes and their numbers are these, and nothing is left."""
+    assert answer.causes == causes
+    assert answer.values == pytest.approx(values, rel=1e-5)
+    assert answer.unexplained == 0 and answer.misfit < 1e-9
+
+
+@pytest.mark.parametrize("opening", [pytest.param({}, marks=pytest.mark.long), {"band": 1e-3}])
+def test_opening_and_its_dead_band_are_told(opening: dict[str, float]) -> None:
+    """At 0.2 ms the block leaves its base and comes down again, 50 steps long."""
+    answer = judged(replace(PLAIN, dt=2e-4), opens=True, **opening)
+    assert answer.causes == (["contact-opened", "dead-band"] if opening else ["contact-opened"])
+    assert answer.opened is not None and answer.opened[0] == 1
+    # a band is told no better than by the penetrations between which it lies
+    assert answer.values.get("dead-band", 1e-3) == pytest.approx(1e-3, rel=0.2)
+
+
+def test_a_run_that_diverges_is_told_so_and_nothing_else() -> None:
+    answer = judged(replace(PLAIN, dt=0.01), alpha=0.05, delta=0.5)
+    assert answer.causes == ["diverged"] and answer.departs
+    assert answer.values["diverged"] > 1.5
+    assert "diverged" in answer.sentence
+
+
+UNKNOWN = [
+    {"hardening": 20.0},
+    {"height": 2.2},
+    {"hht": -0.1},
+    {"creep": 1.0},
+    {"shaken": 0.01},
+    {"filtered": 0.3},
+    {"friction": 1e5},
+]
+
+
+@pytest.mark.parametrize("slip", [UNKNOWN[0], *(pytest.param(slip, marks=pytest.mark.long) for slip in UNKNOWN[1:])])
+def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
+    answer = judged(**slip)
+    assert answer.causes == ["unexplained"] and answer.departs
+    assert answer.nearest is not None and answer.values == {}
+    assert "not explained" in answer.sentence
+
+
+@pytest.mark.long
+def test_the_gate_of_the_unknown_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where anything may be left, a history with another damping is the scene's own."""
+    seams.BAR_EXPLAINED.put(monkeypatch, lambda *given: True)
+    assert judged(replace(PLAIN, steps=25), hht=-0.1).causes != ["unexplained"]
+
+
+@pytest.mark.long
+def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells() -> None:
+    half = judged(rho=1350.0)
+    named(half, ["density-factor"], {"density-factor": 0.5})
+    assert [one["causes"] for one in half.alike] == [["step-factor"]]
+    assert half.alike[0]["values"]["step-factor"] == pytest.approx(2**0.5, rel=1e-5)
+    assert "gravity" in half.alike[0]["further_scene"]
+
+
+def test_the_evidence_says_which_column_is_right_by_itself() -> None:
+    late = judged(late=1)
+    named(late, ["pressure-shift"], {"pressure-shift": 1.0})
+    stages = {stage.name: stage for stage in late.evidence}
+    assert stages["displacement"].agrees and not stages["contact_pressure"].agrees
+    assert all(stages[name].agrees for name in ("reading", "bounded", "statics", "frequency", "damping"))
+
+
+@pytest.mark.long
+def test_the_evidence_of_a_soft_block_is_where_it_comes_to_rest() -> None:
+    soft = {stage.name: stage for stage in judged(E=0.8e9).evidence}
+    # q a / 2p + (a/2) q / E with 0.8 E: 5 mm + 6.25 mm
+    assert soft["statics"].numbers["file"] == pytest.approx(-0.01125, rel=1e-6)
+    assert soft["statics"].agrees is False and soft["frequency"].numbers["ratio"] < 1
+
+
+def test_a_tolerance_decides_what_counts_as_the_same(tmp_path: Any) -> None:
+    theirs = replace(PLAIN, rho=2725.0, steps=20)
+    displacement, _ = run(theirs)
+    path = tmp_path / "theirs.csv"
+    rows = zip(theirs.dt * np.arange(1, theirs.steps + 1), displacement, strict=True)
+    path.write_text("time,displacement\n" + "\n".join(f"{float(t)!r},{float(u)!r}" for t, u in rows))
+    given = ("compare", "figures-3-4", path, "--set", "time.step=0.002", "--json")
+    assert typed(*given).returncode == 1
+    assert typed(*given, "--tolerance", "0.05").returncode == 0
+    assert typed(*given, "--tolerance", "2").returncode == 2

@@ -1,0 +1,75 @@
+"""Histories beside scenes whose contact opens: stepped by the suite's own solver of opening contact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation import load_scene, solve
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.fits.rectangle import rectangle_of
+from validation.diagnosis.fits.responses import computed
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Variant
+from validation.errors import InputError
+
+SCENE = load_scene("figures-3-4").with_values(
+    {"time.step": 5e-4, "time.steps": 60, "contact.law": "unilateral", "run.solvers": ["dda"]}
+)
+
+
+def judged(**changes: Any) -> Answer:
+    run = solve(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}), "dda")
+    return compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
+
+
+@pytest.mark.parametrize(
+    ("changes", "causes"),
+    [
+        ({}, []),
+        ({"contact__law": "locked"}, ["contact-locked"]),
+        pytest.param({"block__young": 0.8e9}, ["young-factor"], marks=pytest.mark.long),
+        pytest.param({"time__gg": 0.97}, ["gg"], marks=pytest.mark.long),
+        pytest.param({"load__gravity": 9.81}, ["own-weight"], marks=pytest.mark.long),
+        pytest.param({"time__alpha": 0.25, "time__delta": 0.5}, ["scheme"], marks=pytest.mark.long),
+    ],
+)
+def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]) -> None:
+    answer = judged(**changes)
+    assert answer.causes == causes
+    assert (answer.opened is None) == (causes == ["contact-locked"])
+    assert answer.departs == bool(causes)
+    assert (answer.departure is None) == (set(causes) <= {"own-weight"})
+
+
+def test_the_batch_and_the_suite_s_solver_step_alike() -> None:
+    """The batch is for searches and for what the solver has not: the histories are the same to rounding."""
+    column = rectangle_of(SCENE)
+    assert column is not None
+    steps = np.full(80, 5e-4)
+    variants = [
+        Variant(0.5, 1.0, 1.0, opens=True),
+        Variant(0.5, 1.0, 0.98, opens=True, weight=0.5, density=0.8, young=1.2, side=1.1, softness=0.3, point=0.7),
+        Variant(0.5, 1.0, 1.0, opens=True, band=1e-3, reopening=1e-3, late=0.5, shift=1),
+        Variant(0.5, 1.0, 1.0, softness=0.2),
+    ]
+    one, other = computed(column, variants, steps), histories(column, variants, steps)
+    # two formulations of one recursion over 80 steps, a contact that switches: hundreds of roundings at most
+    assert np.max(np.abs(one.displacement - other.displacement)) < 1e-12 * np.max(np.abs(one.displacement))
+    assert np.max(np.abs(one.pressure - other.pressure)) < 1e-10 * np.max(np.abs(one.pressure))
+    np.testing.assert_array_equal(one.open, other.open)
+
+
+def test_a_scene_with_a_gap_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="unilateral contact"):
+        compare(SCENE.with_values({"contact.gap": 0.01}), Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
+
+
+def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight() -> None:
+    scene = SCENE.with_values({"contact.gap": 1e-3, "load.gravity": 9.81})
+    with pytest.raises(InputError, match=r"that rest on unilateral contact; got contact.gap = 0.001$"):
+        compare(scene, Foreign(np.arange(1, 9) * 5e-4, -np.ones(8)))

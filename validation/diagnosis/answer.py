@@ -1,0 +1,62 @@
+"""The answer to whose history it is: what `compare`, `judge`, `field` and the plug-in's block show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from validation.diagnosis.departure import Departure
+from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.fit import Interval
+from validation.diagnosis.readings import Slip
+from validation.runs.history import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """The answer to `compare`; `as_dict` is what ``--json`` prints."""
+
+    scheme: dict[str, float | None]  # alpha, delta, gg
+    ranking: list[dict[str, Any]]  # the best first
+    departure: Departure | None
+    causes: list[str]
+    opened: tuple[int, int] | None  # first step and last
+    sentence: str
+    notes: tuple[str, ...] = ()
+    told: dict[str, Interval] = field(default_factory=dict)  # alpha, delta, gg and what was free with them
+    untold: list[dict[str, float]] = field(default_factory=list)
+    misfit: float = 0.0  # of the best explanation, relative L2 [-]
+    curves: dict[str, tuple[Array, Array]] = field(default_factory=dict)  # name to time [s] and displacement [m]
+    values: dict[str, float] = field(default_factory=dict)  # id to number
+    unexplained: float = 0.0  # share of the difference that is left [-]
+    nearest: dict[str, Any] | None = None  # where nothing explains it
+    alike: list[dict[str, Any]] = field(default_factory=list)  # causes that give the same rows
+    evidence: tuple[Stage, ...] = ()
+    pressures: dict[str, Array] = field(default_factory=dict)  # name to pressure at the times of `curves` [Pa]
+    slips: tuple[Slip, ...] = ()  # of sign and unit, column by column
+    intervals: dict[str, tuple[float, float]] = field(default_factory=dict)  # of `values`, 95 %
+    own_model: bool = True  # whether it is DDA that explains the history, not another model in space or in time
+
+    @property
+    def departs(self) -> bool:
+        """Whether the history is another one than the scene itself gives, for whatever reason."""
+        return bool(self.causes) or not self.own_model
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        gone = None if self.departure is None else {"step": self.departure.step, "kind": self.departure.kind}
+        return {
+            "sentence": self.sentence,
+            "causes": self.causes,
+            "values": self.values,
+            "intervals": {name: list(ends) for name, ends in self.intervals.items()},
+            "slips": [{"cause": slip.cause, "column": slip.column, "factor": slip.factor} for slip in self.slips],
+            "unexplained": self.unexplained,
+            "nearest": self.nearest,
+            "alike": self.alike,
+            "departure": gone,
+            "opened": None if self.opened is None else list(self.opened),
+            "scheme": self.scheme,
+            "ranking": self.ranking,
+            "evidence": [stage.as_dict() for stage in self.evidence],
+        }

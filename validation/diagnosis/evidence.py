@@ -1,0 +1,148 @@
+"""What can be measured of a history before any cause is named, in the order in which a person would look.
+
+Does it read, is it bounded, is each column right by itself, where does it come to rest, at which frequency and with
+which damping does it swing. Every stage puts the file beside the scene's own history; none depends on a fit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from validation.diagnosis.fits.target import Target
+from validation.metrics.poles import Swing, swing
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+
+BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
+GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
+CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
+LEAST_DAMPING = 1e-3  # damping ratios below differ by nothing that a history shows
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One question, its answer (None: cannot be told) and the numbers that it rests on."""
+
+    name: str
+    agrees: bool | None
+    words: str
+    numbers: dict[str, float | None]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {"stage": self.name, "agrees": self.agrees, "words": self.words, **self.numbers}
+
+
+def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
+    """Return a stage whose number differs from the scene's for a reason that is no fault: neither right nor wrong."""
+    if stage.agrees is not False:
+        return stage
+    return replace(stage, agrees=None, words=f"{stage.words}; {explained_by} explains it")
+
+
+def growth(values: Array, wanted: Array) -> float | None:
+    """Return the factor by which a diverging history grows in a step, None if it is bounded."""
+    size, own = np.abs(values), np.abs(np.nan_to_num(wanted, posinf=1e300, neginf=-1e300))
+    thirds = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(size, 3)]
+    theirs = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(own, 3)]
+    if thirds[2] > BEYOND * max(theirs):
+        return _factor(thirds, len(values))
+    grows = thirds[2] > GROWTH * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
+    if not (grows and thirds[2] > thirds[1] and thirds[2] > GROWTH * max(theirs)):
+        return None
+    return _factor(thirds, len(values))
+
+
+def _factor(thirds: Sequence[float], rows: int) -> float:
+    """Return the growth in a row from the middle third to the last."""
+    return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (rows / 3))
+
+
+def stages(
+    target: Target, wanted: Sequence[Array], slips: Sequence[str], note: str, factor: float | None
+) -> list[Stage]:
+    """Return the stages up to the damping.
+
+    Parameters
+    ----------
+    target
+        The history as it is read.
+    wanted
+        The scene's own displacement and pressure at the recorded rows.
+    slips
+        Ids of errors of sign and unit that reading has corrected.
+    note
+        What differs in the times.
+    factor
+        Growth in a step, None if bounded.
+    """
+    read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
+    found = [
+        Stage("reading", not slips, read + (f"; {note}" if note else ""), {}),
+        Stage(
+            "bounded",
+            factor is None,
+            "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step",
+            {"growth": factor},
+        ),
+    ]
+    if factor is not None:
+        return found
+    found += _columns(target, wanted)
+    return found + _motion(target, wanted[0])
+
+
+def _columns(target: Target, wanted: Sequence[Array]) -> list[Stage]:
+    """Return how far each column is from the scene's own, by itself."""
+    given = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
+    found = []
+    for name, values, own, bar in zip((DISPLACEMENT, PRESSURE), given, wanted, target.bars, strict=False):
+        with np.errstate(all="ignore"):
+            misfit = min(float(np.linalg.norm(values - own)) / (bar.norm or 1.0), 1e6)
+        agrees = bar.holds(values - own)
+        allowed = bar.allowed
+        words = f"the {name.replace('_', ' ')} alone " + (
+            "is the scene's" if agrees else f"is {100 * misfit:.3g} % off (digits and noise: {100 * allowed:.1g} %)"
+        )
+        found.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": allowed}))
+    return found
+
+
+def _motion(target: Target, wanted: Array) -> list[Stage]:
+    """Return where file and scene come to rest, and how their strongest motion swings."""
+    steps = np.diff(np.concatenate([[-1], target.rows]))
+    if np.ptp(target.steps) > 1e-9 * target.steps[0] or len(set(steps[1:].tolist())) > 1:
+        return [Stage(name, None, "not told by unequal rows", {}) for name in ("statics", "frequency", "damping")]
+    step = float(target.steps[0]) * float(steps[-1])
+    theirs, ours = swing(target.displacement, step), swing(wanted, step)
+    close = target.bars[0].allowed
+    asked = (
+        ("frequency", "swings at", "rad/s", CLOSE_FREQUENCY),
+        ("damping", "is damped by", "of critical", CLOSE_DAMPING),
+    )
+    return [
+        _beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, CLOSE_STATIC)),
+        *(
+            _beside(name, verb, unit, _part(theirs, name), _part(ours, name), max(close, least))
+            for name, verb, unit, least in asked
+        ),
+    ]
+
+
+def _part(found: Swing, name: str) -> float | None:
+    return None if found.pole is None else float(getattr(found.pole, name))
+
+
+def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:
+    """Return one measured number beside the scene's."""
+    if file is None or scene is None:
+        return Stage(name, None, "not told by these rows", {"file": file, "scene": scene, "ratio": None})
+    least = LEAST_DAMPING if name == "damping" else 0.0
+    agrees = abs(file - scene) <= max(close * abs(scene), least)
+    ratio = file / scene if abs(scene) > 1e-12 and abs(file / scene) < 1e6 else None
+    words = f"{verb} {file:.5g} {unit}, " + ("as the scene" if agrees else f"the scene {scene:.5g}")
+    return Stage(name, agrees, words, {"file": file, "scene": scene, "ratio": ratio})

@@ -1,0 +1,119 @@
+"""How much may remain of a history that is explained: what its digits and its noise leave.
+
+A column is explained if what remains is no larger than the rounding of its printed digits and of double precision, or
+if it is white and no larger than the noise that the column shows by itself. Any linear model of one block obeys one
+recurrence of low order, so that the Hankel matrix of its samples has that rank; the singular values beyond it are
+noise, whatever the model. A remainder that is larger, or that still has a shape, is a cause not found.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+
+from validation.runs.history import Array
+
+DOUBLE = 15  # decimal digits from which on nothing is seen of a rounding
+ARITHMETIC = 1e-8  # of the largest value: half the digits of double precision, for sums of increments
+WITHIN = 1.0  # last digits, root mean square: rounding alone leaves 0.29, a scene's own rounded data some more
+WINDOW = 24  # samples: twice the order of the recurrence (static value, four modes, rows at rest)
+FEWEST = 16  # samples: eight of a window, four powers
+LONGEST = 600  # samples that the noise is estimated from
+MARGIN = 1.6  # of the estimated noise: some tens of singular values tell it to a fifth, least squares take some more
+LAGS = 10
+SHAPELESS = 4.0  # standard deviations of Ljung and Box's statistic: one white remainder in ten thousand exceeds it
+
+
+def last_digits(values: Array) -> Array:
+    """Return the unit of the last printed digit of each value, zero where all digits of a double are given.
+
+    A format has a number of significant digits or of decimals; the larger unit of the two counts.
+    """
+    places = [_places(float(v)) for v in values if v != 0 and math.isfinite(v)]
+    if not places:
+        return np.zeros(len(values))
+    digits = max(top - last + 1 for top, last in places)
+    if digits >= DOUBLE:
+        return np.zeros(len(values))
+    least = 10.0 ** min(last for _, last in places)
+    with np.errstate(divide="ignore"):
+        top = np.where(values == 0, -np.inf, np.floor(np.log10(np.abs(values))))
+    return np.maximum(10.0 ** (top - digits + 1), least)
+
+
+def _places(value: float) -> tuple[int, int]:
+    """Return the decimal exponents of the first and of the last digit of a number."""
+    mantissa, _, exponent = f"{value!r}".partition("e")
+    _, digits, scale = f"{value:.16e}".partition("e")
+    top = int(scale)
+    shown = mantissa.replace("-", "").replace(".", "").lstrip("0").rstrip("0")
+    return top, top - max(len(shown), 1) + 1 if exponent or digits else top
+
+
+def noise(values: Array) -> float:
+    """Return the standard deviation of what no recurrence of low order predicts, zero if the rows are too few."""
+    y = np.asarray(values[:LONGEST], dtype=float)
+    size = float(np.max(np.abs(y))) if len(y) else 0.0
+    if len(y) < FEWEST or size == 0:
+        return 0.0
+    return size * _beyond(y / size) / _bias(len(y))
+
+
+def _beyond(y: Array) -> float:
+    """Return the root mean square of the singular values beyond the order, a row of samples."""
+    window = min(WINDOW, len(y) // 2)
+    rows = np.lib.stride_tricks.sliding_window_view(y, window)
+    s = np.linalg.svd(rows, compute_uv=False)[window // 2 :]
+    return float(np.sqrt(np.mean(s**2) / len(rows)))
+
+
+@cache
+def _bias(samples: int) -> float:
+    """Return what the smaller singular values show of white noise of unit variance."""
+    shown = [_beyond(np.random.default_rng(seed).standard_normal(samples)) for seed in range(8)]
+    return float(np.mean(shown))
+
+
+def white(remainder: Array) -> bool:
+    """Whether a remainder has no shape, by Ljung and Box's statistic of its first lags."""
+    r, n = remainder - 0.0, len(remainder)
+    square = float(r @ r)
+    if square == 0:
+        return True
+    lags = min(LAGS, n // 4)
+    if lags < 1:
+        return False
+    rho = np.array([float(r[k:] @ r[:-k]) / square for k in range(1, lags + 1)])
+    statistic = n * (n + 2) * float(np.sum(rho**2 / (n - np.arange(1, lags + 1))))
+    return statistic <= lags + SHAPELESS * math.sqrt(2 * lags) + SHAPELESS**2 / 2
+
+
+def within_digits(remainder: Array, rounding: Array, size: float) -> bool:
+    """Whether a remainder is no more than rounding: of the printed digits, and of double precision."""
+    if size == 0:  # a column at rest has no digits
+        return not np.any(remainder)
+    unit = rounding + ARITHMETIC * size
+    return float(np.sqrt(np.mean((remainder / unit) ** 2))) <= WITHIN
+
+
+def explained(remainder: Array, rounding: Array, size: float, spread: float) -> bool:
+    """Whether nothing but digits and noise remains of a column.
+
+    Parameters
+    ----------
+    remainder
+        What an explanation leaves, in the column's unit.
+    rounding
+        Units of the last digit.
+    size
+        Largest value of the column.
+    spread
+        Standard deviation of the column's noise.
+    """
+    if within_digits(remainder, rounding, size):
+        return True
+    rest = float(np.sqrt(np.mean(remainder**2)))
+    unit = float(np.sqrt(np.mean(rounding**2)))
+    return rest <= MARGIN * math.hypot(spread, unit / math.sqrt(12)) and white(remainder)

@@ -1,0 +1,212 @@
+"""Which scheme made a history: least-squares fits of many variants at once, compared by what each one explains.
+
+A fit minimises the relative L2 difference between a history and a `Variant` over the variant's free numbers
+(Levenberg-Marquardt, all fits advancing together because one pass through the steps serves them all). The intervals
+are 95 % ones of the linearised problem, with the residual's own correlation taken into account: n rows whose
+residual has the lag-one correlation r count as n (1 - r) / (1 + r) independent ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from validation.diagnosis.fits.target import ROUNDING, Target
+from validation.diagnosis.variant import Variant
+from validation.runs.history import Array
+
+NAMED: dict[str, tuple[float, float]] = {
+    "constant acceleration": (1 / 2, 1.0),
+    "average acceleration": (1 / 4, 1 / 2),
+    "linear acceleration": (1 / 6, 1 / 2),
+    "Fox-Goodwin": (1 / 12, 1 / 2),
+    "central differences": (0.0, 1 / 2),
+    "unconditionally complex": (9 / 16, 1.0),
+    "backward differences": (4 / 5, 3 / 2),
+    "backward Euler": (1.0, 3 / 2),  # from rest with A0 = 0 row by row: M a1 + K x1 = F, v1 = v + dt a1, x1 = x + dt v1
+}
+# what counts as a change of a number, and the range within sense
+SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "weight": 1.0, "load": 0.1,
+        "density": 0.1, "young": 0.1, "poisson": 0.1, "side": 0.1, "point": 0.1, "pressure_factor": 0.1,
+        "displacement_factor": 0.1, "tall": 0.1, "viscous": 1.0, "structural": 1e-4, "ramp": 1e-2, "spectral": 0.1,
+        "inertia": 0.1, "gravity": 0.1}  # fmt: skip
+LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -15.0, "base": 0.0, "weight": 0.0, "viscous": 0.0,
+       "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0}  # fmt: skip
+HIGH = {
+    "alpha": 5.0,
+    "delta": 5.0,
+    "gg": 1.0,
+    "softness": 15.0,
+    "base": 1e4,
+    "weight": 1.1,
+    "poisson": 0.49,
+    "point": 1.0,
+    "viscous": 1e5,
+    "structural": 1.0,
+    "ramp": 1e3,
+    "spectral": 1.0,
+    "gravity": 50.0,
+}
+LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of density, modulus, side, load and what is reported: other units
+DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
+NORMAL_95 = 1.96
+UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
+SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
+LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
+UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A variant at its best, with what is left."""
+
+    variant: Variant
+    free: tuple[str, ...]
+    misfit: float  # relative L2 [-]
+    residual: Array  # scaled as the target's values
+    jacobian: Array  # (rows, free)
+
+    @property
+    def independent(self) -> float:
+        """Number of independent rows, from the lag-one correlation of the residual."""
+        r = self.residual
+        square = float(r @ r)
+        lag = float(r[1:] @ r[:-1]) / square if square else 0.0
+        lag = min(max(lag, 0.0), 1.0)
+        return max(len(r) * (1 - lag) / (1 + lag), min(len(r), LEAST_INDEPENDENT))
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A fitted number and the half width of its 95 % interval."""
+
+    value: float
+    half_width: float
+
+
+def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = 8) -> list[Fit]:
+    """Fit variants with their free numbers, all at once.
+
+    Parameters
+    ----------
+    target
+        The history.
+    starts
+        Variants with the names of the numbers that are free in each.
+    rounds
+        Steps of Levenberg and Marquardt's method.
+    """
+    goal = target.values
+    best = _linearised(target, starts, goal)
+    damping = [1e-4] * len(best)
+    active = [bool(f.free) for f in best]
+    for _ in range(rounds):
+        trial_of = [i for i, on in enumerate(active) if on]
+        if not trial_of:
+            break
+        trials = [(_moved(best[i], damping[i]), best[i].free) for i in trial_of]
+        for i, new in zip(trial_of, _linearised(target, trials, goal), strict=True):
+            gain = best[i].misfit - new.misfit
+            damping[i] *= 0.1 if gain > 0 else 10.0
+            active[i] = damping[i] < 1e4 and not 0 <= gain <= SETTLED * new.misfit and new.misfit > ROUNDING
+            if gain > 0:
+                best[i] = new
+    return best
+
+
+def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], goal: Array) -> list[Fit]:
+    """Return the fits where they stand, with their Jacobians."""
+    asked = [v for variant, free in starts for v in (variant, *(_nudged(variant, name) for name in free))]
+    answers, found, at = target.responses(asked), [], 0
+    for variant, free in starts:
+        base = answers[:, at]
+        rates = [
+            (answers[:, at + 1 + j] - base) / (DIFFERENCE * SPAN[name] * _side(variant, name))
+            for j, name in enumerate(free)
+        ]
+        jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
+        residual = goal - base
+        found.append(Fit(variant, free, float(np.linalg.norm(residual)), residual, jacobian))
+        at += 1 + len(free)
+    return found
+
+
+def _side(variant: Variant, name: str) -> float:
+    """Return the side to which a number is nudged: away from its upper bound."""
+    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > HIGH.get(name, LARGEST_FACTOR) else 1.0
+
+
+def _nudged(variant: Variant, name: str) -> Variant:
+    value = getattr(variant, name) + _side(variant, name) * DIFFERENCE * SPAN[name]
+    return changed(variant, {name: value})
+
+
+def _moved(found: Fit, damping: float) -> Variant:
+    """Return the variant one damped Gauss-Newton step on."""
+    span = np.array([SPAN[name] for name in found.free])
+    J = found.jacobian * span
+    H = J.T @ J
+    scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
+    step = np.linalg.solve(H + damping * np.diag(scale), J.T @ found.residual) * span
+    changes = {
+        name: float(np.clip(getattr(found.variant, name) + change, *bounds(name)))
+        for name, change in zip(found.free, step, strict=True)
+    }
+    return changed(found.variant, changes)
+
+
+def bounds(name: str) -> tuple[float, float]:
+    """Return the range within sense of a free number."""
+    if name in ("point", "poisson"):
+        return -HIGH[name], HIGH[name]
+    return LOW.get(name, LEAST_FACTOR), HIGH.get(name, LARGEST_FACTOR)
+
+
+def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
+    """Return a variant with some fields replaced, by name."""
+    return replace(variant, **changes)
+
+
+def intervals(found: Fit) -> dict[str, Interval]:
+    """Return the 95 % interval of every free number; infinite where the data do not tell it."""
+    n, k = found.independent, len(found.free)
+    variance = found.misfit**2 / max(n - k, 1.0)
+    span = np.array([SPAN[name] for name in found.free])
+    J = found.jacobian * span
+    _, s, vt = np.linalg.svd(J, full_matrices=False)
+    told = s > 1e-9 * max(float(s[0]) if k else 0.0, 1e-300)
+    spread = np.where(told, 1 / np.where(told, s, 1.0), np.inf)
+    with np.errstate(invalid="ignore"):
+        parts = np.where(np.abs(vt.T) > 1e-9, np.abs(vt.T) * spread, 0.0)
+    width = np.sqrt(np.sum(parts**2, axis=1))
+    known = np.isfinite(width)  # of a number without effect nothing is known, also where nothing is left
+    half = np.where(known, NORMAL_95 * math.sqrt(variance) * np.where(known, width, 0.0) * span, np.inf)
+    return {
+        name: Interval(float(getattr(found.variant, name)), float(width))
+        for name, width in zip(found.free, half, strict=True)
+    }
+
+
+def untold(found: Fit) -> list[dict[str, float]]:
+    """Return the directions of the free numbers that the history does not tell, as shares of their spans."""
+    n, k = found.independent, len(found.free)
+    span = np.array([SPAN[name] for name in found.free])
+    _, s, vt = np.linalg.svd(found.jacobian * span, full_matrices=False)
+    sigma = found.misfit / math.sqrt(max(n - k, 1.0))
+    return [
+        {name: float(part) for name, part in zip(found.free, direction, strict=True) if abs(part) > 0.2}
+        for size, direction in zip(s, vt, strict=True)
+        if NORMAL_95 * sigma > UNTOLD * size
+    ]
+
+
+def named(alpha: float, delta: float) -> str | None:
+    """Return the name of a scheme."""
+    for name, pair in NAMED.items():
+        if math.isclose(alpha, pair[0], abs_tol=1e-12) and math.isclose(delta, pair[1], abs_tol=1e-12):
+            return name
+    return None

@@ -1,0 +1,148 @@
+"""A history that is to be explained: its rows, what digits and noise may leave of them, what variants show there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from validation.diagnosis.fits import bar
+from validation.diagnosis.fits.responses import computed
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant
+from validation.runs.history import Array
+
+LEAST_ROWS = 24  # of a history that is fitted in part
+ROUNDING = 1e-10  # relative L2 that no recorded history comes below
+
+
+def norm(values: Array) -> float:
+    """Return the root of the sum of squares, one for zeros throughout."""
+    return float(np.linalg.norm(values)) or 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """What digits and noise may leave of a column, in its unit."""
+
+    rounding: Array  # units of the last digits
+    size: float  # largest value
+    norm: float  # root of the sum of squares
+    spread: float  # standard deviation of the noise
+
+    @classmethod
+    def of(cls, values: Array, rounding: Array | None) -> Bar:
+        """Derive it from the column itself."""
+        rounding = bar.last_digits(values) if rounding is None else rounding
+        return cls(rounding, float(np.max(np.abs(values))), norm(values), bar.noise(values))
+
+    @property
+    def allowed(self) -> float:
+        """Relative L2 that digits and noise may leave [-]."""
+        digits = float(np.sqrt(np.mean((self.rounding + bar.ARITHMETIC * self.size) ** 2)))
+        return max(digits, bar.MARGIN * self.spread) * math.sqrt(len(self.rounding)) / self.norm
+
+    def holds(self, remainder: Array) -> bool:
+        """Whether a remainder is digits and noise."""
+        return bar.explained(remainder, self.rounding, self.size, self.spread)
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """What is to be explained: recorded rows of one or two columns."""
+
+    column: Rectangle
+    steps: Array  # every step of the program [s], shape (n,)
+    rows: np.ndarray  # indices of the recorded steps
+    displacement: Array  # [m], one value a recorded step
+    pressure: Array | None = None  # [Pa]
+    rounding: Array | None = None  # of the displacement [m], seen from the values if not given
+    pressure_rounding: Array | None = None  # [Pa]
+    searching: bool = False  # one pass for all variants, those that open included
+
+    @property
+    def values(self) -> Array:
+        """The columns over their norms, one below the other: its squares sum to one."""
+        return self.join(self.displacement, self.pressure)
+
+    def join(self, displacement: Array, pressure: Array | None) -> Array:
+        """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
+        first = displacement / norm(self.displacement)
+        if self.pressure is None or pressure is None:
+            return first
+        return np.concatenate([first, pressure / norm(self.pressure)]) / math.sqrt(2)
+
+    def responses(self, variants: Sequence[Variant]) -> Array:
+        """Return the variants' histories scaled as `values` is, one column each."""
+        stepped = histories if self.searching else computed
+        found = stepped(self.column, variants, self.steps)
+        with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
+            joined = self.join(found.displacement[self.rows], found.pressure[self.rows])
+        return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
+
+    def parts(self, joined: Array) -> list[Array]:
+        """Return joined rows as those of the displacement and, if given, of the pressure, in their units."""
+        if self.pressure is None:
+            return [joined * norm(self.displacement)]
+        n = len(self.rows)
+        scale = math.sqrt(2)
+        return [joined[:n] * scale * norm(self.displacement), joined[n:] * scale * norm(self.pressure)]
+
+    @cached_property
+    def bars(self) -> list[Bar]:
+        """What digits and noise may leave of the displacement and, if given, of the pressure."""
+        found = [Bar.of(self.displacement, self.rounding)]
+        return found if self.pressure is None else [*found, Bar.of(self.pressure, self.pressure_rounding)]
+
+    def explained(self, joined: Array) -> bool:
+        """Whether nothing but digits and noise remains in every column."""
+        return all(b.holds(part) for b, part in zip(self.bars, self.parts(joined), strict=True))
+
+    def within_digits(self, joined: Array) -> bool:
+        """Whether nothing but rounding remains in every column."""
+        return all(
+            bar.within_digits(part, b.rounding, b.size) for b, part in zip(self.bars, self.parts(joined), strict=True)
+        )
+
+    def inner(self, joined: Array, variant: Variant) -> Array:
+        """Return joined rows without those that a shift leaves open: a program may write anything there."""
+        late, n = max(abs(variant.shift), math.ceil(abs(variant.late))), len(self.rows)
+        if not late or n < LEAST_ROWS:
+            return joined
+        kept = joined.copy()
+        for start in range(0, len(joined), n):
+            kept[start : start + late] = 0
+            kept[start + n - late : start + n] = 0
+        return kept
+
+    @property
+    def spread(self) -> float:
+        """Relative L2 of the noise in the noisiest column [-]."""
+        return max(b.spread * math.sqrt(len(self.rows)) / b.norm for b in self.bars)
+
+    @cached_property
+    def floor(self) -> float:
+        """Relative L2 that the printed digits leave by themselves [-]."""
+        shares = [float(np.sum((b.rounding / b.norm) ** 2)) / 12 for b in self.bars]
+        return max(math.sqrt(sum(shares) / len(shares)), ROUNDING)
+
+    def same_steps(self, other: Target) -> bool:
+        """Whether another target has as many steps and rows."""
+        return len(self.steps) == len(other.steps) and len(self.rows) == len(other.rows)
+
+    def quick(self) -> Target:
+        """Return the same for a search, in one pass for all variants."""
+        return replace(self, searching=True)
+
+    def until(self, steps: int) -> Target:
+        """Return the rows up to a step, at least a few."""
+        kept = max(int(np.searchsorted(self.rows, steps)), min(LEAST_ROWS, len(self.rows)))
+        last = int(self.rows[kept - 1]) + 1
+        pressure, rounding, other = (
+            None if c is None else c[:kept] for c in (self.pressure, self.rounding, self.pressure_rounding)
+        )
+        given = self.displacement[:kept], pressure, rounding, other
+        return Target(self.column, self.steps[:last], self.rows[:kept], *given)

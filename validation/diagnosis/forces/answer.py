@@ -1,0 +1,240 @@
+"""A history on a slope as it is read, and the answer to it in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.diagnosis.causes import CAUSES, UNEXPLAINED
+from validation.diagnosis.departure import Departure
+from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.bar import last_digits
+from validation.diagnosis.fits.rectangle import upright
+from validation.diagnosis.forces.forward import at_step, displacements
+from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
+from validation.diagnosis.forces.motion import body_of
+from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
+from validation.diagnosis.readings import Slip
+from validation.diagnosis.sentences import per_cent, scheme_words
+from validation.errors import InputError
+from validation.runs.history import DISPLACEMENT, Array
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+KNOWN = frozenset(
+    {features.FRICTION, features.LAGGED, features.SLOPE, features.WEIGHT, features.OFF_CENTRE}
+    | {features.UNILATERAL, features.DEAD_BAND}
+)
+UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
+NEAR_POWER = 0.5  # of the exponent: what creeps and slides differs by a factor of a few from program to program
+FRICTION_CAUSES = frozenset({"friction-factor", "cohesion", "shear-springs-factor"})
+NORMAL_CAUSES = frozenset({"springs-factor", "normal-springs-factor"})
+UNIFORM = 1e-3  # relative; times are often printed with four digits
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """Displacements of the centroid along and across the base at every step, signs corrected."""
+
+    place: Array  # m, (steps, 2)
+    rounding: Array  # m, (steps, 2)
+    step: float  # s
+    corrected: tuple[Slip, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """Ids of the errors of sign and unit that were corrected, each once."""
+        return tuple(sorted({slip.cause for slip in self.corrected}))
+
+
+def read(scene: Scene, foreign: Foreign) -> Read:
+    """Return what a history holds of a block with friction.
+
+    Raises
+    ------
+    InputError
+        The scene is not a rectangle at rest on its springs, or the history lacks a column or a step.
+    """
+    _check(scene)
+    if foreign.sideways is None:
+        raise InputError(
+            f"{scene.name}: {SIDEWAYS}: a history with friction must have it, got none; "
+            f"name it with --columns {SIDEWAYS}=NAME"
+        )
+    stepping = steppings(foreign, scene.time.step)[0]
+    steps = stepping.steps
+    if len(stepping.rows) != len(steps):
+        last, rows = float(np.max(np.diff(foreign.time))), len(stepping.rows)
+        raise InputError(
+            f"{scene.name}: time: with friction a history must show every step, got one of {len(steps) // rows} or so: "
+            f"its rows are {last:.6g} s apart, the scene's step is {scene.time.step:.6g} s; if that is the program's "
+            f"step, use --set time.step={last:.6g}"
+        )
+    if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
+        raise InputError(f"{scene.name}: time: with friction all steps must be equal, in seconds, got others")
+    place = np.column_stack([foreign.sideways, foreign.displacement])
+    units = [
+        last_digits(column) if unit is None else unit
+        for column, unit in zip(place.T, (foreign.sideways_rounding, foreign.rounding), strict=True)
+    ]
+    signs = [_sign(column, load) for column, load in zip(place.T, body_of(scene).load, strict=True)]
+    names = SIDEWAYS, DISPLACEMENT
+    corrected = [Slip("sign", name, -1.0) for name, sign in zip(names, signs, strict=True) if sign < 0]
+    step = float(np.mean(steps))
+    factor = _unit(scene, step, place)
+    if factor != 1:
+        corrected += [Slip("unit", name, factor) for name in names]
+    notes = (stepping.note,) if stepping.note else ()
+    return Read(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
+
+
+def _unit(scene: Scene, step: float, place: Array) -> float:
+    """Return the power of ten by which both displacements are larger than those of the scene's own run, else one."""
+    own = displacements(at_step(scene, step, len(place)))
+    size = 0.0 if own is None else float(np.max(np.abs(own)))
+    if size == 0 or not np.any(place):
+        return 1.0
+    ratio = math.log10(float(np.max(np.abs(place))) / size)
+    return next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
+
+
+def _check(scene: Scene) -> None:
+    """Refuse what is not a rectangle that lies at rest on its springs."""
+    more = sorted(set(features.of(scene)) - KNOWN)
+    at_rest = scene.contact.gap == scene.block.velocity == 0
+    if more or not upright(scene) or not at_rest or scene.time.alpha == 0:
+        got = ", ".join(more) or ("alpha = 0" if scene.time.alpha == 0 else "another scene")
+        raise InputError(
+            f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {got}"
+        )
+    features.refuse_sweep(scene)
+
+
+def _sign(column: Array, load: float) -> float:
+    """Return the factor that makes a column go with its load at first."""
+    first = float(np.sum(column[: max(4, len(column) // 50)]))
+    return -1.0 if first * load < 0 else 1.0
+
+
+def ids_of(found: Found, read: Read) -> list[str]:
+    """Return the ids of an answer."""
+    return [*read.slips, *found.causes] if found.explained else [UNEXPLAINED]
+
+
+def departure_of(found: Found, ids: Sequence[str]) -> Departure | None:
+    """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
+    if all(CAUSES[name].benign for name in ids):
+        return None
+    return Departure(_first(found, ids) or 1, "offset")
+
+
+def _first(found: Found, ids: Sequence[str]) -> int | None:
+    """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
+    return 1 if {"sign", "unit"} & set(ids) else found.first
+
+
+def stages(found: Found, read: Read) -> list[Stage]:
+    """Return what was measured: signs, normal law, friction."""
+    held = {name: 100 * share for name, share in found.shares.items()}
+    shares = f"consistent in {held['consistent']:.3g} % of the steps, lagged in {held['lagged']:.3g} %"
+    telling = f"{found.telling} steps tell them apart"
+    blurred = "; the digits of the file do not show it" if found.tolerance > BLURRED else ""
+    numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
+    right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
+    pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
+    run = found.run
+    of_scene = found.scene_run if found.change else run
+    left = None if math.isnan(of_scene.left) else of_scene.left
+    return [
+        Stage("reading", not read.slips, right, {}),
+        Stage("motion", run.same and not found.change, _motion(found), {"misfit": left}),
+        Stage(
+            "normal forces",
+            found.normal <= NORMAL and not _faulty(found, NORMAL_CAUSES),
+            pressed,
+            {"misfit": found.normal, "allowed": NORMAL},
+        ),
+        Stage(
+            "friction",
+            None if blurred else _law_holds(found),
+            f"rules that hold to {per_cent(found.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
+            numbers,
+        ),
+    ]
+
+
+def _faulty(found: Found, causes: frozenset[str]) -> bool:
+    """Whether an explanation holds one of some causes."""
+    return found.explained and not causes.isdisjoint(found.causes)
+
+
+def _law_holds(found: Found) -> bool | None:
+    """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
+    if found.change:
+        return False if _faulty(found, FRICTION_CAUSES) else None
+    if found.first is not None or max(found.shares.values()) < MOST:
+        return False
+    return True if found.run.same else None
+
+
+def _motion(found: Found, with_change: bool = False) -> str:
+    """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
+    run = found.run
+    if math.isnan(run.left):
+        return "the suite has no run of it"
+    if found.change and not with_change:
+        return f"the suite's own run of the scene leaves {per_cent(found.scene_run.left, 2)} % of the displacements"
+    part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
+    if run.same:
+        return f"the suite's own run gives the displacements to their digits or noise{part}"
+    return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
+
+
+def sentence(scene: Scene, found: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
+    """Return the first line of the answer."""
+    t = scene.time
+    own = scheme_words(t.alpha, t.delta, t.discount)
+    law = "lagged" if found.lagged else "consistent"
+    held = f"{law} friction gives the force of {100 * found.shares[law]:.4g} % of the steps"
+    if not found.explained:
+        why = "the digits of the file do not show its forces" if found.tolerance > BLURRED else f"at best, {held}"
+        if found.alike:
+            words = list(dict.fromkeys(one.words for one in found.alike))
+            same = "gives" if len(words) == 1 else "give"
+            return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(found)}."
+        normal = f"the normal law leaves {per_cent(found.normal, 2)} %"
+        return f"Departs, not explained: {why}; {normal}; {_motion(found)}."
+    faults = [slip.words for slip in corrected]
+    faults += [_fault(name, found) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
+    benign = [_benign(name, found) for name in ids if CAUSES[name].benign]
+    allowed = f", allowing for {' and '.join(benign)}" if benign else ""
+    if not faults:
+        return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
+    if found.change:
+        faults = [*(slip.words for slip in corrected), found.change]
+        return f"Departs: {' and '.join(faults)}; {_motion(found, with_change=True)}."
+    first = _first(found, ids)
+    where = f" from step {first} on" if first else ""
+    return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
+
+
+def _fault(name: str, found: Found) -> str:
+    value = found.values.get(name, 0.0)
+    words = {
+        "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
+        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
+        "springs-factor": f"the contact springs are {value:.4g} times the scene's",
+        "normal-springs-factor": f"the normal springs alone are {value:.4g} times the scene's",
+    }
+    return words.get(name, CAUSES[name].words)
+
+
+def _benign(name: str, found: Found) -> str:
+    value = found.values.get(name, 0.0)
+    if name == "own-weight":
+        return f"the block's own weight ({value:.3g} x 9.81 m/s2)"
+    return f"a base that adds {100 * value:.2g} % to the static displacement"

@@ -1,0 +1,282 @@
+"""Which law of contact and friction a recorded motion obeys, at every step of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from validation.diagnosis.causes import round_factor
+from validation.diagnosis.forces.forward import (
+    NO_RUN,
+    SURROUNDINGS,
+    Agreement,
+    Surrounded,
+    agreement,
+    at_step,
+    surrounded,
+)
+from validation.diagnosis.forces.laws import Followed, follow
+from validation.diagnosis.forces.motion import Body, Scheme, body_of, motion_of
+from validation.diagnosis.forces.one_number import OneChange, one_number
+from validation.runs.history import Array
+from validation.scenes.scene import Scene
+
+FITTED = 150  # steps that weight and softness are fitted to: a period of the springs and more
+CLOSE = 0.01  # of the mean limit of friction, within which a law gives the force that the motion shows
+NOISE = 6.0  # standard deviations, of two steps together, of what digits leave of a force
+BLURRED = 0.1  # of the limit: digits that leave more do not show which law it is
+MOST, MOST_SLIPS = 0.99, 0.9  # share of the steps, and of those with slip, that a law holds in
+MANY, MOST_OF_MANY = 50, 0.97  # steps that tell, from which on a few may be decided otherwise on a softer base
+FEWEST, FEW_RIGHT = 2, 0.3  # steps that tell two laws apart, and the share of them that the wrong one may hold in
+NORMAL = 0.002  # relative root mean square that the normal law may leave: moving geometry and a base
+WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or to none
+YIELDS, BENIGN, HARDER = 5e-4, 0.05, -0.01  # share of the static displacement: what counts as a base, what it may add
+POWERS = (0.0, 0.5, 1.5)  # of the factor on the springs across the base, for those along it: what rules it out for them
+DEEP = 0.05  # of the mean penetration: what an open corner may show of it before a dead band is in question
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a history shows of its contact."""
+
+    causes: tuple[str, ...]
+    values: dict[str, float]
+    explained: bool
+    lagged: bool  # the law that comes nearest
+    shares: dict[str, float]  # law to the share of steps that it holds in
+    telling: int  # steps that tell the laws apart
+    normal: float  # relative root mean square that the normal law leaves
+    tolerance: float  # of the limit of friction, within which a law holds
+    first: int | None  # step, from 1, at which the scene's own law is left
+    opened: tuple[int, int] | None  # first and last step with both corners open
+    run: Agreement = NO_RUN  # what the suite's own run leaves: of the scene, with what surrounds the block or a change
+    scene_run: Agreement = NO_RUN  # what the run of the scene as it is leaves, where a change explains the history
+    change: str = ""  # the one thing in the scene that explains it, in words
+    alike: tuple[OneChange, ...] = ()  # changes of which each does
+
+
+def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
+    """Judge displacements of the centroid along and across the base against a scene's contact.
+
+    The same is said only of what the scene's own run gives, or its run with what surrounds the block; the laws say how
+    another history departs.
+
+    Parameters
+    ----------
+    scene
+        An upright rectangle with friction.
+    place
+        Displacements at every step [m], (steps, 2).
+    step
+        The program's time step [s].
+    rounding
+        Units of their last digits [m], (steps, 2).
+    """
+    exact = at_step(scene, step, len(place))
+    run = agreement(exact, place, rounding)
+    found, fitted = _by_laws(scene, place, step, rounding)
+    if run.same and (run.until is None or found.shares[scene.contact.rules] >= MOST_SLIPS):
+        return replace(found, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
+    run = replace(run, same=False)
+    scene_run = run
+    if found.explained and not set(found.causes) <= SURROUNDINGS:
+        return replace(found, run=run)
+    if found.explained and found.causes:
+        around = surrounded(exact, found.causes, fitted, place, rounding)
+        if around.run.same:
+            return _springs_or_base(replace(found, explained=True, run=around.run), around, scene_run)
+        run = around.run if around.run.left < run.left else run
+    change, alike = one_number(exact, place, rounding)
+    if change is None:
+        return replace(found, explained=False, run=run, alike=tuple(alike))
+    values = {} if change.value is None else {change.id: change.value}
+    named = replace(found, causes=(change.id,), values=values, explained=True, first=1)
+    return replace(named, run=change.run, scene_run=scene_run, change=change.words)
+
+
+def _springs_or_base(found: Found, around: Surrounded, scene_run: Agreement) -> Found:
+    """Return a history on a base with the springs that give the same rows: named where their factor is a round one."""
+    if "base-compliance" not in found.causes:
+        return found
+    name = "springs-factor" if around.along else "normal-springs-factor"
+    factor = float(f"{around.springs:.6g}")
+    words = f"the {'springs' if around.along else 'normal springs alone'} are {factor:.4g} times the scene's"
+    springs = OneChange(name, factor, words, around.run)
+    if not round_factor(around.springs, around.error):
+        return replace(found, alike=(springs,))
+    rest = {cause: value for cause, value in found.values.items() if cause != "base-compliance"}
+    causes = tuple(name if cause == "base-compliance" else cause for cause in found.causes)
+    change = words if len(causes) == 1 else ""
+    return replace(found, causes=causes, values=rest | {name: factor}, first=1, change=change, scene_run=scene_run)
+
+
+def _lags(scene: Scene) -> bool:
+    return scene.contact.rules == "lagged"
+
+
+def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[Found, tuple[float, float]]:
+    """Return what the forces of a motion show, and the fitted weight [-] and softness [ln]."""
+    scheme, plain = Scheme.of(scene, step), body_of(scene)
+    weight, softness = _fitted(plain, scheme, place[:FITTED])
+    body = plain.heavier(weight).softer(softness)
+    soft = _compliance(scene, body, softness)
+    yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
+    bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
+    tried = [_Tried.of(one, scheme, place, rounding) for one in bodies]
+    chosen = max(tried, key=lambda one: max(one.shares.values()))
+    body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
+    own = scene.contact.rules
+    telling = _telling(body, runs, tolerance)
+    best = _law(right, telling, own)
+    run = runs[best]
+    normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
+    band = _band(body, run)
+    causes, values = _causes(scene, weight, softness, soft, best, band)
+    if "springs-factor" in causes and not _along_too(yields, softness, scheme, place, best):
+        causes[causes.index("springs-factor")] = "springs-factor?"
+    shares = chosen.shares
+    active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
+    least = MOST if telling.sum() < MANY else MOST_OF_MANY
+    held = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
+    sound = normal <= NORMAL and held and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
+    left = np.flatnonzero(runs[own].settled & ~right[own])
+    deep = np.flatnonzero(_deep(body, run).any(axis=1)) if "dead-band" in causes else np.zeros(0, int)
+    firsts = [int(steps[0]) + 1 for steps in (left if best != own else left[:0], deep) if len(steps)]
+    both = np.flatnonzero(~run.closed.any(axis=1))
+    opened = (int(both[0]) + 1, int(both[-1]) + 1) if len(both) else None
+    first = min(firsts, default=1 if "springs-factor" in causes else None)
+    named = tuple(name for name in causes if not name.endswith("?"))
+    told = int(telling.sum())
+    found = Found(named, values, sound, best == "lagged", shares, told, normal, tolerance, first, opened)
+    return found, (weight, softness)
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A motion followed by both laws: the steps in which each holds, and how often."""
+
+    body: Body
+    runs: dict[str, Followed]
+    right: dict[str, np.ndarray]
+    shares: dict[str, float]
+    tolerance: float
+
+    @classmethod
+    def of(cls, body: Body, scheme: Scheme, place: Array, rounding: Array) -> _Tried:
+        """Follow it."""
+        motion = motion_of(place, scheme, body)
+        runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
+        tolerance = max(CLOSE, _digits(scheme, body, rounding, runs["consistent"]))
+        right = {name: _right(body, run, tolerance) for name, run in runs.items()}
+        shares = {name: float(np.mean(held[runs[name].settled])) for name, held in right.items()}
+        return cls(body, runs, right, shares, tolerance)
+
+
+def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
+    """Return the share of the own weight and the softness [ln] that the normal resultants ask for."""
+    from scipy.optimize import least_squares
+
+    def left(z: Array) -> Array:
+        tried = body.heavier(float(z[0])).softer(float(z[1]))
+        run = follow(tried, motion_of(place, scheme, tried), False)
+        return np.asarray((run.given - run.shown)[:, 1] / run.scale)
+
+    starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
+    start = min(starts, key=lambda z: float(np.linalg.norm(left(z))))
+    found = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
+    return float(found.x[0]), float(found.x[1])
+
+
+def _along_too(body: Body, softness: float, scheme: Scheme, place: Array, law: str) -> bool:
+    """Whether springs along the base by the factor of those across it suit a motion better than by its other powers."""
+
+    def left(power: float) -> float:
+        tried = replace(body, shear=body.shear * math.exp((1 - power) * softness))
+        run = follow(tried, motion_of(place, scheme, tried), law == "lagged")
+        return float(np.mean(np.abs(run.given - run.shown)[run.settled, 0]))
+
+    return left(1.0) < 0.5 * min(left(power) for power in POWERS)
+
+
+def _compliance(scene: Scene, body: Body, softness: float) -> float:
+    """Return what softer springs add to the static displacement, as a share of it [-]."""
+    from validation.gates.closed_forms import moduli
+
+    width = body.x[1] - body.x[0]
+    springs, block = 1 / (2 * scene.contact.stiffness), body.height / (4 * moduli(scene)[0] * width)
+    return springs * math.expm1(softness) / (springs + block)
+
+
+def _digits(scheme: Scheme, body: Body, rounding: Array, run: Followed) -> float:
+    """Return what printed digits leave of a force, over the limit of friction: those of random ones."""
+    random = np.random.default_rng(0).uniform(-0.5, 0.5, rounding.shape) * rounding
+    shaken = motion_of(random, scheme, replace(body, load=np.zeros(2)))
+    return NOISE * body.mass * float(np.std(shaken.acceleration)) / _limit(body, run)
+
+
+def _limit(body: Body, run: Followed) -> float:
+    return body.coefficient * run.scale + body.cohesion or 1.0
+
+
+def _limits(body: Body, run: Followed) -> Array:
+    """Return the limit of friction at each step, of the larger resultant there or a step before, or of the mean [N]."""
+    pressed = np.maximum(run.shown[:, 1], np.concatenate(([0.0], run.shown[:-1, 1])))
+    return np.asarray(body.coefficient * np.maximum(pressed, run.scale) + body.cohesion)
+
+
+def _right(body: Body, run: Followed, tolerance: float) -> np.ndarray:
+    """Return the steps in which a law gives the force that the motion shows."""
+    return np.asarray(np.abs(run.given - run.shown)[:, 0] <= tolerance * _limits(body, run))
+
+
+def _telling(body: Body, runs: dict[str, Followed], tolerance: float) -> np.ndarray:
+    """Return the steps in which two laws ask for forces that digits tell apart."""
+    one, other = runs.values()
+    apart = np.abs(one.given - other.given)[:, 0] > 3 * tolerance * _limits(body, one)
+    return np.asarray(apart & one.settled & other.settled)
+
+
+def _law(right: dict[str, np.ndarray], telling: np.ndarray, own: str) -> str:
+    """Return the law that holds where two differ; the scene's own where nothing tells them apart."""
+    if telling.sum() < FEWEST:
+        return own
+    shares = {name: float(np.mean(held[telling])) for name, held in right.items()}
+    best = max(shares, key=lambda name: shares[name])
+    return best if min(shares.values()) <= FEW_RIGHT or best == own else own
+
+
+def _deep(body: Body, run: Followed) -> np.ndarray:
+    """Return the steps and corners that are open although the springs are pressed."""
+    pressed = run.scale / (2 * body.stiffness)
+    return np.asarray(~run.closed & (-run.gap > DEEP * pressed) & run.settled[:, None])
+
+
+def _band(body: Body, run: Followed) -> float:
+    """Return the penetration beyond which an open corner closes [m]; zero without a dead band."""
+    deep = _deep(body, run)
+    return float(np.max(-run.gap[deep])) if deep.sum() >= FEWEST else 0.0
+
+
+def _causes(
+    scene: Scene, weight: float, softness: float, soft: float, law: str, band: float
+) -> tuple[list[str], dict[str, float]]:
+    """Return the ids of what differs from the scene, and their numbers; a question mark where none fits."""
+    found, own = [], scene.contact.band[0]
+    values: dict[str, float] = {}
+    if not HARDER <= soft <= BENIGN:
+        found.append("springs-factor")
+        values["springs-factor"] = math.exp(-softness)
+    if law != scene.contact.rules:
+        found.append("lagged-friction" if law == "lagged" else "lagged-friction?")
+    if band > 0 and not 0.8 * own <= band <= 1.2 * own:
+        found.append("dead-band")
+        values["dead-band"] = band
+    if YIELDS < soft <= BENIGN:
+        found.append("base-compliance")
+        values["base-compliance"] = soft
+    if abs(weight) > NONE:
+        found.append("own-weight" if abs(weight - 1) <= WHOLE else "own-weight?")
+        values["own-weight"] = weight
+    return found, {name: float(f"{value:.4g}") for name, value in values.items()}

@@ -1,0 +1,245 @@
+"""The forces that a law of friction gives for a recorded motion, beside those that the motion shows.
+
+Centroid and resultants are known from the file. What it does not hold, rotation and strains, follows from the
+resultants by the block's own equations, and how the corners share them from their springs. So gaps and slides of both
+corners are known at every step, and with them the force of each law:
+
+    stick   T = -p_s (s - reference)
+    slip    T = sigma (tan(phi) N + c), N of this step where rules are consistent, of the step before where they lag
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.diagnosis.forces.motion import Body, Motion
+from validation.runs.history import Array
+
+OPEN, STICK = 0, 1  # slip is +2 or -2, the sign of the force
+Closed = tuple[bool, bool]  # of the two corners
+CLOSED: tuple[Closed, ...] = ((True, True), (True, False), (False, True), (False, False))
+BOTH = np.array([1.0, 0.0, 0.0, 0.5])  # of r and gxy in the difference of the corners' gaps, over the width
+TRIES = 4  # of how corners share the shear force, where friction is that of the same step
+NEAR = 0.001  # of the mean normal resultant: of closed corners that fit it so well, those of the step before are taken
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A motion with the forces of a law, at each step."""
+
+    shown: Array  # resultants that the motion shows, along and across [N], (steps, 2)
+    given: Array  # resultants of the law [N], (steps, 2)
+    gap: Array  # of the corners [m], (steps, 2)
+    closed: np.ndarray  # (steps, 2)
+    settled: np.ndarray  # (steps,), whether the corners that are closed were so a step before
+    slips: np.ndarray  # (steps,), whether some corner slips
+
+    @property
+    def scale(self) -> float:
+        """Mean size of the normal resultant [N]."""
+        return float(np.mean(np.abs(self.shown[:, 1]))) or 1.0
+
+
+class _Corner:
+    """State, reference [m], and normal force [N], slide and gap [m] of the step before."""
+
+    def __init__(self) -> None:
+        self.state, self.reference, self.normal, self.slide, self.gap = STICK, 0.0, 0.0, 0.0, 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """The end of a step: closed corners, their gaps and slides [m], normal forces [N], and the internal unknowns."""
+
+    closed: Closed
+    gap: Array
+    slide: Array
+    normal: Array
+    unknowns: Array
+    acceleration: Array
+
+
+def follow(body: Body, motion: Motion, lagged: bool, rubs: bool = True) -> Followed:
+    """Follow a motion with a law of friction.
+
+    Parameters
+    ----------
+    lagged
+        Whether a slipping corner has the friction of the step before, and forgets its shear.
+    rubs
+        Whether the corners slip at all; glued in shear otherwise.
+    """
+    observer, corners = _Observer(body, motion), (_Corner(), _Corner())
+    shown, rows, before = motion.forces(body), [], CLOSED[0]
+    for place, force in zip(motion.place, shown, strict=True):
+        shears = tuple(_assumed(body, corner) for corner in corners)
+        for _ in range(TRIES):
+            seen = observer.step(place, force, corners, shears, before)
+            asked = [_asked(body, corner, seen, c, lagged, rubs) for c, corner in enumerate(corners)]
+            told = tuple(one.held for one in asked)
+            if lagged or told == shears:
+                break
+            shears = told
+        observer.accept(seen)
+        left = force[0] - sum(one.force for one in asked)
+        sticks = [one for one in asked if one.force and one.held is None]
+        for c, (corner, one) in enumerate(zip(corners, asked, strict=True)):
+            corner.state, corner.reference = one.state, one.reference
+            corner.normal, corner.slide, corner.gap = seen.normal[c], seen.slide[c], seen.gap[c]
+            if one in sticks and one.state == STICK:  # what the law leaves is taken for a reference that is off
+                corner.reference += left / (body.shear * len(sticks))
+        springs = -body.stiffness * sum(seen.gap[c] for c in (0, 1) if seen.closed[c])
+        slips = any(one.held is not None for one in asked)
+        rows.append((force[0] - left, springs, seen.gap, seen.closed, seen.closed == before, slips))
+        before = seen.closed
+    columns = [np.array(column) for column in zip(*rows, strict=True)]
+    return Followed(shown, np.column_stack(columns[:2]), *columns[2:])
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What a law asks of a corner: its shear force [N], `held` where it slips, and its state after the step."""
+
+    force: float
+    held: float | None
+    state: int
+    reference: float  # m
+
+
+def _assumed(body: Body, corner: _Corner) -> float | None:
+    """Return the shear force of a corner that slips on as in the step before, None if it sticks or is open."""
+    if abs(corner.state) <= STICK:
+        return None
+    return math.copysign(body.coefficient * max(corner.normal, 0.0) + body.cohesion, corner.state)
+
+
+def _asked(body: Body, corner: _Corner, seen: _Seen, c: int, lagged: bool, rubs: bool) -> _Asked:
+    """Return what a law asks of a corner at the end of a step."""
+    slide, gap = seen.slide[c], seen.gap[c]
+    if not seen.closed[c]:
+        return _Asked(0.0, None, OPEN, slide)
+    state, reference = corner.state, corner.reference
+    if state == OPEN:  # it has touched down where the gap was crossed
+        past = corner.gap / (corner.gap - gap) if corner.gap > 0 > gap else 0.0
+        state, reference = STICK, corner.slide + past * (slide - corner.slide)
+    shear = -body.shear * (slide - reference)
+    limit = body.coefficient * max(seen.normal[c], 0.0) + body.cohesion if rubs else math.inf
+    if not lagged:
+        if abs(shear) <= limit:
+            return _Asked(shear, None, STICK, reference)
+        held = math.copysign(limit, shear)
+        return _Asked(held, held, int(math.copysign(2, shear)), slide + held / body.shear)
+    if state == STICK:
+        if abs(shear) <= limit:
+            return _Asked(shear, None, STICK, reference)
+        return _Asked(shear, None, int(math.copysign(2, shear)), slide)
+    late = _assumed(body, corner)
+    if state * (slide - corner.slide) <= 0:
+        return _Asked(late or 0.0, late, state, slide)
+    return _Asked(late or 0.0, late, STICK, corner.slide)  # it has turned round: it sticks from where the step began
+
+
+class _Observer:
+    """Rotation and strains that a motion must have had, (r, ex, ey, gxy)."""
+
+    def __init__(self, body: Body, motion: Motion) -> None:
+        self.body, self.s = body, motion.scheme
+        self.rows = [body.row(c) for c in (0, 1)]
+        self.scale = float(np.mean(np.abs(motion.forces(body)[:, 1])))
+        self.e = self.s.alpha * self.s.step**2
+        self.plain = body.inertia + self.e * body.elastic
+        self.x, self.V = np.zeros(4), np.zeros(4)
+        self.A = np.linalg.solve(body.inertia, body.internal) if self.s.consistent else np.zeros(4)
+        self.inverses: dict[tuple[bool, ...], Array] = {}
+
+    def step(
+        self, place: Array, force: Array, corners: Sequence[_Corner], shears: Sequence[float | None], before: Closed
+    ) -> _Seen:
+        """Return the end of the next step.
+
+        Those corners are closed whose springs come nearest to the normal resultant. The sum of the shear forces is
+        known; `shears` says how corners share it that slip, the others follow their springs.
+        """
+        s, dt = self.s, self.s.step
+        ahead = self.x + s.gg * dt * self.V + dt * dt * (0.5 - s.alpha) * self.A
+        y = -self.body.height / 2
+        known = self.body.internal + force[0] * np.array([-y, 0, 0, y / 2]) + force[1] * np.array([0, 0, y, 0])
+        right = self.body.inertia @ ahead + self.e * known
+        closed, (x, gap) = before, self._end(right, before, place, force, corners, shears)
+        if self._off(before, gap, force[1]) > NEAR * self.scale:
+            tried = {one: self._end(right, one, place, force, corners, shears) for one in CLOSED}
+            closed = self._nearest(tried, before, force[1])
+            x, gap = tried[closed]
+        A = (x - ahead) / self.e
+        if sum(closed) == 1:
+            x, gap = self._turned(closed.index(True), x, gap, place, force[1])
+        slide = np.array([place[0] + along @ x for along, _ in self.rows])
+        return _Seen(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
+
+    def _nearest(self, tried: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
+        """Return the closed corners that fit the normal resultant; of two that do so alike, those nearer to before."""
+        off = {closed: self._off(closed, gap, normal) for closed, (_, gap) in tried.items()}
+        near = [one for one in CLOSED if off[one] <= max(2 * min(off.values()), NEAR * self.scale)]
+        return min(near, key=lambda one: (sum(a != b for a, b in zip(one, before, strict=True)), off[one]))
+
+    def accept(self, seen: _Seen) -> None:
+        """Move to the end of a step."""
+        s = self.s
+        self.V = s.gg * self.V + s.step * ((1 - s.delta) * self.A + s.delta * seen.acceleration)
+        self.x, self.A = seen.unknowns, seen.acceleration
+
+    def _turned(self, c: int, x: Array, gap: Array, place: Array, normal: float) -> tuple[Array, Array]:
+        """Return unknowns and gaps once the block is turned to where its one spring gives the normal resultant."""
+        off = (-normal / self.body.stiffness - gap[c]) / self.body.x[c]
+        x = x + np.array([off, 0.0, 0.0, 0.0])
+        return x, np.array([place[1] + across @ x for _, across in self.rows])
+
+    def _off(self, closed: Closed, gap: Array, normal: float) -> float:
+        pulls = sum(max(gap[c], 0.0) for c in (0, 1) if closed[c])
+        springs = -sum(gap[c] for c in (0, 1) if closed[c])
+        return float(abs(self.body.stiffness * springs - normal) + self.body.stiffness * pulls)
+
+    def _end(
+        self,
+        right: Array,
+        closed: Closed,
+        place: Array,
+        force: Array,
+        corners: Sequence[_Corner],
+        shears: Sequence[float | None],
+    ) -> tuple[Array, Array]:
+        """Return the unknowns and the gaps at the end of a step for some closed corners."""
+        right, body = right.copy(), self.body
+        stuck = tuple(closed[c] and shears[c] is None for c in (0, 1))
+        if sum(closed) == 1:
+            right += self.e * force[1] * body.x[closed.index(True)] * BOTH
+        for c, corner in enumerate(corners):
+            if stuck[c]:
+                right[1] -= self.e * body.shear * body.x[c] * (place[0] - corner.reference)
+            elif closed[c]:
+                right[1] += self.e * body.x[c] * (shears[c] or 0.0)
+        x = self._inverse(closed, stuck) @ right
+        return x, np.array([place[1] + across @ x for _, across in self.rows])
+
+    def _inverse(self, closed: Closed, stuck: tuple[bool, ...]) -> Array:
+        key = (*closed, *stuck)
+        if key not in self.inverses:
+            S, body = self.plain.copy(), self.body
+            if all(closed):
+                S += self.e * body.stiffness * (body.x[1] - body.x[0]) ** 2 / 2 * np.outer(BOTH, BOTH)
+            for c in (0, 1):
+                if stuck[c]:
+                    S[1] += self.e * body.shear * body.x[c] * self.rows[c][0]
+            self.inverses[key] = np.asarray(np.linalg.inv(S), dtype=np.float64)
+        return self.inverses[key]
+
+    def _shared(self, closed: Closed, gap: Array, normal: float) -> Array:
+        """Return the normal forces of the corners [N]."""
+        if not all(closed):
+            return np.where(closed, normal, 0.0)
+        half = -self.body.stiffness * (gap[1] - gap[0]) / 2
+        return np.array([normal / 2 - half, normal / 2 + half])

@@ -1,0 +1,372 @@
+"""Judgement of another program by its history: the same, or where and how it departs, why, and what is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from validation.diagnosis import causes, departure, evidence, families, sentences
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
+from validation.diagnosis.decision import Verdict
+from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.fit import fit, intervals, untold
+from validation.diagnosis.fits.rectangle import OPENING, own_variant, rectangle_of
+from validation.diagnosis.fits.responses import computed
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.forces import answer
+from validation.diagnosis.forces.judge import judge
+from validation.diagnosis.forces.one_number import OneChange
+from validation.diagnosis.other_solvers import Goal, Rival, rivals
+from validation.diagnosis.other_verdict import RivalVerdict, judged
+from validation.diagnosis.ranking import ranking, row_of
+from validation.diagnosis.reading import Foreign, steppings
+from validation.diagnosis.readings import Reading, readings_of, slips
+from validation.diagnosis.search import beside, paired, simple
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant
+from validation.errors import InputError
+from validation.runs.history import Array
+from validation.scenes import features
+from validation.scenes.scene import Scene
+
+DDA = "dda"
+RIVALS = ("bar", "continuum")
+MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
+RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A scene, a history, and the reading of it that explains most."""
+
+    scene: Scene
+    foreign: Foreign
+    reading: Reading
+    target: Target
+    own: Variant
+
+
+def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
+    """Judge a history against the scene.
+
+    Parameters
+    ----------
+    tolerance
+        Relative L2 difference up to which a column counts as the scene's own [-].
+
+    Raises
+    ------
+    InputError
+        The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
+    """
+    features.refuse_column(scene, "compare")
+    features.refuse_damping(scene, "compare")
+    if features.FRICTION in features.of(scene):
+        return _with_friction(scene, foreign)
+    column = rectangle_of(scene)
+    if not features.linear(scene) and column is None:
+        raise InputError(
+            f"{scene.name}: compare takes linear scenes, and centred loads on blocks that rest on unilateral contact; "
+            f"got {', '.join(_beyond(scene))}"
+        )
+    features.refuse_sweep(scene)
+    unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
+    if not (np.any(foreign.displacement) or (unloaded and column is not None)):
+        raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
+    if column is None:
+        return _without_rectangle(scene, foreign)
+    own = own_variant(scene)
+    read = readings_of(scene, column, own, foreign)
+    factor = _growth(column, own, read[0])
+    if factor is not None:
+        return _diverged(_case(scene, foreign, read[0], column, own), factor)
+    case, verdict = _best(scene, foreign, read, column, own)
+    misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
+    if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
+        verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
+    theirs: RivalVerdict | None = None
+    if not (verdict.explained or verdict.reached) and scene.contact.law == "locked":
+        names = RIVALS if scene.block.poisson == 0 else ("fem",)
+        theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
+        if theirs is not None and theirs.explained:
+            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), _own_run(case))
+        verdict = paired(case.target, own, verdict)
+    elif not (verdict.explained or verdict.reached):
+        verdict = beside(case.target, own, verdict)
+    linear = scene.contact.law == "locked"
+    return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
+
+
+def _beyond(scene: Scene) -> list[str]:
+    """Return what `compare` does not take of a scene whose contact opens, and nothing that it does."""
+    gap, velocity = scene.contact.gap, scene.block.velocity
+    numbers = [f"contact.gap = {gap:g}"] if gap else []
+    numbers += [f"block.velocity = {velocity:g}"] if velocity else []
+    others = [name for name in features.of(scene) if name not in OPENING]
+    return numbers or others or ["another contact.band"]
+
+
+# ---- reading --------------------------------------------------------------------------------------------------------
+
+
+def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Rectangle, own: Variant) -> Case:
+    s = reading.stepping
+    columns = reading.displacement, reading.pressure, reading.rounding, reading.pressure_rounding
+    return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), own)
+
+
+def _growth(column: Rectangle, own: Variant, reading: Reading) -> float | None:
+    """Return the growth in a step of the displacement or the pressure, None if both are bounded."""
+    rows, found = reading.stepping.rows, computed(column, [own], reading.stepping.steps)
+    pairs = [(reading.displacement, found.displacement), (reading.pressure, found.pressure)]
+    factors = [evidence.growth(values, wanted[rows, 0]) for values, wanted in pairs if values is not None]
+    return next((f for f in factors if f is not None), None)
+
+
+def _best(
+    scene: Scene, foreign: Foreign, read: Sequence[Reading], column: Rectangle, own: Variant
+) -> tuple[Case, Verdict]:
+    """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
+    tried: list[tuple[Case, Verdict]] = []
+    fewest = min(len(reading.corrected) for reading in read)
+    for reading in read:
+        case = _case(scene, foreign, reading, column, own)
+        verdict = simple(case.target, own)
+        tried.append((case, verdict))
+        least = len(reading.corrected) == fewest
+        reached = verdict.reached or verdict.explained
+        # a slip of sign or unit beside another cause is less likely than that of a datum alone
+        if reached and (least or verdict.same):
+            return case, verdict
+        if verdict.best.fit.misfit < PLAIN and any(len(other.reading.corrected) == fewest for other, _ in tried):
+            break
+    sound = [pair for pair in tried if pair[1].reached or pair[1].explained]
+    return sound[0] if sound else min(tried, key=lambda pair: pair[1].best.fit.misfit)
+
+
+def _others(scene: Scene, case: Case, verdict: Verdict, known: Sequence[Rival]) -> list[Rival]:
+    """Return the other solvers' best answers, for the ranking."""
+    v, steps = verdict.best.fit.variant, case.reading.stepping.steps
+    names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
+    if np.ptp(steps) > 0:
+        return []
+    schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
+    r = case.reading
+    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, known)
+
+
+# ---- answers --------------------------------------------------------------------------------------------------------
+
+
+def _stages(case: Case, factor: float | None = None) -> list[Stage]:
+    rows, found = case.reading.stepping.rows, computed(case.target.column, [case.own], case.target.steps)
+    wanted = found.displacement[rows, 0], found.pressure[rows, 0]
+    return evidence.stages(case.target, wanted, case.reading.slips, case.reading.stepping.note, factor)
+
+
+def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
+    target, own, found = case.target, case.own, verdict.best.fit
+    stages = _stages(case)
+    corrected = case.reading.corrected
+    error = intervals(found)["softness"].half_width if "softness" in found.free else 0.0
+    named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own, error)
+    either = families.sign_or_gravity(target, named_, corrected) if verdict.explained else []
+    left = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
+    if either:
+        verdict = replace(verdict, explained=False)
+    ids = named_ if verdict.explained else [UNEXPLAINED]
+    v = found.variant if verdict.explained else own
+    steps = _opened(target, found.variant) if verdict.explained else []
+    shown = verdict.best.fit if verdict.explained else verdict.own
+    expected = departure.expected(target, shown, own, ids)
+    gone = departure.departure(target, expected, named_ if either else ids, steps)
+    told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
+    values = causes.values_of(target, ids, v)
+    ends = causes.intervals_of(target, found, ids) if verdict.explained else {}
+    if "dead-band" in ends:
+        values["dead-band"] = causes.roundest(*ends["dead-band"])
+    soft = causes.compliance(target, v)
+    alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
+    nearest = None if verdict.explained or alike else _nearest(target, verdict, named_)
+    if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
+        stages = [evidence.surrounded(stage) for stage in stages]
+    said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected, ends)
+    if not verdict.explained:
+        sentence = sentences.not_explained(said, nearest, alike, left, stages)
+    else:
+        sentence = sentences.sentence(said, alike)
+    time = np.cumsum(target.steps)[target.rows]
+    best = computed(target.column, [found.variant], target.steps)
+    curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
+    pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
+    return Answer(
+        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        ranking(DDA, target, v, shown.free, others),
+        gone,
+        ids,
+        (steps[0], steps[-1]) if steps else None,
+        sentence,
+        _notes(case.foreign, case.reading),
+        intervals(told) if verdict.explained else {},
+        untold(told) if verdict.explained else [],
+        found.misfit,
+        {name: (time, curve) for name, curve in curves.items()},
+        values,
+        left,
+        nearest,
+        alike,
+        tuple(stages),
+        slips=corrected if verdict.explained else (),
+        pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
+        intervals=ends,
+    )
+
+
+def _nearest(target: Target, verdict: Verdict, ids: list[str]) -> dict[str, Any]:
+    """Return what comes nearest, and how much of the difference it leaves."""
+    values = causes.values_of(target, ids, verdict.best.fit.variant)
+    return {"causes": ids, "values": values, "left": float(f"{verdict.left:.4g}")}
+
+
+def _opened(target: Target, v: Variant) -> list[int]:
+    """Return the steps, counted from 1, at whose end the contact of a variant is open."""
+    if not v.opens:
+        return []
+    return [int(i) + 1 for i in np.flatnonzero(computed(target.column, [v], target.steps).open[:, 0])]
+
+
+def _diverged(case: Case, factor: float) -> Answer:
+    """Return the answer to a history without bounds: no cause beyond that is looked for."""
+    target, stages = case.target, _stages(case, factor)
+    expected = histories(target.column, [case.own], target.steps).displacement[:, 0]
+    gone = departure.unbounded(expected[target.rows], target.displacement, target.rows)
+    time = np.cumsum(target.steps)[target.rows]
+    v = case.own
+    return Answer(
+        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        [],
+        gone,
+        [DIVERGED],
+        None,
+        sentences.diverged(gone, factor),
+        _notes(case.foreign, case.reading),
+        curves={"the file": (time, target.displacement), DDA: (time, expected[target.rows])},
+        values={DIVERGED: float(f"{factor:.6g}")},
+        evidence=tuple(stages),
+    )
+
+
+def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
+    said = (reading.stepping.note,) if reading.stepping.note else ()
+    slipped = tuple(slip.words for slip in reading.corrected)
+    return (*foreign.notes, *said, *slipped)
+
+
+def _own_run(case: Case) -> Array:
+    """Return the displacement of DDA's own run of the scene at every step [m]."""
+    return computed(case.target.column, [case.own], case.target.steps).displacement[:, 0]
+
+
+def _answer_of_rival(
+    foreign: Foreign,
+    reading: Reading,
+    verdict: RivalVerdict,
+    stages: Sequence[Stage] = (),
+    own_run: Array | None = None,
+) -> Answer:
+    """Return the answer where another solver than DDA, or the linear DDA of any polygon, explains it best.
+
+    Parameters
+    ----------
+    own_run
+        Displacement of DDA's own run of the scene, where another solver explains the history [m].
+    """
+    best, rows = verdict.best, reading.stepping.rows
+    without_scheme = verdict.explained and own_run is not None and best.alpha is None
+    ids = [*reading.slips, *(["exact-in-time"] if without_scheme else []), *verdict.causes]
+    ids = ids if verdict.explained else [UNEXPLAINED]
+    gone = None
+    if any(not CAUSES[name].benign for name in ids):
+        expected = own_run if without_scheme and own_run is not None else verdict.own
+        gone = departure.measured(expected[rows], reading.displacement, rows, 0.0)
+    sentence = sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS)
+    if verdict.explained and own_run is not None:
+        off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
+        sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
+        stages = [evidence.surrounded(stage, "another model") for stage in stages]
+    time = np.cumsum(reading.stepping.steps)[rows]
+    return Answer(
+        {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
+        [row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
+        gone,
+        ids,
+        None,
+        sentence,
+        _notes(foreign, reading),
+        misfit=best.misfit,
+        curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
+        values=verdict.values if verdict.explained else {},
+        unexplained=0.0 if verdict.explained else verdict.left,
+        evidence=tuple(stages),
+        own_model=best.model == DDA,
+    )
+
+
+def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
+    """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
+    read = answer.read(scene, foreign)
+    found = judge(scene, read.place, read.step, read.rounding)
+    ids = answer.ids_of(found, read)
+    t = scene.time
+    left = float(f"{min(1.0, np.nanmax([1 - max(found.shares.values()), found.run.left])):.4g}")
+    near = {"causes": list(found.causes), "values": found.values, "left": left}
+    return Answer(
+        {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
+        [row_of(DDA, t.alpha, t.delta, t.discount, found.normal, found.values.get("base-compliance", 0.0))],
+        answer.departure_of(found, ids),
+        ids,
+        found.opened if found.explained else None,
+        answer.sentence(scene, found, ids, read.corrected),
+        (*foreign.notes, *read.notes),
+        misfit=found.normal,
+        curves={"the file": (foreign.time, foreign.displacement)},
+        values=found.values if found.explained else {},
+        unexplained=0.0 if found.explained else left,
+        nearest=None if found.explained else near,
+        alike=[_alone(one) for one in found.alike],
+        evidence=tuple(answer.stages(found, read)),
+        slips=read.corrected,
+    )
+
+
+def _alone(change: OneChange) -> dict[str, Any]:
+    """Return one of several changes that give the same rows, as plain data."""
+    values = {} if change.value is None else {change.id: change.value}
+    scene = families.TELLS["springs-factor"] if "springs" in change.id else "another slope or coefficient of friction"
+    return {"causes": [change.id], "values": values, "further_scene": scene}
+
+
+def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
+    """Return the answer for a block that is no upright rectangle, or that turns: linear models alone are tried."""
+    from validation.solvers.registry import get_solver
+
+    tried = []
+    for stepping in steppings(foreign, scene.time.step):
+        if np.ptp(stepping.steps) > 0:
+            continue
+        plain = Reading(stepping, foreign.displacement, foreign.pressure, ())
+        run = get_solver(DDA).solve(plain.scene_of(scene))
+        rows = stepping.rows
+        for reading in slips(foreign, stepping, run.displacement[rows], run.contact_pressure[rows]):
+            verdict = judged(scene, reading, 1.0, (DDA, "fem"), DDA)
+            tried += [(reading, verdict)] if verdict is not None else []
+    if not tried:
+        raise InputError(f"{scene.name}: the times of the history are not uniform, which this scene needs")
+    reading, verdict = min(tried, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
+    note = "the block is not an upright rectangle: opening and updated geometry are not tried"
+    return _answer_of_rival(replace(foreign, notes=(*foreign.notes, note)), reading, verdict)

@@ -1,0 +1,333 @@
+"""Histories of other programs: tables with any header, and the measured-point file of ntdda."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from validation.diagnosis.fits.bar import last_digits
+from validation.errors import InputError
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.regular import regular
+
+SIDEWAYS = "horizontal_displacement"  # m, towards +x
+OURS = ("time", DISPLACEMENT, PRESSURE, SIDEWAYS)
+FREE = (PRESSURE, SIDEWAYS)  # columns that a file need not have
+NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, speed
+LEAST_ROWS = 4
+LARGEST = 1e100  # the squares of larger numbers overflow
+SAME_STEP = 1e-3  # relative; times are often printed with four digits
+MOST_STEPS = 10_000  # every explanation that is tried steps through all of them: a minute or two, and 200 MB
+LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
+
+
+@dataclass(frozen=True, eq=False)
+class Foreign:
+    """A history of another program in SI units, from the first row after t = 0 on.
+
+    `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
+    (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
+    units of the last printed digit of each value, None where they are to be seen from the values.
+    """
+
+    time: Array
+    displacement: Array
+    pressure: Array | None = None
+    steps: Array | None = None
+    notes: tuple[str, ...] = ()
+    rounding: Array | None = None  # [m]
+    pressure_rounding: Array | None = None  # [Pa]
+    sideways: Array | None = None  # horizontal displacement [m]
+    sideways_rounding: Array | None = None  # [m]
+
+
+def parse_columns(text: str | None) -> dict[str, str]:
+    """Return the mapping of ``time=t,displacement=uy``: our column to theirs.
+
+    Raises
+    ------
+    InputError
+        A part is not ours=theirs, or names no column of ours.
+    """
+    pairs = [part.partition("=") for part in (text or "").split(",") if part.strip()]
+    for ours, equals, theirs in pairs:
+        if not equals or not theirs.strip() or ours.strip() not in OURS:
+            raise InputError(f"--columns: must be OURS=THEIRS with ours among {', '.join(OURS)}, got {text!r}")
+    return {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
+
+
+def parse_scale(text: str | None) -> dict[str, float]:
+    """Return the factors of ``displacement=-1e-3``: what their numbers are multiplied by.
+
+    Raises
+    ------
+    InputError
+        A part is not ours=factor, or a factor is no finite number other than zero.
+    """
+    factors = {}
+    for part in (text or "").split(","):
+        if not part.strip():
+            continue
+        ours, _, number = (piece.strip() for piece in part.partition("="))
+        try:
+            factor = float(number)
+        except ValueError:
+            factor = math.nan
+        if ours not in OURS or not math.isfinite(factor) or factor == 0:
+            raise InputError(f"--scale: must be OURS=FACTOR with ours among {', '.join(OURS)}, got {text!r}")
+        factors[ours] = factor
+    return factors
+
+
+def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[str, float] | None = None) -> Foreign:
+    """Read a history: a measured-point file of ntdda, or a table under a header.
+
+    Parameters
+    ----------
+    path
+        The file; a table may be separated by commas, semicolons, tabs or blanks, with comments after ``#`` or ``%``.
+    columns
+        Our column name to theirs; for a measured-point file ``{"displacement": "measpoint2"}`` picks a point.
+    scale
+        Our column name to the factor that makes it SI units, displacement positive upwards.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is no such history.
+    """
+    try:
+        regular(path, LARGEST_FILE)
+        text = path.read_bytes().decode("utf-8-sig").replace("\0", "")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
+    columns, scale = columns or {}, scale or {}
+    reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
+    found = reader(text, path, columns)
+    scaled = {name: values * scale.get(name, 1.0) for name, values in found.items() if name in OURS}
+    rounded = {name: last_digits(found[name]) * abs(scale.get(name, 1.0)) for name in OURS[1:] if name in found}
+    return _checked(scaled, rounded, found.get("dt"), path, _notes_of(found, columns))
+
+
+# ---- tables -------------------------------------------------------------------------------------------------------
+
+
+def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
+    """Return our columns of a table."""
+    lines = [line for line in map(str.strip, re.sub(r"[#%].*", "", text).splitlines()) if line]
+    if not lines:
+        raise InputError(f"{path}: must hold a history, got an empty file")
+    _bounded(len(lines), path)
+    rows = [_cells(line) for line in lines]
+    header = None if _numbers(rows[0]) else rows.pop(0)
+    names = header or [str(i + 1) for i in range(len(rows[0]) if rows else 0)]
+    values = []
+    for number, row in enumerate(rows, start=1):
+        parsed = _numbers(row)
+        if parsed is None or len(parsed) != len(names):
+            raise InputError(f"{path}: row {number}: must be {len(names)} numbers, got {', '.join(row)[:60]!r}")
+        values.append(parsed)
+    table = np.array(values, dtype=float).reshape(len(values), len(names))
+    places = {ours: _place(ours, columns.get(ours, ours), names, path) for ours in OURS}
+    return {ours: table[:, place] for ours, place in places.items() if place is not None}
+
+
+def _cells(line: str) -> list[str]:
+    separator = next((mark for mark in (";", "\t", ",") if mark in line), None)
+    cells = [cell.strip().strip('"') for cell in line.split(separator)]
+    return cells[:-1] if cells and not cells[-1] else cells
+
+
+def _numbers(row: list[str]) -> list[float] | None:
+    try:
+        return [float(cell.replace("D", "e").replace("d", "e")) for cell in row]
+    except ValueError:
+        return None
+
+
+def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
+    """Return the index of a column; None if the pressure is absent and was not asked for."""
+    folded = [name.casefold() for name in names]
+    if theirs in names:
+        return names.index(theirs)
+    if theirs.casefold() in folded:
+        return folded.index(theirs.casefold())
+    if theirs.isdigit() and 1 <= int(theirs) <= len(names):
+        return int(theirs) - 1
+    if ours in FREE and theirs == ours:
+        return None
+    raise InputError(
+        f"{path}: no column {theirs!r} for {ours}; it has {', '.join(names)}; name it with --columns {ours}=NAME"
+    )
+
+
+# ---- measured points of ntdda -------------------------------------------------------------------------------------
+
+
+def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
+    """Return time, displacement and dt of one measured point.
+
+    The file gives the position with seven digits, so that a displacement keeps few of them, and its unsigned size
+    with seven digits of its own. The sign is that of the summed steps (velocity is the step's displacement over dt),
+    or, where rows are missing, that of the position relative to the start.
+    """
+    points = dict(re.findall(r"(measpoint\d+)\s*=\s*\[([^\]]*)", text))
+    name = columns.get(DISPLACEMENT, next(iter(points)))
+    if name not in points:
+        raise InputError(f"{path}: no measured point {name!r}; it has {', '.join(points)}")
+    lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
+    _bounded(len(lines), path)
+    rows = [_numbers(line.split()) for line in lines]
+    kept = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
+    if not kept or len(kept) < len(rows) - 1:  # an interrupted run may leave half a last row
+        raise InputError(
+            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} other rows"
+        )
+    step, time, dt, x, y, size, vx, vy, _ = np.array(kept).T
+    summed = np.cumsum(vy * dt)
+    start = y[0] - math.copysign(size[0], vy[0])
+    every = bool(step[0] == 1 and np.all(np.diff(step) == 1))
+    moved = np.copysign(size, summed if every else y - start)
+    sideways = float(np.max(np.abs(moved - summed))) if every else 0.0
+    if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
+        moved = summed
+    aside = np.cumsum(vx * dt) if every else x - (x[0] - vx[0] * dt[0])
+    return {"time": time, DISPLACEMENT: moved, SIDEWAYS: aside} | ({"dt": dt} if every else {})
+
+
+def _bounded(rows: int, path: Path) -> None:
+    """Refuse a history that would take hours to judge."""
+    if rows > MOST_STEPS + 2:  # a header and the row at t = 0
+        raise InputError(f"{path}: must hold at most {MOST_STEPS} rows, got {rows}; cut it, or keep every tenth row")
+
+
+def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
+    return () if PRESSURE in found else ("no contact pressure in the file: only the displacement is judged",)
+
+
+# ---- checks -------------------------------------------------------------------------------------------------------
+
+
+def _checked(
+    found: Mapping[str, Array], rounded: Mapping[str, Array], dt: Array | None, path: Path, notes: tuple[str, ...]
+) -> Foreign:
+    """Return the history without its row at t = 0."""
+    time = found["time"]
+    for name, values in found.items():
+        sound = np.isfinite(values) & (np.abs(values) < LARGEST)
+        if not np.all(sound):
+            row = int(np.flatnonzero(~sound)[0]) + 1
+            rule = f"must be finite numbers below {LARGEST:g} in size"
+            raise InputError(f"{path}: {name}: {rule}, got {values[row - 1]} in row {row}")
+    if len(time) and np.any(np.diff(time) <= 0):
+        row = int(np.flatnonzero(np.diff(time) <= 0)[0]) + 2
+        raise InputError(f"{path}: time: must increase from row to row, got {time[row - 1]:g} in row {row}")
+    if len(time) and time[0] < 0:
+        raise InputError(f"{path}: time: must not be negative, got {time[0]:g} in row 1")
+    keep = time > 0
+    if int(np.sum(keep)) < LEAST_ROWS:
+        raise InputError(f"{path}: must hold at least {LEAST_ROWS} rows after t = 0, got {int(np.sum(keep))}")
+    if not np.all(keep):
+        notes = (*notes, "the row at t = 0 is ignored")
+    pressure = found.get(PRESSURE)
+    return Foreign(
+        time[keep],
+        found[DISPLACEMENT][keep],
+        None if pressure is None else pressure[keep],
+        None if dt is None else dt[keep],
+        notes,
+        rounded[DISPLACEMENT][keep],
+        None if pressure is None else rounded[PRESSURE][keep],
+        *((found[SIDEWAYS][keep], rounded[SIDEWAYS][keep]) if SIDEWAYS in found else (None, None)),
+    )
+
+
+# ---- time steps ---------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Stepping:
+    """The time steps that a program took, and which of them its rows show."""
+
+    steps: Array  # [s]
+    rows: np.ndarray  # indices of the steps
+    note: str = ""  # what differs from one row a step of the scene
+    factor: float = 1.0  # that a slip of the time's unit put in
+
+
+def steppings(foreign: Foreign, step: float) -> list[Stepping]:
+    """Return the ways to read the times of a history, the likeliest first.
+
+    Parameters
+    ----------
+    step
+        The scene's time step [s].
+
+    Raises
+    ------
+    InputError
+        The rows are not uniform and lie too many steps apart.
+    """
+    gaps = np.diff(np.concatenate([[0.0], foreign.time]))
+    every = np.arange(len(gaps))
+    usual = float(np.median(gaps))
+    slip = _unit_slip(usual / step) if foreign.steps is None else None
+    if slip:
+        inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
+        said = f"the times are {slip:g} times those of the scene: a unit error"
+        return [Stepping(inner.steps, inner.rows, said, slip)]
+    found = []
+    if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
+        return [Stepping(foreign.steps, every, "the times are not uniform: the program changed its step")]
+    found += _multiples(gaps, step)
+    if not found or len(found[0].rows) != len(found[0].steps):
+        found += _own_steps(gaps, usual, step)
+    return found
+
+
+def _multiples(gaps: Array, step: float) -> list[Stepping]:
+    """Return the reading that rows show some of the scene's steps, if the times allow it."""
+    ends = np.cumsum(gaps) / step
+    whole = np.rint(ends)
+    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(whole, prepend=0.0)) < SAME_STEP * (1 + gaps / step))
+    if not near or whole[0] < 1 or np.any(np.diff(whole) < 1):
+        return []
+    if whole[-1] > MOST_STEPS:
+        if np.ptp(gaps) <= SAME_STEP * gaps[0]:
+            return []  # the program's own steps, longer than the scene's
+        raise InputError(f"time: must end within {MOST_STEPS} steps of {step:g} s, got step {whole[-1]:.0f}")
+    counts = whole.astype(int)
+    every = np.diff(counts, prepend=0)
+    kind = (
+        f"one row every {every[0]} steps"
+        if np.all(every == every[0])
+        else "rows for some of the steps, at non-uniform times"
+    )
+    note = "" if np.all(every == 1) else f"the file has {kind}"
+    return [Stepping(np.full(int(counts[-1]), step), counts - 1, note)]
+
+
+def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
+    """Return the reading that every row is a step of the program's own."""
+    if np.all(np.abs(gaps - usual) <= SAME_STEP * usual):
+        mean = float(np.mean(gaps))
+        note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's step"
+        return [Stepping(np.full(len(gaps), mean), np.arange(len(gaps)), note)]
+    first = gaps[0] / usual
+    if np.all(np.abs(gaps[1:] - usual) <= SAME_STEP * usual) and first > 1 and abs(first - round(first)) < SAME_STEP:
+        inner = _multiples(gaps, usual)
+        return [Stepping(s.steps, s.rows, f"the rows begin at step {s.rows[0] + 1}") for s in inner]
+    return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken as one step")]
+
+
+def _unit_slip(ratio: float) -> float | None:
+    """Return the power of a thousand that a ratio is, or None."""
+    power = round(math.log10(ratio) / 3) * 3
+    return 10.0**power if power and abs(ratio / 10.0**power - 1) < SAME_STEP else None

@@ -1,0 +1,114 @@
+"""The ways to read a history's steps, signs and units, the likeliest first."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from validation.diagnosis.fits.responses import computed
+from validation.diagnosis.reading import Foreign, Stepping, steppings
+from validation.diagnosis.variant import Rectangle, Variant
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.scenes.scene import Scene
+
+POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
+UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
+
+
+@dataclass(frozen=True)
+class Slip:
+    """An error of sign or unit in a column: what its values are over what they should be."""
+
+    cause: str  # "sign" or "unit"
+    column: str
+    factor: float  # -1, or a power of ten
+
+    @property
+    def words(self) -> str:
+        """The slip in words."""
+        name = self.column.replace("_", " ")
+        if self.cause == "sign":
+            return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
+        return f"the {name} is in other units, {self.factor:g} times the scene's"
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A history as it is read: its steps, with errors of sign and unit corrected."""
+
+    stepping: Stepping
+    displacement: Array  # [m]
+    pressure: Array | None  # [Pa]
+    corrected: tuple[Slip, ...]
+    rounding: Array | None = None  # [m]
+    pressure_rounding: Array | None = None  # [Pa]
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """Ids of the errors of sign and unit that were corrected, each once."""
+        return tuple(sorted({slip.cause for slip in self.corrected}))
+
+    def scene_of(self, scene: Scene) -> Scene:
+        """Return the scene at the steps of the history, which are equal."""
+        return scene.with_values(
+            {
+                "time.step": float(self.stepping.steps[0]),
+                "time.steps": len(self.stepping.steps),
+                "run.columns": ["displacement", "contact_pressure"],
+            }
+        )
+
+
+def readings_of(scene: Scene, column: Rectangle, own: Variant, foreign: Foreign) -> list[Reading]:
+    """Return the ways to read a history's steps, sign and units."""
+    found = []
+    for stepping in steppings(foreign, scene.time.step):
+        expected = computed(column, [own], stepping.steps)
+        found += slips(foreign, stepping, expected.displacement[stepping.rows, 0], expected.pressure[stepping.rows, 0])
+    return found
+
+
+def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
+    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest."""
+    time = (Slip("unit", "time", stepping.factor),) if stepping.factor != 1 else ()
+    readings = []
+    of_pressure = [(1.0, 1.0)]
+    if foreign.pressure is not None and np.any(foreign.pressure):
+        first = _factors(foreign.pressure, contact)[0]
+        of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
+    for (sign, factor), (turned, scale) in product(_factors(foreign.displacement, reference), of_pressure):
+        pressure, rounding, corrected = foreign.pressure, foreign.pressure_rounding, list(time)
+        corrected += _column_slips(DISPLACEMENT, sign, factor)
+        if pressure is not None:
+            pressure = pressure * turned / scale
+            rounding = None if rounding is None else rounding / scale
+            corrected += _column_slips(PRESSURE, turned, scale)
+        own = None if foreign.rounding is None else foreign.rounding / factor
+        moved = foreign.displacement * sign / factor
+        readings.append(Reading(stepping, moved, pressure, tuple(corrected), own, rounding))
+    return _plain_second(readings)
+
+
+def _column_slips(column: str, sign: float, factor: float) -> list[Slip]:
+    signs = [Slip("sign", column, -1.0)] if sign < 0 else []
+    return signs + ([Slip("unit", column, factor)] if factor != 1 else [])
+
+
+def _plain_second(readings: list[Reading]) -> list[Reading]:
+    """Return readings with the one that corrects least among the first two: wrong data look like wrong units."""
+    plain = min(readings, key=lambda reading: len(reading.corrected))
+    others = [reading for reading in readings if reading is not plain]
+    return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
+
+
+def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
+    """Return the sign and the powers of ten by which values may be off, the likeliest first."""
+    with np.errstate(all="ignore"):
+        bounded = np.clip(np.nan_to_num(reference), -1e3 * abs(reference[0] or 1.0), 1e3 * abs(reference[0] or 1.0))
+    sign = -1.0 if float(values @ bounded) < 0 else 1.0
+    ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
+    near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
+    return [(way * sign, factor) for way in (1.0, -1.0) for factor in (*near, 1.0)]

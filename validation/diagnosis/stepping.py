@@ -1,0 +1,397 @@
+"""The linear steps of many variants of a block at once, with the matrices of `dda`.
+
+An upright rectangle of width a and height h moves by (v, ey, ex) and, on a base of mass m_b and spring kb, by b. Its
+matrices are those of `dda.TwoBlockModel`; a variant multiplies their entries. The springs' gap g = v - (h/2) ey - b is
+summed up by itself, so that a stiff spring keeps its digits. With U = dt V and W = dt^2 A a step is
+
+    x1 - x = gg U + (1/2 - alpha) W + alpha W1,     U1 = gg U + (1 - delta) W + delta W1
+    M ((1 - a_m) W1 + a_m W) + dt^2 f((1 - a_f) x1 + a_f x) + dt C ((1 - a_f) U1 + a_f gg U) = dt^2 F
+
+with the internal force f and viscous damping C = a0 M + a1 K. It is linear in (g, s, x, U, W, 1), s the shear of the
+closed contact, as long as contact and geometry stay: such histories are sums of powers of one matrix, which is had by
+stepping the unit vectors, and cost no loop over the steps. Where the contact opens or the geometry moves, the same step
+is made one by one. A variant that is exact in time has the exponential of its matrix.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import dda
+from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
+
+OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
+BLOCK = 32  # steps that are summed up at once
+UNEQUAL = 1e-9  # relative difference of two time steps
+PLACES = [1, 4, 3]  # of v, ey and ex among the six unknowns
+
+
+def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
+    """Return the histories of all variants from rest.
+
+    Parameters
+    ----------
+    rectangle
+        The block, its springs and its load.
+    variants
+        What is computed.
+    steps
+        Length of each time step [s], shape (n,).
+    """
+    n = len(steps)
+    longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
+    equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
+    groups: dict[tuple[bool, int, int, bool], list[int]] = {}
+    for j, v in enumerate(variants):
+        powers = equal and not (v.opens or v.updated)
+        groups.setdefault((powers, _unknowns(rectangle, v), v.parts, v.exact), []).append(j)
+    displacement = np.empty((len(longer), len(variants)))
+    pressure = np.empty_like(displacement)
+    opened = np.zeros(displacement.shape, dtype=bool)
+    with np.errstate(all="ignore"):
+        for (powers, unknowns, parts, _), members in groups.items():
+            stepper = Stepper(rectangle, [variants[j] for j in members], unknowns)
+            if powers:
+                columns = stepper.powers(float(longer[0]), len(longer), parts)
+                displacement[:, members], pressure[:, members] = columns
+            else:
+                every = np.repeat(longer / parts, parts)
+                done = stepper.loop(every)
+                displacement[:, members], pressure[:, members], opened[:, members] = (
+                    c[parts - 1 :: parts] for c in done
+                )
+        return reported(Histories(displacement, pressure, opened), variants, longer, n)
+
+
+def _unknowns(rectangle: Rectangle, v: Variant) -> int:
+    """Return how many unknowns a variant moves: all six, with a base, with lateral strain, or without it."""
+    if v.one_spring:
+        return 6
+    if v.base > 0 and v.softness > 0:
+        return 4
+    return 3 if rectangle.poisson + v.poisson or v.other_plane else 2
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """What a step holds apart from the motion, one of each for every variant; d unknowns."""
+
+    mass: Array  # M, (variants, d, d)
+    stiffness: Array  # K, (variants, d, d)
+    carried: Array  # by which x is carried from step to step, (variants, d, d)
+    spring: Array  # by which the gap is carried [N/m], (variants,)
+    shear: Array  # by which the shear of the contact is carried, on ex [N m], (variants,)
+    gap: Array  # row of the gap in x, (variants, d)
+    load: Array  # F, (variants, d)
+
+
+class Stepper:
+    """The steps of variants with equally many unknowns."""
+
+    def __init__(self, rectangle: Rectangle, variants: Sequence[Variant], unknowns: int) -> None:
+        self.rectangle, self.variants, self.d = rectangle, variants, unknowns
+
+        def each(name: str) -> Array:
+            return np.array([getattr(v, name) for v in variants], dtype=float)
+
+        self.alpha, self.delta, self.mean_mass, self.mean_force = np.array([v.scheme for v in variants]).T
+        gg, formulas = each("gg"), np.array([v.discounted for v in variants])
+        self.gg_displacement = np.where(formulas == "velocity", 1.0, gg)[:, None]
+        self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)[:, None]
+        self.secant = each("secant").astype(bool)
+        self.viscous, self.structural = each("viscous"), each("structural")
+        # the loads of a ramp begin with none, which leaves no acceleration to start from
+        consistent = [v.start == "consistent" and not v.ramp for v in variants]
+        self.consistent = np.array(consistent, dtype=float)
+        self.updated, self.opens = each("updated"), each("opens").astype(bool)
+        self.closing, self.opening = each("band"), each("band") * each("reopening")
+        self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
+        self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
+        self.keeps_springs = np.array([v.kept != "stress" for v in variants], dtype=float)
+        self.density, self.inertia, self.load = each("density"), each("inertia"), each("load")
+        self.gravity = each("gravity") * rectangle.gravity + each("weight") * GRAVITY
+        softness = each("softness")
+        heavy = (each("base") > 0) & (softness > 0)
+        soft = np.where(heavy, 0.0, softness)
+        self.heavy = heavy.astype(float)
+        self.normal, self.tangential = np.exp(-soft), np.exp(-soft * each("tied"))  # over the scene's
+        self.base_mass = np.where(heavy, each("base"), 1.0)
+        self.base_spring = np.where(heavy, rectangle.normal / np.expm1(np.where(heavy, softness, 1.0)), 1.0)
+        self.elasticity = rectangle.elasticity(variants)
+        self.wide, self.high = each("side"), each("side") * each("tall")  # at rest, over the scene's
+        self.damped = bool(np.any(self.viscous) or np.any(self.structural))
+        self._scene_matrices()
+
+    # ---- matrices ---------------------------------------------------------------------------------------------------
+
+    def _scene_matrices(self) -> None:
+        """Keep what the scene's own matrices hold of every variant's."""
+        rectangle, model = self.rectangle, self.rectangle.model
+        normal, shear = dda.spring_vectors(model.block, 0)
+        if self.d == 6:  # the springs of the first corner alone
+            self.corner = normal[0]
+            self.without_gap = model.block.elastic() + rectangle.shear / 2 * np.outer(shear[0], shear[0])
+            return
+        self.masses = model.mass[PLACES, PLACES][:, None] * self.density
+        self.masses[1:] *= self.inertia
+        self.moduli = model.block.section.area * self.elasticity
+        self.lever, self.top = normal[0, 4], model.block.corners[2, 1] / 2
+        self.springs = rectangle.normal * self.normal
+        self.shear_springs = rectangle.shear * self.tangential * shear[0, 3] ** 2
+        self.pressed = self.load * rectangle.pressure * rectangle.width * self.wide
+        self.base_inertia = self.base_mass * self.masses[0] * self.wide * self.high
+
+    def equations(self, on: Flags, wide: Array, high: Array) -> Equations:
+        """Return the equations of a step.
+
+        Parameters
+        ----------
+        on
+            Whether the contact is closed, (variants,).
+        wide, high
+            Width and height over the scene's, (variants,).
+        """
+        if self.d == 6:
+            return self._on_one_spring(len(on))
+        n, d, area = len(on), self.d, wide * high
+        M = np.zeros((n, d, d))
+        M[:, 0, 0] = self.masses[0] * area
+        M[:, 1, 1] = self.masses[1] * area * high**2
+        K = np.zeros((n, d, d))
+        strains = min(d, 3)
+        K[:, 1:strains, 1:strains] = area[:, None, None] * self.moduli[:, : strains - 1, : strains - 1]
+        carried = K * self.keeps_stress[:, None, None]
+        k = self.springs * on
+        c = np.zeros((n, d))
+        c[:, 0] = 1.0
+        c[:, 1] = self.lever * high
+        kx = self.shear_springs * wide**2 * on
+        F = np.zeros((n, d))
+        F[:, 0] = -self.pressed - M[:, 0, 0] * self.gravity
+        F[:, 1] = -self.pressed * self.strain_load * self.top * high
+        if d > 2:
+            M[:, 2, 2] = self.masses[2] * area * wide**2
+            K[:, 2, 2] += kx
+        if d > 3:
+            c[:, 3] = -self.heavy
+            M[:, 3, 3] = self.base_inertia
+            K[:, 3, 3] = carried[:, 3, 3] = self.base_spring
+            F[:, 3] = -self.heavy * M[:, 3, 3] * self.gravity
+        K += k[:, None, None] * c[:, :, None] * c[:, None, :]
+        lost = k * (1 - self.coupling) * c[:, 1]  # of the springs' entry between v and ey
+        K[:, 0, 1] -= lost
+        K[:, 1, 0] -= lost
+        carried[:, 0, 1] -= lost * self.keeps_springs
+        carried[:, 1, 0] -= lost * self.keeps_springs
+        return Equations(M, K, carried, k * self.keeps_springs, kx * self.keeps_springs, c, F)
+
+    def _on_one_spring(self, n: int) -> Equations:
+        model, p = self.rectangle.model, self.rectangle.normal / 2
+        whole = self.without_gap + p * np.outer(self.corner, self.corner)
+
+        def repeated(array: Array) -> Array:
+            return np.repeat(array[None], n, axis=0)
+
+        zero = np.zeros(n)
+        parts = (model.mass, whole, self.without_gap)
+        M, K, carried = (repeated(part) for part in parts)
+        return Equations(M, K, carried, zero + p, zero, repeated(self.corner), repeated(model.load))
+
+    # ---- one step ---------------------------------------------------------------------------------------------------
+
+    def step(self, q: Equations, inverse: Array, dt: float, state: Array) -> Array:
+        """Return the state at the end of a step, (..., variants, 3 + 3 d), before the contact is looked at."""
+        d = self.d
+        x, U, W = state[..., 2 : 2 + d], state[..., 2 + d : 2 + 2 * d], state[..., 2 + 2 * d : 2 + 3 * d]
+        one = state[..., -1:]
+        alpha, delta, am, af = (c[:, None] for c in (self.alpha, self.delta, self.mean_mass, self.mean_force))
+        ahead = self.gg_displacement * U + (0.5 - alpha) * W
+        kept = self.gg_velocity * U
+        rate = kept + (1 - delta) * W
+        internal = times(q.carried, x) + (q.spring * state[..., 0])[..., None] * q.gap
+        if d > 2:
+            internal[..., 2 if d < 6 else 3] += q.shear * state[..., 1]
+        pull = one * q.load - internal - (1 - af) * times(q.stiffness, ahead)
+        right = dt * dt * pull - times(q.mass, am * W)
+        if self.damped:
+            right = right - dt * times(self._damping(q), (1 - af) * rate + af * kept)
+        W1 = times(inverse, right)
+        increment = ahead + alpha * W1
+        U1 = np.where(self.secant[:, None], increment, rate + delta * W1)
+        gap = state[..., 0] + np.sum(q.gap * increment, axis=-1)
+        sheared = state[..., 1] + (increment[..., 2] if d > 2 else 0.0)
+        return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
+
+    def _damping(self, q: Equations) -> Array:
+        return self.viscous[:, None, None] * q.mass + self.structural[:, None, None] * q.stiffness
+
+    def inverse(self, q: Equations, dt: float) -> Array:
+        """Return the inverse of the matrix of a step, (variants, d, d)."""
+        delta, am, af = (c[:, None, None] for c in (self.delta, self.mean_mass, self.mean_force))
+        part = self.alpha[:, None, None] * dt * dt * q.stiffness
+        if self.damped:
+            part = part + delta * dt * self._damping(q)
+        return np.asarray(np.linalg.inv((1 - am) * q.mass + (1 - af) * part))
+
+    def start(self, q: Equations, dt: float) -> Array:
+        """Return the state at rest, (variants, 3 + 3 d)."""
+        n, d = len(self.variants), self.d
+        state = np.zeros((n, 3 + 3 * d))
+        acceleration = times(np.linalg.inv(q.mass), q.load)
+        state[:, 2 + 2 * d : 2 + 3 * d] = dt * dt * self.consistent[:, None] * acceleration
+        state[:, -1] = 1.0
+        return state
+
+    def observers(self, q: Equations) -> Array:
+        """Return the rows of displacement and pressure in a state, (variants, 2, 3 + 3 d)."""
+        rows = np.zeros((len(self.variants), 2, 3 + 3 * self.d))
+        if self.d == 6:
+            rows[:, 0, 3] = 1.0
+            rows[:, 0, 6] = self.point * self.rectangle.height / 2
+            rows[:, 1, 0] = -self.rectangle.normal / 2 / self.rectangle.width
+            return rows
+        rows[:, 0, 2] = 1.0
+        rows[:, 0, 3] = self.point * self.rectangle.height * self.high / 2
+        rows[:, 1, 0] = -self.rectangle.normal * self.normal / (self.rectangle.width * self.wide)
+        return rows
+
+    # ---- histories --------------------------------------------------------------------------------------------------
+
+    def powers(self, dt: float, steps: int, parts: int) -> tuple[Array, Array]:
+        """Return displacement and pressure of locked contact in equal steps, each (steps, variants)."""
+        n = len(self.variants)
+        q = self.equations(np.ones(n, dtype=bool), self.wide, self.high)
+        small = dt / parts
+        size = 3 + 3 * self.d
+        if self.variants[0].exact:
+            T = self._exponential(q, dt)
+        else:
+            units = np.repeat(np.eye(size)[:, None, :], n, axis=1)
+            T = np.moveaxis(self.step(q, self.inverse(q, small), small, units), 0, -1)
+            T = np.linalg.matrix_power(T, parts) if parts > 1 else T
+        state = self.start(q, small)
+        rows = self.observers(q) @ T  # of the first step, then of more and more of them
+        power, length = T, 1
+        while length < min(BLOCK, steps):
+            rows = np.concatenate([rows, rows @ power], axis=1)
+            power, length = power @ power, 2 * length
+        blocks = []
+        for _ in range(math.ceil(steps / length)):
+            blocks.append(times(rows, state).reshape(n, length, 2))
+            state = times(power, state)
+        shown = np.concatenate(blocks, axis=1)[:, :steps]
+        return shown[..., 0].T, shown[..., 1].T
+
+    def _exponential(self, q: Equations, dt: float) -> Array:
+        """Return the matrix of a step that is exact in time: of x' = U, M U' = dt^2 (F - f) - dt C U, t over dt."""
+        from scipy.linalg import expm
+
+        d, n = self.d, len(self.variants)
+        G = np.zeros((n, 3 + 3 * d, 3 + 3 * d))
+        over_mass = dt * dt * np.linalg.inv(q.mass)
+        G[:, 0, 2 + d : 2 + 2 * d] = q.gap
+        G[:, 2 : 2 + d, 2 + d : 2 + 2 * d] = np.eye(d)
+        speed = slice(2 + d, 2 + 2 * d)
+        G[:, speed, 0] = -times(over_mass, q.spring[:, None] * q.gap)
+        G[:, speed, 2 : 2 + d] = -over_mass @ q.carried
+        G[:, speed, speed] = -over_mass @ self._damping(q) / dt
+        G[:, speed, -1] = times(over_mass, q.load)
+        if 2 < d < 6:
+            G[:, 1, 2 + d + 2] = 1.0
+            G[:, speed, 1] = -over_mass[:, :, 2] * q.shear[:, None]
+        return np.array([expm(one) for one in G])
+
+    def loop(self, steps: Array) -> tuple[Array, Array, Flags]:
+        """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
+        n, moves = len(self.variants), bool(np.any(self.updated))
+        wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
+        known: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
+
+        def prepared(dt: float, closed: Flags) -> tuple[Equations, Array]:
+            key = (dt, closed.tobytes())
+            if moves or key not in known:
+                q = self.equations(closed, wide, high)
+                known[key] = q, self.inverse(q, dt)
+            return known[key]
+
+        first = self.equations(on, wide, high)
+        state, observers = self.start(first, float(steps[0])), self.observers(first)
+        before, rows, flags = float(steps[0]), [], []
+        for dt in steps.tolist():
+            if dt != before:
+                state[:, 2 + self.d : 2 + 2 * self.d] *= dt / before
+                state[:, 2 + 2 * self.d : 2 + 3 * self.d] *= (dt / before) ** 2
+                before = dt
+            for _ in range(OPEN_CLOSE_ITERATIONS):
+                q, inverse = prepared(dt, on)
+                end = self.step(q, inverse, dt, state)
+                limit = np.where(on, self.opening, -self.closing)
+                new = np.where(self.opens, end[:, 0] < limit, True)
+                if np.array_equal(new, on):
+                    break
+                on = new
+            if moves:
+                strain = end[:, 2 : 2 + self.d] - state[:, 2 : 2 + self.d]
+                high = high * (1 + self.updated * strain[:, 1])
+                wide = wide * (1 + self.updated * (strain[:, 2] if self.d > 2 else 0.0))
+            end[:, 1] = np.where(on, end[:, 1], 0.0)
+            state = end
+            shown = times(observers, state)
+            rows.append(np.column_stack([shown[:, 0], np.where(on, shown[:, 1], 0.0)]))
+            flags.append(~on)
+        found = np.array(rows)
+        return found[..., 0], found[..., 1], np.array(flags)
+
+
+def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) -> Array:
+    """Return the product of matrices (variants, m, n) and vectors (..., variants, n)."""
+    return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+# ---- what is written ------------------------------------------------------------------------------------------------
+
+
+def further_steps(variants: Sequence[Variant]) -> int:
+    """Return how many steps beyond the last row the variants report of."""
+    return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
+
+
+def reported(found: Histories, variants: Sequence[Variant], steps: Array, n: int) -> Histories:
+    """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
+    displacement, pressure, opened = found.displacement, found.pressure, found.open
+    for j, v in enumerate(variants):
+        if v.ramp:
+            for values in (displacement, pressure):
+                values[:, j] = _ramped(values[:, j], v.ramp / float(steps[0]))
+        if v.late:
+            whole, part = math.floor(v.late), v.late - math.floor(v.late)
+            P = pressure[:, j]
+            pressure[:, j] = (1 - part) * _shifted(P, whole) + (part * _shifted(P, whole + 1) if part else 0.0)
+        if v.shift:
+            for values in (displacement, pressure):
+                values[:, j] = _shifted(values[:, j], v.shift)
+            opened[:, j] = _shifted(opened[:, j].astype(float), v.shift) > 0
+    scale = np.array([v.displacement_factor for v in variants]), np.array([v.pressure_factor for v in variants])
+    return Histories(scale[0] * displacement[:n], scale[1] * pressure[:n], opened[:n])
+
+
+def _ramped(values: Array, steps: float) -> Array:
+    """Return the response to loads that come on within so many steps, of the response to loads that are there at once.
+
+    The load of step n is min(1, n / steps): a sum of loads that each come on at once, a share of 1 / steps every step.
+    """
+    shares = np.diff(np.minimum(np.arange(math.ceil(steps) + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
+    return np.asarray(np.convolve(values, shares)[: len(values)])
+
+
+def _shifted(values: Array, late: int) -> Array:
+    """Return the rows some steps late (the first rows at rest) or early."""
+    shifted = np.roll(values, late)
+    shifted[: max(late, 0)] = 0
+    return shifted

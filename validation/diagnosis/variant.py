@@ -1,0 +1,142 @@
+"""What a candidate change is made of: the data of an upright rectangle, and one way to compute its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+import dda
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Family = Literal["newmark", "hht", "chung-hulbert"]
+GRAVITY = 9.81  # m/s2
+POISSON = 0.499  # a fit may try more
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to compute a scene: a scheme, what a program adds, what was mistaken, and what is written of it.
+
+    The numbers of the generalised-alpha families follow from `spectral`: HHT has alpha_f = e and alpha_m = 0, Chung and
+    Hulbert's method alpha_f = r/(r + 1) and alpha_m = (2 r - 1)/(r + 1); both have alpha = (1 - alpha_m + alpha_f)^2/4
+    and delta = 1/2 - alpha_m + alpha_f.
+    """
+
+    alpha: float  # [-]
+    delta: float  # [-]
+    gg: float  # share of the velocity that a step starts with [-]
+    start: Literal["zero", "consistent"] = "zero"
+    softness: float = 0.0  # ln of the scene's spring stiffness over that in effect [-]
+    tied: bool = True  # the shear springs share the softness
+    base: float = 0.0  # mass of the yielding base over that of the block; 0 is a spring in series [-]
+    weight: float = 0.0  # own weight, as a share of 9.81 m/s2 [-]
+    gravity: float = 1.0  # over the scene's [-]
+    load: float = 1.0  # load over the scene's load [-]
+    ramp: float = 0.0  # time in which the loads come on, linearly [s]
+    density: float = 1.0  # over the scene's [-]
+    young: float = 1.0  # Young's modulus over the scene's [-]
+    poisson: float = 0.0  # added to the scene's Poisson's ratio [-]
+    other_plane: bool = False  # plane strain for plane stress, or the reverse
+    side: float = 1.0  # width and height over the scene's [-]
+    tall: float = 1.0  # height alone, in addition [-]
+    inertia: float = 1.0  # of the strains, over that of the rectangle [-]
+    viscous: float = 0.0  # a0 of C = a0 M + a1 K [1/s]
+    structural: float = 0.0  # a1 [s]
+    updated: bool = False  # geometry follows the strain
+    opens: bool = False  # the contact carries no tension
+    band: float = 0.0  # penetration beyond which an open contact closes [m]
+    reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
+    reset: bool = False  # a closing contact is sheared from the start of the step on, not from where it touched
+    one_spring: bool = False  # the loop over the corners has gone through the first one only
+    discounted: Literal["both", "velocity", "displacement"] = "both"  # formulas in which gg stands
+    secant: bool = False  # the velocity at the end of a step is d/dt
+    strain_load: float = 1.0  # share of the load in the row of ey [-]
+    coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]
+    kept: Literal["both", "springs", "stress"] = "both"  # forces that are carried from step to step
+    family: Family = "newmark"
+    spectral: float = 0.0  # e of HHT, r (the spectral radius at high frequency) of Chung and Hulbert [-]
+    parts: int = 1  # steps of the program in one of the scene's
+    exact: bool = False  # no scheme: exact in time
+    shift: int = 0  # steps by which the rows come late
+    point: float = 0.0  # height of the reported point above the centroid, over half the block's height [-]
+    late: float = 0.0  # steps by which the pressure comes late; 1/2 is the mean of two steps
+    pressure_factor: float = 1.0  # reported over true pressure [-]
+    displacement_factor: float = 1.0  # reported over true displacement [-]
+
+    @property
+    def scheme(self) -> tuple[float, float, float, float]:
+        """Return alpha, delta, alpha_m and alpha_f."""
+        if self.family == "newmark":
+            return self.alpha, self.delta, 0.0, 0.0
+        if self.family == "hht":
+            mass, force = 0.0, self.spectral
+        else:
+            mass, force = (2 * self.spectral - 1) / (self.spectral + 1), self.spectral / (self.spectral + 1)
+        return (1 - mass + force) ** 2 / 4, 0.5 - mass + force, mass, force
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """Histories of all variants, one column each."""
+
+    displacement: Array  # (steps, variants) of the centroid [m]
+    pressure: Array  # (steps, variants), positive in compression [Pa]
+    open: Flags  # (steps, variants), at the end of the step
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """The data of a scene's upright rectangle on its two corner springs."""
+
+    width: float  # a [m]
+    height: float  # h [m]
+    density: float  # [kg/m3]
+    young: float  # [Pa]
+    poisson: float  # [-]
+    plane_strain: bool
+    normal: float  # stiffness of both normal springs [N/m]
+    shear: float  # stiffness of both shear springs [N/m]
+    pressure: float  # q [Pa]
+    gravity: float = 0.0  # of the scene [m/s2]
+
+    @property
+    def force(self) -> float:
+        """Static force on the base [N]."""
+        return self.width * (self.pressure + self.density * self.height * self.gravity)
+
+    @cached_property
+    def model(self) -> dda.TwoBlockModel:
+        """The two-block model, whose matrices are those of every variant."""
+        contact = dda.Contact(self.normal / 2, self.shear / 2)
+        return dda.TwoBlockModel(self.block(), contact, self.pressure, gravity=self.gravity)
+
+    def block(self) -> dda.Block:
+        """Return the block."""
+        hypothesis: Literal["plane strain", "plane stress"] = "plane strain" if self.plane_strain else "plane stress"
+        material = dda.Material(self.density, self.young, self.poisson, hypothesis)
+        return dda.Block.rectangle(self.width, self.height, material)
+
+    @cached_property
+    def static(self) -> float:
+        """Static displacement of the centroid in the locked linear model [m]."""
+        return self.model.static()["displacement"]
+
+    def elasticity(self, variants: Sequence[Variant]) -> Array:
+        """Return the elasticity of each variant in (ey, ex) [Pa], shape (variants, 2, 2)."""
+        units = [unit_elasticity(self.poisson + v.poisson, self.plane_strain != v.other_plane) for v in variants]
+        young = self.young * np.array([v.young for v in variants])
+        return np.asarray(young[:, None, None] * np.array(units))
+
+
+@lru_cache(maxsize=512)
+def unit_elasticity(poisson: float, plane_strain: bool) -> Array:
+    """Return the elasticity in (ey, ex) over Young's modulus [-], Poisson's ratio within what a material may have."""
+    mu = min(max(poisson, -POISSON), POISSON)
+    C = dda.Material(1.0, 1.0, mu, "plane strain" if plane_strain else "plane stress").elasticity()
+    return np.asarray(C[np.ix_([1, 0], [1, 0])])
