@@ -7,9 +7,11 @@ from collections.abc import Iterator, Sequence
 
 from validation.gates.gate import Status
 from validation.runs.run import Outcome
-from validation.studies.own_solver import gates
+from validation.studies.own_solver import block_data, gates
+from validation.studies.own_solver.block_data import AtRest
 from validation.studies.own_solver.evidence import diagnosis
-from validation.studies.own_solver.gates import GROUPS
+from validation.studies.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
+from validation.studies.own_solver.history import AT_REST
 from validation.studies.own_solver.session import LARGEST, Told
 
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
@@ -33,17 +35,19 @@ def block(told: Sequence[Told], every: bool = False) -> list[str]:
         *_table(told),
         *_warnings(told),
         *_headline(judged, failed),
+        *_block_data(judged, failed),
         *_failures(failed, every),
         *_endings(told),
         *_not_run(told),
     ]
-    return [*lines, *diagnosis(failed, first(judged, failed)), *_unseen(judged)]
+    plain = [t for t in failed if t.group != BLOCK_DATA]
+    return [*lines, *diagnosis(plain or _moving(failed), first(judged, failed)), *_unseen(judged)]
 
 
 def _table(told: Sequence[Told]) -> Iterator[str]:
     """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
     yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
-    for group, says in GROUPS.items():
+    for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
         own = [t for t in told if t.group == group]
         sound = [t.status for t in own if t.outcome == Outcome.COMPLETED]
         absent = sum(t.status == Status.NOT_RUN for t in own)
@@ -83,7 +87,7 @@ def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
 
     By itself means that the displacement of the same scene is right to rounding.
     """
-    groups = {t.group for t in failed}
+    groups = {t.group for t in failed} - {BLOCK_DATA}
     found = [group for group in FOLLOWS if group in groups][:1]
     exact = {t.scene for t in judged if t.metric == "displacement.max" and t.group == "digits"}
     exact -= {t.scene for t in failed if t.group != "pressure"}
@@ -104,9 +108,51 @@ def _headline(judged: Sequence[Told], failed: Sequence[Told]) -> Iterator[str]:
         yield f"        {', '.join(rest)}: may follow from it, look again when it is right"
 
 
+def _block_data(judged: Sequence[Told], failed: Sequence[Told]) -> Iterator[str]:
+    """Yield with which data of the block a solver is right, and which of them it misreads.
+
+    Where it rests does not depend on the scheme, so that a slip of the scheme beside a misreading hides neither. A
+    fault in the statics of the plain square does show there.
+    """
+    data = block_data.datum_of()
+    own = {t.scene for t in judged if t.group == BLOCK_DATA}
+    wrong = [t for t in failed if t.group == BLOCK_DATA]
+    right = [datum.words for scene, datum in data.items() if scene in own - {t.scene for t in wrong}]
+    if right:
+        yield f"{BLOCK_DATA}: right with {', '.join(right)}"
+    if not wrong:
+        return
+    if any(t.group == "statics" for t in failed):
+        yield f"        {BLOCK_DATA}: may follow from it, look again when it is right"
+        return
+    resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
+    measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
+    explained = block_data.misreadings(measured)
+    for misreading, scenes in explained.items():
+        where = ", ".join(data[scene].words for scene in scenes)
+        yield f"wrong:  {BLOCK_DATA} - {misreading.words} (seen with {where})"
+    for t in wrong:
+        if t.metric == AT_REST and not any(t.scene in scenes for scenes in explained.values()):
+            middle = (t.low + t.high) / 2
+            yield (
+                f"wrong:  {BLOCK_DATA} - {data[t.scene].words}: rests at {t.value:.6g} m, not at {middle:.6g} m; "
+                "which datum is misread is not known, print those that your solver takes from this scene"
+            )
+    if not any(t.group in ("digits", "pressure") for t in failed):
+        for t in _moving(wrong):
+            words = f"{data[t.scene].words}: {t.metric.partition('.')[0]} before it rests"
+            yield f"wrong:  {BLOCK_DATA} - {words}: the moment of inertia, or where width and height enter"
+
+
+def _moving(failed: Sequence[Told]) -> list[Told]:
+    """Return the failing gates on the motion of a scene of `BLOCK_DATA` that comes to rest at the right place."""
+    misplaced = {t.scene for t in failed if t.metric == AT_REST}
+    return [t for t in failed if t.group == BLOCK_DATA and t.scene not in misplaced]
+
+
 def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
     """Yield the failing gates with their values, group by group."""
-    for group in GROUPS:
+    for group in (*GROUPS, BLOCK_DATA):
         own = [t for t in failed if t.group == group]
         if own:
             yield f"\nfailed: {group}"
