@@ -546,6 +546,23 @@ def test_a_moment_of_inertia_that_only_a_rectangle_shows_is_looked_for_there(
     ]
 
 
+def test_what_fails_in_a_scene_with_the_misread_datum_is_no_fault_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The core study has a scene with Poisson's ratio, whose pressure a solver without it misses."""
+    answer_here(monkeypatch)
+    session = Session("six_unknowns:without_poisson", Results(tmp_path))
+    names = [name for name, (study, gate) in gates.applying().items() if study == "own-solver" or "poisson" in name]
+    told = [session.judge(name)[1] for name in names]
+    assert [t.group for t in told if t.status == "FAIL" and t.study != "own-solver"] == ["pressure"]
+    lines = block(told)
+    assert [line[:50] for line in lines if line.startswith("wrong:")] == [
+        "wrong:  block data - block.poisson is not read (se"
+    ]
+    assert "        pressure: may follow from it, look again when it is right" in lines
+    assert not [line for line in lines if line.startswith("\nright:") and "pressure" in line]
+
+
 def test_wrong_statics_of_the_square_are_looked_for_first() -> None:
     at = block_data.scenes()[0]
     failed = of(scene=at.name, study="own-solver", group=gates.BLOCK_DATA, metric=AT_REST, status="FAIL", value=-1.0)

@@ -132,6 +132,14 @@ class AtRest:
         return abs(self.value - expected) <= self.half_width
 
 
+def is_misread(scene: Scene, misreading: Misreading) -> bool:
+    """Whether a misreading changes where a scene rests, so that its gates may fail for no other reason."""
+    if scene.block.vertices is not None or scene.load.pressure == 0:
+        return False
+    expected = displacement_at_rest(scene.with_values(misreading.values(scene)))
+    return not math.isclose(expected, displacement_at_rest(scene), rel_tol=ROUNDED)
+
+
 def misreadings(measured: Sequence[AtRest]) -> dict[Misreading, list[str]]:
     """Return what was misread, with the names of the scenes that show it.
 
