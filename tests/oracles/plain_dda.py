@@ -11,8 +11,8 @@ import numpy as np
 
 def history(scene, *, density=1.0, springs=1.0, delta=None, start=None):
     """Return (displacement, contact pressure) of a scene, with slips as factors or as other values."""
-    if scene.block.poisson != 0 or scene.block.vertices is not None:
-        raise NotImplementedError("an upright rectangle of Poisson's ratio 0 only")
+    if scene.block.poisson != 0 or scene.block.vertices is not None or scene.load.eccentricity != 0:
+        raise NotImplementedError("an upright rectangle of Poisson's ratio 0 under a centred load only")
     t, block = scene.time, scene.block
     (x0, y0), (x1, y1) = block.outline[0], block.outline[2]
     width, height = x1 - x0, y1 - y0

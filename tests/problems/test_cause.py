@@ -162,3 +162,37 @@ def test_a_factor_near_one_is_named(factor: float) -> None:
     found = named("locked", fine("locked", {"contact.stiffness": factor * 1e9}))
     assert found.ids == ("springs-factor",)
     assert found.values["springs-factor"] == pytest.approx(factor, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("key", "factor", "name"),
+    [
+        ("block.young", 1e-3, "young-factor"),
+        pytest.param("block.young", 1e3, "young-factor", marks=pytest.mark.long),
+        pytest.param("contact.stiffness", 1e3, "springs-factor", marks=pytest.mark.long),
+        pytest.param("block.density", 1e3, "density-factor", marks=pytest.mark.long),
+        pytest.param("block.density", 1e-3, "density-factor", marks=pytest.mark.long),
+        pytest.param("load.pressure", 1e-3, "load-factor", marks=pytest.mark.long),
+    ],
+)
+def test_a_datum_in_other_units_is_named(key: str, factor: float, name: str) -> None:
+    """Steps so fine that the motion of stiffer springs or of less mass is exact as well."""
+    section, _, entry = key.partition(".")
+    value = getattr(getattr(problem("locked").scene, section), entry)
+    found = named("locked", fine("locked", {key: factor * value}, 128))
+    assert found.ids == (name,)
+    assert found.values[name] == pytest.approx(factor, rel=2e-3)
+    assert "other units" in found.sentence
+
+
+def test_other_units_beside_the_usual_scheme_are_named() -> None:
+    scene = problem("locked").scene.with_values({"block.density": 1e-3 * problem("locked").scene.block.density})
+    found = named("locked", get_solver("dda").solve(scene).history)
+    assert found.ids == ("scheme", "density-factor")
+    assert found.values["density-factor"] == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_a_discount_where_the_scenes_own_scheme_is_exact_is_named() -> None:
+    found = named("sliding", get_solver("dda").solve(problem("sliding").scene.with_values({"time.gg": 0.98})).history)
+    assert found.ids[-1] == "gg"
+    assert found.values["gg"] == pytest.approx(0.98, rel=1e-4)

@@ -17,10 +17,11 @@ import numpy as np
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import laws
+from validation.diagnosis.one_change import Residual, alike, fitted, left_along_slope, nearest_start
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
-from validation.problems.families import Family, of_damping, of_data, of_discount, of_output
+from validation.problems.families import Change, of_damping, of_data, of_output, springs_alike
 from validation.problems.models import Base, Columns, Runs
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
@@ -39,13 +40,13 @@ USUAL = (  # causes that give the same rows are told in this order
 )
 BAR = 0.1  # of the band, that an explanation may leave
 CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
-ROUNDS = 8  # evaluations of a fit
-PURSUED, PURSUED_SLOW = 4, 3  # families that are fitted, the nearest ones; fewer where a run takes a second
-NEAR = 3 * BAR  # what a family may leave along its slope and is fitted in any case
+ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
+PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
+NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
-NOTHING = 1e-3  # of a per cent of the exact motion: an answer that is smaller does not move
+NOTHING = 1e-7  # of the exact motion: an answer that is smaller does not move; in other units it is 1e-3 or 1e-6
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ class Search:
         exact = self.runs.exact()
         cheap = not {features.FRICTION, features.ROTATION} & {*features.of(self.runs.scene)}
         for base in self._bases(exact, cheap):
-            found += [*self._laws(base), *self._families(base, cheap)]
+            found += [*self._laws(base), *self._changes(base, cheap)]
         return sorted(found, key=lambda one: (one.left, len(one.ids)))
 
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
@@ -147,51 +148,43 @@ class Search:
             if left <= BAR:
                 yield _with(law.id, law.words, {}, left, base, self.runs.scene)
 
-    def _families(self, base: Base, cheap: bool) -> Iterable[Cause]:
-        families = [*of_data(self.runs, base, cheap), *of_discount(self.runs, base)]
+    def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
+        """Yield the changes by one number that give the answer back."""
+        changes = list(of_data(self.runs, base, cheap))
         if base.exact:
-            families += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.seen))]
-        for family, start in self._pursued(families, cheap):
-            u, left = self._fitted(family, start)
+            changes += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.seen))]
+        for change, start in self._pursued(changes, cheap):
+            u, _ = fitted(self._residual(change), start, ROUNDS, NUDGE)
+            left = self._left(change.changed(u))
             if left <= BAR:
-                yield _of_family(family, u, left, base, self.runs.scene)
+                yield _of_change(change, u, left, base, self.runs.scene)
 
-    def _pursued(self, families: Sequence[Family], cheap: bool) -> list[tuple[Family, float]]:
-        """Return the families that come nearest along their slope, each from its best start."""
-        tried = [self._near(family, family.starts if cheap else family.starts[:1]) for family in families]
-        order = sorted(range(len(families)), key=lambda i: tried[i][1])
-        last = order[min(len(order), PURSUED if cheap else PURSUED_SLOW) - 1]
-        bar = max(tried[last][1], NEAR)  # none is left out that may give the same rows
-        return [(families[i], tried[i][0]) for i in order if tried[i][1] <= bar]
+    def _pursued(self, changes: Sequence[Change], cheap: bool) -> list[tuple[Change, float]]:
+        """Return the changes that come nearest along their slope, each from its best start."""
+        tried = []
+        for change in changes:
+            residual = self._residual(change)
+            start = nearest_start(residual, change.starts)
+            tried.append((change, start, left_along_slope(residual, start, change.nudge)))
+        tried.sort(key=lambda item: item[2])
+        last = tried[min(len(tried), PURSUED if cheap else PURSUED_SLOW) - 1]
+        bar = max(last[2], NEAR)  # none is left out that may give the same rows
+        return [(change, start) for change, start, left in tried if left <= bar]
 
-    def _near(self, family: Family, starts: Sequence[float]) -> tuple[float, float]:
-        """Return the best start of a family, and what its best number leaves if the answer is linear in it there."""
-        best = min(starts, key=lambda u: float(np.linalg.norm(self._residual(family, u))))
-        at, then = self._residual(family, best), self._residual(family, best + family.nudge)
-        slope = (then - at) / family.nudge
-        size = float(slope @ slope)
-        return best, float(np.linalg.norm(at - slope * (slope @ at) / size)) if size > 0 else math.inf
+    def _residual(self, change: Change) -> Residual:
+        """Return the function of the difference of the answer and a change's columns over norms and bands."""
 
-    def _residual(self, family: Family, u: float) -> Array:
-        """Return the difference of the answer and a family's columns over norms and bands."""
-        columns = family.of(u)
-        parts = []
-        for name, x in self.seen.items():
-            band = self.runs.held.bands[name]
-            size = float(np.linalg.norm(self.runs.held.exact.columns[name][: band.rows])) * band.high
-            other = np.full(band.rows, np.inf) if columns is None else columns[name][: band.rows]
-            parts.append((x[: band.rows] - other) / size)
-        return np.nan_to_num(np.clip(np.concatenate(parts), -FARTHEST, FARTHEST), nan=FARTHEST)
+        def residual(u: float) -> Array:
+            columns = change.changed(u)
+            parts = []
+            for name, x in self.seen.items():
+                band = self.runs.held.bands[name]
+                size = float(np.linalg.norm(self.runs.held.exact.columns[name][: band.rows])) * band.high
+                other = np.full(band.rows, np.inf) if columns is None else columns[name][: band.rows]
+                parts.append((x[: band.rows] - other) / size)
+            return np.nan_to_num(np.clip(np.concatenate(parts), -FARTHEST, FARTHEST), nan=FARTHEST)
 
-    def _fitted(self, family: Family, start: float) -> tuple[float, float]:
-        """Return the number that comes nearest, and what it leaves."""
-        from scipy.optimize import least_squares
-
-        done = least_squares(
-            lambda u: self._residual(family, float(u[0])), [start], diff_step=1e-5, x_scale=0.05, max_nfev=ROUNDS
-        )
-        u = float(done.x[0])
-        return u, self._left(family.of(u))
+        return residual
 
     def _left(self, columns: Columns | None) -> float:
         """Return what columns leave of the answer over the band, inf where there are none."""
@@ -213,9 +206,10 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     return f"another integrator, {base.words}{step}: {why}"
 
 
-def _of_family(family: Family, u: float, left: float, base: Base, scene: Scene) -> Cause:
-    value = float(f"{family.value(u):.6g}")
-    return _with(family.id, family.words(value), {family.id: value}, left, base, scene)
+def _of_change(change: Change, u: float, left: float, base: Base, scene: Scene) -> Cause:
+    value = float(f"{change.value(u):.6g}")
+    words = change.words(value) + springs_alike(scene, change.id, value)
+    return _with(change.id, words, {change.id: value}, left, base, scene)
 
 
 def _with(name: str, said: str, values: dict[str, float], left: float, base: Base, scene: Scene) -> Cause:
@@ -227,8 +221,7 @@ def _with(name: str, said: str, values: dict[str, float], left: float, base: Bas
 
 def _named(found: Sequence[Cause]) -> Cause:
     """Return the usual one of the causes that leave hardly more than the least; nothing where these are too many."""
-    bar = CLEAR * max(found[0].left, BAR / CLEAR**2)
-    near = [one for one in found if one.left <= bar]
+    near = alike(found, lambda one: one.left, CLEAR, BAR / CLEAR**2)
     fewest = min(len(one.ids) for one in near)
     told: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
     for one in sorted((one for one in near if len(one.ids) == fewest), key=_rank):
@@ -240,8 +233,9 @@ def _named(found: Sequence[Cause]) -> Cause:
         names = ", ".join(_short(one) for one in told.values())
         return Cause(f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, told.values())))
     first, joint, _ = best.sentence.partition("; and ")
-    alike = tuple(one.sentence.removeprefix(first + joint) if joint else one.sentence for one in others)
-    return Cause(f"{best.sentence} (the same rows: {'; or '.join(alike)})", best.ids, best.values, alike, best.left)
+    same_rows = tuple(one.sentence.removeprefix(first + joint) if joint else one.sentence for one in others)
+    sentence = f"{best.sentence} (the same rows: {'; or '.join(same_rows)})"
+    return Cause(sentence, best.ids, best.values, same_rows, best.left)
 
 
 def _short(one: Cause) -> str:

@@ -1,102 +1,54 @@
-"""Ways in which an answer may depart from the exact motion by one number, for a fit to find."""
+"""Changes of one thing, of the scene or of the rows, by which an answer may depart from the exact motion."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
-from validation.diagnosis.numbers import Number, numbers
+from validation.diagnosis.changes import Values
+from validation.diagnosis.one_change import UNITS, CandidateChange, of_discount, of_numbers
 from validation.problems.models import Base, Columns, Runs
 from validation.runs.history import Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-STARTS = (0.5, 0.75, 0.88, 1.12, 1.3, 2.0)  # factors to begin from where a run costs nothing
+Change: TypeAlias = CandidateChange[Columns | None]  # to the columns of its number; None where there are none
+FACTORS = (1.0, 0.5, 0.75, 0.88, 1.12, 1.3, 2.0)  # to begin from where a run costs nothing; elsewhere the first
+LARGEST = 3.0  # of the logarithm of a factor; what is further away is forgotten, or in other units
+NEAR_UNITS = 0.3  # the same, from that of other units
 DISCOUNTS = (0.99, 0.95, 0.8)  # of the velocity of a step
 DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
 MOST_LATE = 2.0  # steps
 FASTEST, SLOWEST = 1.1, 0.5  # of the rate at which time may run
 
 
-@dataclass(frozen=True, eq=False)
-class Family:
-    """Answers that differ by one number u, none at u = 0.
+def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Change]:
+    """Yield wrong numbers of the scene, run by a base, and another discount, which acts at every step of the scene."""
+    scene = runs.scene
+    if "column.layer" in base.values:  # the base cuts the scene's layers finer
+        scene = scene.with_values({"column.layer": base.values["column.layer"]})
+    changes = [*of_numbers(scene, FACTORS if cheap else FACTORS[:1], units=cheap)]
+    if base.every == 1:
+        changes.append(of_discount(scene, DISCOUNTS))
+    for change in changes:
 
-    Attributes
-    ----------
-    id
-        Of the cause.
-    words
-        The sentence of the cause by its number.
-    value
-        The number that people understand, of u.
-    of
-        The columns of u; None where there are none.
-    starts
-        Values of u that a fit begins from.
-    nudge
-        Of u, for the first derivative.
-    """
+        def run(u: float, values: Callable[[float], Values] = change.changed) -> Columns | None:
+            sensible = abs(u) <= LARGEST or any(abs(u - math.log(unit)) <= NEAR_UNITS for unit in UNITS)
+            return runs.sampled(base, values(u)) if sensible else None
 
-    id: str
-    words: Callable[[float], str]
-    value: Callable[[float], float]
-    of: Callable[[float], Columns | None]
-    starts: tuple[float, ...] = (0.0,)
-    nudge: float = 1e-3
+        yield change.giving(run)
 
 
-# ---- families -------------------------------------------------------------------------------------------------------
-
-
-def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Family]:
-    """Yield the families of one wrong number of the scene, run by a base."""
-    starts = (0.0, *map(math.log, STARTS)) if cheap else (0.0,)
-    for number in numbers(runs.scene):
-        yield Family(
-            number.id,
-            lambda f, one=number: _words(runs.scene, one, f),  # type: ignore[misc]
-            math.exp,
-            lambda u, change=number.changed: _changed(runs, base, change, u),  # type: ignore[misc]
-            starts,
-        )
-
-
-def of_discount(runs: Runs, base: Base) -> Iterator[Family]:
-    """Yield another discount of the velocity, which acts at every step: of a base at the steps of the scene."""
-    own = runs.scene.time.discount
-    if base.exact:
-        return
-    yield Family(
-        "gg",
-        lambda gg: f"gg = {gg:.5g} where the scene has {own:.5g}",
-        lambda u: own * math.exp(-abs(u)),
-        lambda u: runs.sampled(base, {"time.gg": own * math.exp(-abs(u))}),
-        tuple(-math.log(gg) for gg in DISCOUNTS),
-    )
-
-
-def _changed(runs: Runs, base: Base, change: Callable[[Scene, float], dict[str, Any]], u: float) -> Columns | None:
-    """Return a run with one number wrong; a list of layers of the base stands for the scene's own, finer cut."""
-    scene = runs.scene.with_values({"column.layer": base.values["column.layer"]}) if _cut(base) else runs.scene
-    return runs.sampled(base, change(scene, math.exp(min(max(u, -3.0), 3.0))))
-
-
-def _cut(base: Base) -> bool:
-    return "column.layer" in base.values
-
-
-def of_damping(runs: Runs, base: Base) -> Iterator[Family]:
+def of_damping(runs: Runs, base: Base) -> Iterator[Change]:
     """Yield viscous damping of the mass and of the stiffness, which DDA knows for linear motions."""
     if not features.linear(runs.scene):
         return
     step = runs.scene.time.step
     for key, unit, scale, symbol in (("mass", "1/s", 1.0, "a0"), ("stiffness", "s", step**2, "a1")):
-        yield Family(
+        yield CandidateChange(
             f"{key}-damping",
             lambda c, key=key, unit=unit, symbol=symbol: (  # type: ignore[misc]
                 f"viscous damping of the {key} is there, {symbol} = {c:.4g} {unit}"
@@ -108,7 +60,7 @@ def of_damping(runs: Runs, base: Base) -> Iterator[Family]:
         )
 
 
-def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
+def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Change]:
     """Yield what may be wrong with rows and columns alone: a factor, a shift of the rows, the rate of time."""
     plain, dense = runs.sampled(base), runs.dense(base)
     if plain is None or dense is None:
@@ -116,13 +68,14 @@ def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
     groups = [tuple(names), *((name,) for name in names if len(names) > 1)]
     for group in groups:
         which = "all columns" if group == tuple(names) else group[0]
-        yield Family(
+        yield CandidateChange(
             "factor",
             lambda f, which=which: f"{which} {_are(which)} {f:.4g} times the exact motion's",  # type: ignore[misc]
             lambda u: 1 + u,
             lambda u, group=group: {name: x * (1 + u * (name in group)) for name, x in plain.items()},  # type: ignore[misc]
+            (0.0,),
         )
-        yield Family(
+        yield CandidateChange(
             "shift",
             lambda late, which=which: f"{which} {_are(which)} {_steps(late)}",  # type: ignore[misc]
             lambda u: u,
@@ -130,7 +83,7 @@ def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
             (0.0, 1.0, -1.0),
             1e-2,
         )
-    yield Family(
+    yield CandidateChange(
         "time-factor",
         lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion{_by_mass(runs.scene, rate)}",
         math.exp,
@@ -139,11 +92,7 @@ def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Family]:
     )
 
 
-def _words(scene: Scene, number: Number, factor: float) -> str:
-    return f"{number.name} is {factor:.4g} times the scene's{_by_springs(scene, number.id, factor)}"
-
-
-def _by_springs(scene: Scene, number: str, factor: float) -> str:
+def springs_alike(scene: Scene, number: str, factor: float) -> str:
     """Return the springs that do the same: vertically, mass, stiffness and loads go with the width, 2 p does not."""
     vertical = {features.UNILATERAL, features.WEIGHT, features.DEAD_BAND}
     if number != "width-factor" or not {*features.of(scene)} <= vertical:

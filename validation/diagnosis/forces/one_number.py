@@ -7,7 +7,6 @@ named only if the run with it gives the history to its digits or noise, by the s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,32 +15,21 @@ from validation.diagnosis.changes import Values
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.forces.forward import Agreement, agreement, displacements
 from validation.diagnosis.forces.motion import body_of
-from validation.diagnosis.numbers import numbers
+from validation.diagnosis.one_change import CandidateChange, alike, fitted, nearest_start, of_discount, of_numbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 STAGES = (60, 150)  # steps that numbers are fitted to, before all
 ROUNDS = 8  # evaluations of a fit
 FACTORS = (0.8, 0.95, 1.05, 1.25)  # to begin from; a factor of one tells nothing of its own
-UNITS = (1e-3, 1e3)
 DISCOUNTS = (0.999, 0.99, 0.95)
 COHESIONS = (0.02, 0.1, 0.3)  # over the mean limit of friction of a corner
 NUDGE = 1e-4  # of the logarithm of a factor, for the slope at its start
+ARRIVED = 1e-15  # relative gain at which a fit ends: stick and slip amplify what is left
 NEAREST = 4  # candidates that are fitted further
 NEAR = 3.0  # times as much as the best leaves: what may still come out first
 CLEAR = 3.0  # times more that every other candidate must leave
 OUTSIDE = ("height-factor", "width-factor")  # computed so that no other is named in their place
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One thing changed in a scene; with `starts` it has a number u that is fitted."""
-
-    id: str
-    words: Callable[[float], str]  # of the number that people know
-    value: Callable[[float], float]  # that number, of u
-    changed: Callable[[float], Values]  # keys and values, of u
-    starts: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -62,40 +50,21 @@ class OneChange:
     run: Agreement
 
 
-def candidates(scene: Scene) -> list[Candidate]:
+def candidates(scene: Scene) -> list[CandidateChange[Values]]:
     """Return what is tried."""
-    logarithms = tuple(math.log(f) for f in FACTORS)
-    units = tuple(math.log(f) for f in UNITS)
-    found = []
-    for number in numbers(scene):
-        of_units = units if number.id in ("density-factor", "young-factor", "springs-factor") else ()
-        found.append(
-            Candidate(
-                number.id,
-                lambda f, name=number.name: f"{name} is {f:.4g} times the scene's",  # type: ignore[misc]
-                math.exp,
-                lambda u, change=number.changed: change(scene, math.exp(u)),  # type: ignore[misc]
-                (*logarithms, *of_units),
-            )
-        )
-    c, t = scene.contact, scene.time
-    found.append(
-        Candidate(
-            "normal-springs-factor",
-            lambda f: f"the normal springs alone are {f:.4g} times the scene's",
-            math.exp,
-            lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
-            logarithms,
-        )
+    c = scene.contact
+    normal_springs: CandidateChange[Values] = CandidateChange(
+        "normal-springs-factor",
+        lambda f: f"the normal springs alone are {f:.4g} times the scene's",
+        math.exp,
+        lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
+        tuple(map(math.log, FACTORS)),
     )
-    gg = tuple(math.log(discount * t.discount) for discount in DISCOUNTS)
-    found.append(
-        Candidate("gg", lambda v: f"gg = {v:.5g} where the scene has {t.discount:.5g}", math.exp, _discount, gg)
-    )
+    found = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
     width = body_of(scene).x[1] - body_of(scene).x[0]
     limit = body_of(scene).coefficient * abs(float(body_of(scene).load[1])) / 2
     found.append(
-        Candidate(
+        CandidateChange(
             "cohesion",
             lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
             lambda u: c.cohesion + math.exp(u),
@@ -106,11 +75,7 @@ def candidates(scene: Scene) -> list[Candidate]:
     return [*found, *_schemes(scene)]
 
 
-def _discount(u: float) -> Values:
-    return {"time.gg": min(math.exp(u), 1.0)}
-
-
-def _schemes(scene: Scene) -> list[Candidate]:
+def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
     """Return the other named schemes and starts, which have no number."""
     t, found = scene.time, []
     for name, (alpha, delta) in NAMED.items():
@@ -121,7 +86,7 @@ def _schemes(scene: Scene) -> list[Candidate]:
             values: Values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
             words = f"the initial acceleration is {start}" if same else f"the scheme is {name}, start {start}"
             found.append(
-                Candidate("start" if same else "scheme", lambda _, said=words: said, float, lambda _, v=values: v)  # type: ignore[misc]
+                CandidateChange("start" if same else "scheme", lambda _, said=words: said, float, lambda _, v=values: v)  # type: ignore[misc]
             )
     return found
 
@@ -140,8 +105,8 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
     for stage in (*STAGES, len(place)):
         steps = min(stage, len(place))
         first = stage == STAGES[0]
-        fitted = [_fitted(scene, one, u, place[:steps], first) for one, u, _ in tried]
-        ordered = sorted(fitted, key=lambda item: item[2])
+        fits = [_fitted(scene, one, u, place[:steps], first) for one, u, _ in tried]
+        ordered = sorted(fits, key=lambda item: item[2])
         bar = NEAR * ordered[min(NEAREST, len(ordered)) - 1][2]
         tried = [item for item in ordered if item[2] <= bar] if first else ordered[:NEAREST]
         if steps == len(place):
@@ -152,27 +117,24 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
         if run.same:
             value = float(f"{one.value(u):.6g}") if one.starts else None
             found.append(OneChange(one.id, value, one.words(one.value(u)), run))
-    found.sort(key=lambda change: change.run.left)
-    clear = [change for change in found if change.run.left <= CLEAR * found[0].run.left]
+    clear = alike(found, lambda change: change.run.left, CLEAR)
     ids = {change.id for change in clear}
     best = clear[0] if len(ids) == 1 and not ids & set(OUTSIDE) else None
     return best, clear
 
 
-def _fitted(scene: Scene, one: Candidate, u: float, place: Array, first: bool) -> tuple[Candidate, float, float]:
+def _fitted(
+    scene: Scene, one: CandidateChange[Values], u: float, place: Array, first: bool
+) -> tuple[CandidateChange[Values], float, float]:
     """Return a candidate's number that comes nearest over some steps, and what it leaves."""
-    from scipy.optimize import least_squares
-
     size = np.maximum(np.max(np.abs(place), axis=0), np.finfo(float).tiny)
     short = scene.with_values({"time.steps": len(place)})
 
-    def residual(z: Sequence[float] | Array) -> Array:
-        run = displacements(short.with_values(one.changed(float(z[0]))))
+    def residual(number: float) -> Array:
+        run = displacements(short.with_values(one.changed(number)))
         return np.ones(place.size) if run is None else np.ravel((run - place) / size)
 
-    starts = one.starts if first and one.starts else (u,)
-    at = min(starts, key=lambda start: float(np.linalg.norm(residual([start]))))
     if not one.starts:
-        return one, at, float(np.linalg.norm(residual([at])))
-    done = least_squares(residual, [at], diff_step=NUDGE, x_scale=0.05, max_nfev=ROUNDS, xtol=1e-15, ftol=1e-15)
-    return one, float(done.x[0]), float(np.linalg.norm(done.fun))
+        return one, u, float(np.linalg.norm(residual(u)))
+    at = nearest_start(residual, one.starts) if first else u
+    return one, *fitted(residual, at, ROUNDS, NUDGE, ARRIVED)

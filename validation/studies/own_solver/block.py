@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from validation.gates.gate import Status
 from validation.runs.run import Outcome
-from validation.studies.own_solver import gates
+from validation.studies.own_solver import block_data, gates
+from validation.studies.own_solver.block_data import AtRest, Misreading
 from validation.studies.own_solver.evidence import diagnosis
-from validation.studies.own_solver.gates import GROUPS
+from validation.studies.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
+from validation.studies.own_solver.history import AT_REST
 from validation.studies.own_solver.session import LARGEST, Told
 
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
 FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
 WIDTH = 11  # of the first column
+MAY_FOLLOW = "may follow from it, look again when it is right"
 
 
 def block(told: Sequence[Told], every: bool = False) -> list[str]:
@@ -29,21 +32,24 @@ def block(told: Sequence[Told], every: bool = False) -> list[str]:
     """
     judged = [t for t in told if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
     failed = [t for t in judged if t.status == Status.FAIL]
+    misread = _misread(judged, failed)
+    plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
     lines = [
         *_table(told),
         *_warnings(told),
-        *_headline(judged, failed),
+        *_headline(judged, failed, plain),
+        *_block_data(judged, failed, misread),
         *_failures(failed, every),
         *_endings(told),
         *_not_run(told),
     ]
-    return [*lines, *diagnosis(failed, first(judged, failed)), *_unseen(judged)]
+    return [*lines, *diagnosis(plain or _moving(failed), first(judged, plain)), *_unseen(judged)]
 
 
 def _table(told: Sequence[Told]) -> Iterator[str]:
     """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
     yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
-    for group, says in GROUPS.items():
+    for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
         own = [t for t in told if t.group == group]
         sound = [t.status for t in own if t.outcome == Outcome.COMPLETED]
         absent = sum(t.status == Status.NOT_RUN for t in own)
@@ -83,7 +89,7 @@ def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
 
     By itself means that the displacement of the same scene is right to rounding.
     """
-    groups = {t.group for t in failed}
+    groups = {t.group for t in failed} - {BLOCK_DATA}
     found = [group for group in FOLLOWS if group in groups][:1]
     exact = {t.scene for t in judged if t.metric == "displacement.max" and t.group == "digits"}
     exact -= {t.scene for t in failed if t.group != "pressure"}
@@ -91,22 +97,80 @@ def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
     return [*found, "pressure"] if alone or (groups and not found) else found
 
 
-def _headline(judged: Sequence[Told], failed: Sequence[Told]) -> Iterator[str]:
-    """Yield what is right, and where the fault is to be looked for."""
+def _headline(judged: Sequence[Told], failed: Sequence[Told], plain: Sequence[Told]) -> Iterator[str]:
+    """Yield what is right, and where the fault is to be looked for of which the plain scenes tell."""
     right = [g for g in GROUPS if any(t.group == g for t in judged) and not any(t.group == g for t in failed)]
     if judged:
         yield f"\nright:  {', '.join(right) or 'nothing yet'}"
-    found = first(judged, failed)
+    found = first(judged, plain)
     for group in found:
         yield f"wrong:  {group} - {GROUPS[group]}"
-    rest = [group for group in GROUPS if group not in (*right, *found) and any(t.group == group for t in failed)]
+    rest = [group for group in GROUPS if group not in found and any(t.group == group for t in plain)]
     if rest:
-        yield f"        {', '.join(rest)}: may follow from it, look again when it is right"
+        yield f"        {', '.join(rest)}: {MAY_FOLLOW}"
+
+
+def _misread(judged: Sequence[Told], failed: Sequence[Told]) -> dict[Misreading, list[str]]:
+    """Return what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong.
+
+    Where it rests does not depend on the scheme, so that a slip of the scheme beside a misreading hides neither. A
+    fault in the statics of the plain square does show there.
+    """
+    resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
+    measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
+    named = block_data.misreadings(measured)
+    statics = [t for t in failed if t.group == "statics"]
+    return {} if any(not _follows(t, named) for t in statics) else named
+
+
+def _follows(told: Told, misread: Collection[Misreading]) -> bool:
+    """Whether a gate is on a scene that a solver misreads."""
+    case = gates.cases(told.study).get((told.scene, gates.JUDGED)) if misread else None
+    return case is not None and any(block_data.is_misread(case.scene, one) for one in misread)
+
+
+def _block_data(
+    judged: Sequence[Told], failed: Sequence[Told], misread: Mapping[Misreading, list[str]]
+) -> Iterator[str]:
+    """Yield with which data of the block a solver is right, and which of them it misreads."""
+    data = block_data.datum_of()
+    own = {t.scene for t in judged if t.group == BLOCK_DATA}
+    wrong = [t for t in failed if t.group == BLOCK_DATA]
+    right = [datum.words for scene, datum in data.items() if scene in own - {t.scene for t in wrong}]
+    if right:
+        yield f"{BLOCK_DATA}: right with {', '.join(right)}"
+    plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
+    if wrong and any(t.group == "statics" for t in plain):
+        yield f"        {BLOCK_DATA}: {MAY_FOLLOW}"
+        return
+    for misreading, scenes in misread.items():
+        where = ", ".join(data[scene].words for scene in scenes)
+        yield f"wrong:  {BLOCK_DATA} - {misreading.words} (seen with {where})"
+    following = {t.group for t in failed if t.group != BLOCK_DATA and _follows(t, misread)} - {t.group for t in plain}
+    if following:
+        yield f"        {', '.join(group for group in GROUPS if group in following)}: {MAY_FOLLOW}"
+    for t in wrong:
+        if t.metric == AT_REST and not any(t.scene in scenes for scenes in misread.values()):
+            middle = (t.low + t.high) / 2
+            yield (
+                f"wrong:  {BLOCK_DATA} - {data[t.scene].words}: rests at {t.value:.6g} m, not at {middle:.6g} m; "
+                "which datum is misread is not known, print those that your solver takes from this scene"
+            )
+    if not any(t.group in ("digits", "pressure") for t in plain):
+        for t in _moving(wrong):
+            words = f"{data[t.scene].words}: {t.metric.partition('.')[0]} before it rests"
+            yield f"wrong:  {BLOCK_DATA} - {words}: the moment of inertia, or where width and height enter"
+
+
+def _moving(failed: Sequence[Told]) -> list[Told]:
+    """Return the failing gates on the motion of a scene of `BLOCK_DATA` that comes to rest at the right place."""
+    misplaced = {t.scene for t in failed if t.metric == AT_REST}
+    return [t for t in failed if t.group == BLOCK_DATA and t.scene not in misplaced]
 
 
 def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
     """Yield the failing gates with their values, group by group."""
-    for group in GROUPS:
+    for group in (*GROUPS, BLOCK_DATA):
         own = [t for t in failed if t.group == group]
         if own:
             yield f"\nfailed: {group}"

@@ -10,7 +10,6 @@ import functools
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
 from validation.engine.case import Case
 from validation.engine.finished import Derived
@@ -23,6 +22,7 @@ from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import about, near
 from validation.studies.catalogue import get_study, judged_studies
 from validation.studies.core import rounding
+from validation.studies.own_solver import block_data
 from validation.studies.own_solver.history import FREQUENCY, PENCIL
 
 JUDGED = "dda"  # whose place a user's solver takes
@@ -34,6 +34,9 @@ GROUPS = {  # in the order in which a person looks: a fault in one shows in thos
     "digits": "displacement, step by step",
     "pressure": "contact pressure: its formula, its time",
 }
+# Gates on scenes with another datum each, which no slip of the scheme reaches: they are judged by themselves.
+BLOCK_DATA = "block data"
+BLOCK_DATA_WORDS = "width and height, Poisson's ratio, plane strain, shear springs, place of the load"
 REPORTABLE = frozenset({HISTORY, STATIC, MODES, REFERENCE})  # what a user's solver, or a reference, can report
 FIRST = 1e-3  # relative: what a file of few digits may lose in the first row
 SHOWN = ("displacement.static", "mode1.frequency", "mode1.damping", "mode1.measured_damping")  # by a history
@@ -55,40 +58,6 @@ def _start() -> Iterator[Gate]:
             yield Gate(scene.name, pair, metric, 0, high, same)
 
 
-RESTING = "where a damped motion of some hundred steps ends, by the closed form of static equilibrium; rounding"
-
-
-def _blocks() -> Iterator[Gate]:
-    """Yield the gates on data of the block that the paper's scenes never change: its shape, its plane, its springs."""
-    for scene in blocks():
-        pressed = 1 - 2 * abs(scene.load.eccentricity) / closed_forms.size(scene)[0]
-        value = closed_forms.static_displacement(scene) * pressed
-        yield Gate(scene.name, (JUDGED,), "displacement.static", *near(value, 1e-9), RESTING)
-    rectangle = blocks()[0]
-    same = "same equations, rounding apart (see the core study)"
-    for metric in ("displacement.max", "pressure.max"):
-        yield Gate(rectangle.name, (JUDGED, "dda-textbook"), metric, 0, rounding(rectangle), same)
-
-
-@functools.cache
-def blocks() -> tuple[Scene, ...]:
-    """Return short scenes that come to rest, one for each datum that a solver may have left out.
-
-    The load of the last one has its middle beside the centroid: the part of the top edge that it presses is shorter,
-    and the centroid sinks by that share, since turning does not move it.
-    """
-    settles = {"time.step": 0.002, "time.steps": 300, "time.gg": 0.9}
-    plain = load_scene("figures-3-4").with_values(settles)
-    changes: tuple[dict[str, Any], ...] = (
-        {"block.width": 3.0, "block.height": 1.2, "contact.stiffness": 4.0e9},  # at p = E width and height are alike
-        {"block.poisson": 0.25},
-        {"block.poisson": 0.25, "block.hypothesis": "plane strain"},
-        {"block.poisson": 0.25, "contact.shear_stiffness": 3.0e8},
-        {"load.eccentricity": 0.3},
-    )
-    return tuple(plain.with_values(change, label=True) for change in changes)
-
-
 # what gates may see of a solver: a kind of scene in words, and whether a scene is of it
 KINDS: dict[str, Callable[[Scene], bool]] = {
     "a rectangle that is no square": lambda s: math.dist(*s.block.outline[:2]) != math.dist(*s.block.outline[1:3]),
@@ -96,10 +65,14 @@ KINDS: dict[str, Callable[[Scene], bool]] = {
     "plane strain": lambda s: s.block.hypothesis == "plane strain" and s.block.poisson != 0,
     "shear springs of their own stiffness": lambda s: s.contact.shear != s.contact.stiffness,
     "an off-centre load": lambda s: s.load.eccentricity != 0,
+    "an outline that is no rectangle": lambda s: s.block.vertices is not None,
+    "a shear load": lambda s: s.load.traction != 0,
     "gravity": lambda s: s.load.gravity != 0,
     "contact that opens": lambda s: s.contact.law == "unilateral",
     "friction": lambda s: s.contact.friction is not None,
     "a base that moves": lambda s: s.load.base_motion is not None,
+    "a gap or a velocity at the start": lambda s: s.contact.gap != 0 or s.block.velocity != 0,
+    "viscous damping": lambda s: s.damping.present,
 }
 
 
@@ -121,9 +94,9 @@ START = Study(
     "own-solver",
     "Your own solver",
     "Initial accelerations, of which the paper's scenes have one only, and data of the block that they never change.",
-    (*starts(), *blocks()),
+    (*starts(), *block_data.scenes()),
     (JUDGED, "dda-textbook"),
-    gates=lambda: (*_start(), *_blocks()),
+    gates=lambda: (*_start(), *block_data.gates(JUDGED)),
 )
 
 
@@ -185,7 +158,9 @@ def applies(study: str, gate: Gate) -> bool:
 
 
 def group(gate: Gate, scene: Scene) -> str:
-    """Return which of `GROUPS` a gate belongs to."""
+    """Return which of `GROUPS` a gate belongs to, or `BLOCK_DATA`."""
+    if scene.name in block_data.datum_of():
+        return BLOCK_DATA
     if gate.metric.startswith("pressure."):
         return "pressure"
     if gate.metric in ("displacement.static", "displacement.final"):
@@ -221,5 +196,5 @@ def shown_by_history(gate: Gate, scene: Scene) -> bool:
     """Whether the history shows what a gate of one solver asks for."""
     if len(gate.pair) != 1 or gate.metric not in SHOWN:
         return False
-    own = gate.metric == "displacement.static" and scene in blocks()  # which come to rest by the last step
-    return own or (scene.block.poisson == 0 and scene.block.vertices is None)
+    rests = gate.metric == "displacement.static" and scene.name in block_data.datum_of()
+    return rests or (scene.block.poisson == 0 and scene.block.vertices is None)

@@ -29,6 +29,7 @@ from validation.scenes.scene import Scene
 PENCIL = 1e-6  # the ratio of a history of these scenes is the operator's to this, see the gates on measured damping
 FREQUENCY = 10 * PENCIL  # relative: both numbers of the root enter, times 1 + alpha Omega^2, which is below 2
 REST = 1e-6  # relative: what comes to rest is no matter of digits, which have gates of their own
+AT_REST = "displacement.at_rest"  # the metric that a history has in place of `displacement.static`
 TAIL = 5  # the last fifth of the steps: several periods of the scenes that come to rest
 BEGUN = 2  # rows that are left out: an initial acceleration of its own, or a wrong first row, is no mode of the step
 POWERS = 5  # of the two-block model
@@ -52,7 +53,7 @@ def shown(gate: Gate, scene: Scene, history: History) -> tuple[Gate, Value]:
     if gate.metric == "displacement.static":
         value, moving = rest(history.displacement)
         reason = f"{gate.reason}; measured as the middle of the last fifth, to what still moves there"
-        return replace(_wider(gate, abs(value) * REST + moving), metric="displacement.at_rest", reason=reason), value
+        return replace(_wider(gate, abs(value) * REST + moving), metric=AT_REST, reason=reason), value
     found = root(scene, history)
     if found is None:
         return gate, UNDEFINED
