@@ -2,8 +2,8 @@
 
 z = (x, x', r, 1) holds the six unknowns, their rates, the references of both corners and a one, so that every function
 that is watched or reported is a row over z, and its rate is that row times G. G may have any eigenvalues where a corner
-slips: a power series does not care. A long time is a product of powers of three matrices, exp(G s) for s a part of
-`ANGLE` radians of the greatest rate that G can give; what is left of it needs a few terms of the series.
+slips: a power series does not care. A long time is a step of at most `ANGLE` radians of the greatest rate that G can
+give, or a sum of halvings of one, whose exp(G s) are kept; what is left of it needs a few terms of the series.
 
 Floats prove for most steps that nothing switches: the Bernstein forms of the watched functions bound them from below.
 """
@@ -59,7 +59,9 @@ class Flow:
         scaled = scale[:, None] * B / scale
         self.rate = math.sqrt(float(np.linalg.norm(scaled, 2))) * (1 + 1e-9)  # bound of the rates of the motion [rad/s]
         self.norm = [*(1 / (scale * self.rate)).tolist(), *(1 / scale).tolist()]  # of unknowns and rates of norm one
-        self.stretches, self.references, self.watched = [], [], []
+        self.stretches: list[arb_mat] = []  # s - r of each corner, which is -T / p_s [m]
+        self.references: list[arb_mat] = []  # r of each corner that does not stick [m]
+        self.watched: list[arb_mat] = []  # positive, or zero for ever, as long as both corners stay in their states
         for corner in (0, 1):
             self._add_corner(corner)
         self._lines: list[list[arb]] = []
@@ -68,15 +70,12 @@ class Flow:
         self.units = [2.0 ** (math.ceil(math.log2(ANGLE / self.rate)) - level) for level in range(1, LEVELS + 1)]
 
     def _add_corner(self, c: int) -> None:
-        """Add the rows of one corner.
-
-        `watched` are functions that are positive, or zero for ever, as long as the corner stays in its state.
-        """
+        """Add the rows of one corner."""
         model, state = self.model, self.states[c]
         gap, slide, stuck = model.gaps[c], model.slides[c], model.stuck[c]
         limit = gap * (-model.friction * model.p) + row(one=model.cohesion)  # tan(phi) N + C
         if state == OPEN:
-            stretch, watched = row(), [gap]  # the stretch s - r is -T / p_s [m]
+            stretch, watched = row(), [gap]
         elif state == STICKS:
             stretch, watched = stuck, [gap * -1]
             if model.tan is not None:
@@ -86,7 +85,7 @@ class Flow:
             # one that slips moves its reference in the direction of its slip
             watched.append((slide - stretch) * self.G * -sigma(state))
         self.stretches.append(stretch)
-        self.references.append(slide - stretch)  # r [m]
+        self.references.append(slide - stretch)
         if not model.locked:
             self.watched += watched
 

@@ -194,7 +194,7 @@ class March:
             self._advance(flow, clear, None)
             return
         if clear == 0 and agreeing(flow, self._balls(radius)) is None:
-            self._switch(flow, None, None)
+            self._switch(flow, None)
             return
         if clear > 0:
             self._advance(flow, clear, None)
@@ -208,7 +208,7 @@ class March:
             self.misses += 1
             self._advance(flow, length, step, row_end if bool(length == left) else None)
         else:
-            self._switch(flow, *fall)
+            self._switch(flow, fall)
 
     def _add_node(self, radius: Array) -> None:
         slipped = self.slipped[0], self.slipped[1]
@@ -253,21 +253,20 @@ class March:
                 first, end = (fall, flow.watched[i]), fall.at.mid()
         return first
 
-    def _switch(self, flow: Flow, fall: Fall | None, row: arb_mat | None) -> None:
+    def _switch(self, flow: Flow, first: tuple[Fall, arb_mat] | None) -> None:
         """Move to the first fall of a watched function, and let the corners take the states that agree.
 
         Parameters
         ----------
         flow
             Of the states until now.
-        fall
-            The fall, in units of 1 / rate; None: a function falls from now on.
-        row
-            The function.
+        first
+            The fall, in units of 1 / rate, and the function; None: one falls from now on.
         """
         self.misses = 0
-        offset, moved, slope = 0.0, arb(0), None
-        if fall is not None:
+        offset, moved, timing = 0.0, arb(0), None
+        if first is not None:
+            fall, function = first
             with precision(4 * ctx.prec):
                 enclosure = self.time + fall.at / flow.rate
             offset = radius_of(enclosure)
@@ -275,8 +274,9 @@ class March:
                 self.touches.append(float(enclosure))
             moved = difference(enclosure.mid(), self.time)
             self._advance(flow, moved, None, enclosure.mid())
-            rate = (row * (flow.G * self.z))[0, 0]
-            slope = None if fall.grazing or rate.contains(0) else float(rate)
+            rate = (function * (flow.G * self.z))[0, 0]
+            if not (fall.grazing or rate.contains(0)):
+                timing = function * (1 / rate.mid())
         # Slipping, or an open corner's slide, has taken the references along.
         P = UNIT.copy()
         entries = self.z.entries()
@@ -291,32 +291,33 @@ class March:
         self._place(arb_mat(SIZE, 1, entries))
         rates = np.array([float(x.abs_upper()) for x in (flow.G * before).entries()])
         self._settle(flow, np.abs(P) @ (hull + rates * offset * INFLATION) + self.spread.box, offset)
-        if self.states == states and (fall is None or moved < self.end * 2.0 ** (-ctx.prec // 2)):
+        if self.states == states and (first is None or moved < self.end * 2.0 ** (-ctx.prec // 2)):
             raise NoContactStateError(f"the state of the corners contradicts the motion at {float(self.time)!r} s")
+        if all(was != now for was, now in zip(states, self.states, strict=True)):
+            timing = None  # the two need not switch at one instant of the ball
         change = np.array([float(x) for x in (flow.G * before - self.flows[self.states].G * self.z).entries()])
         change[12:14] = P[12:14] @ np.array([float(x) for x in (flow.G * before).entries()])
-        self._blur(flow, P, row, change, slope, offset, np.abs([float(x) for x in before.entries()]) + hull)
+        self._blur(flow, P, timing, change, offset, np.abs([float(x) for x in before.entries()]) + hull)
 
-    def _blur(
-        self, flow: Flow, P: Array, row: arb_mat, change: Array, slope: float | None, offset: float, size: Array
-    ) -> None:
+    def _blur(self, flow: Flow, P: Array, timing: arb_mat | None, change: Array, offset: float, size: Array) -> None:
         """Move the spread over a switch, whose instant depends on where in it the motion is.
 
-        The function g that falls does so after -g z / g', and until then z' is that of the former flow, which changes
-        z by `change` times this time; terms of second order in the time are bounded by the sizes of z.
+        The function that falls does so after -g z, `timing` being the row g, and until then z' is that of the former
+        flow, which changes z by `change` times this time; terms of second order in the time are bounded by the sizes
+        of z.
         """
         before, after, into = np.abs(flow.G_floats), np.abs(self.flows[self.states].G_floats), np.abs(P)
         fast, turned = before @ size, into @ before + after @ into
         second = (into @ (before @ fast) + 2 * after @ (into @ fast) + after @ (after @ (into @ size))) * offset**2
         jump, hull = np.abs(change), self.spread.hull()
         M = P
-        if slope is None:
-            second += jump * offset
+        if timing is None:
+            second += 2 * jump * offset
         else:
-            g = to_floats(row)[0]
-            M = P - np.outer(change, g / slope)
-            late = np.abs(g) @ (before @ fast * offset**2 + 2 * before @ hull * offset) / abs(slope)
-            late += float(abs((row * self.z)[0, 0]).upper()) / abs(slope)
+            g = to_floats(timing)[0]
+            M = P - np.outer(change, g)
+            late = np.abs(g) @ (before @ fast * offset**2 + 2 * before @ hull * offset)
+            late += float(abs((timing * self.z)[0, 0]).upper())
             second += jump * late + turned @ hull * offset
         self.spread.transport(M, second * INFLATION)
 
