@@ -9,31 +9,33 @@ contact pressure, waves f (up) and g (down) make up the displacement::
 
 On each piece of the time all of them are polynomials plus exp(-kappa s) times polynomials, kappa = k / (W Z):
 a new piece begins with the load, where the base closes or opens, and at every echo of these after 2 H / c.
-The computation is in decimal arithmetic, with velocities in m/s and times in travel times H / c.
+The computation is in ball arithmetic, with velocities in m/s and times in travel times H / c.
 """
 
 from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass
-from decimal import Decimal
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
+from flint import arb
 from numpy.typing import ArrayLike
 
 from fem_reference.events.bar_march import Piece, pieces
 from fem_reference.events.bar_model import BarProblem, Units
-from fem_reference.events.decimals import HALF, TWO, ZERO, working
-from fem_reference.events.switches import Switch, TooManySwitchesError, TooMuchWorkError
+from fem_reference.events.enclosure import bits_of, precision, radius_of
+from fem_reference.events.switches import LostDigitsError, Switch, TooManySwitchesError, TooMuchWorkError
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 60
-"""Decimal digits of the computation beyond those that it is known to lose."""
+"""Decimal digits of the first computation."""
+MOST_DIGITS = 960
+"""Decimal digits of the last one, where round trips and switches cost those of the ones before."""
+PROMISED = 1e-20
+"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 PIECES = 6000
 """Greatest number of pieces, about ten seconds and 200 MB."""
 FRONT = 4
@@ -72,6 +74,12 @@ class BarMotion:
     closed_at_start: bool  # whether the base is closed just after t = 0; one that stays at zero gap counts as closed
     switches: tuple[Switch, ...]  # openings and closings of the base, ``corner`` being ``"base"``, in the order of time
     pieces: tuple[Piece, ...]  # the pieces of the motion in the order of time
+    touches: tuple[float, ...] = ()  # instants at which a switch was neither proven nor excluded; none was taken [s]
+
+    @property
+    def radius(self) -> float:
+        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
+        return max((switch.radius for switch in self.switches), default=0.0)
 
     def at(self, times: ArrayLike) -> BarHistory:
         """The motion at instants in any order.
@@ -82,8 +90,8 @@ class BarMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        with working(self.digits):
-            rows = np.array([self._row(Decimal(float(instant))) for instant in t]).reshape(len(t), 6).T
+        with precision(bits_of(self.digits)):
+            rows = np.array([self._row(arb(float(instant))) for instant in t]).reshape(len(t), 6).T
         return BarHistory(t, rows[0], rows[1], np.maximum(0.0, rows[2]), rows[3], rows[4], rows[5])
 
     def fields(self, time: float, points: ArrayLike) -> BarFields:
@@ -98,78 +106,79 @@ class BarMotion:
         y: Array = np.atleast_1d(np.asarray(points, dtype=float))
         if y.ndim != 1 or not np.all((y >= 0) & (y <= self.problem.height)):
             raise ValueError(f"points: must be heights from 0 to {self.problem.height!r}, got {points!r}")
-        with working(self.digits):
-            rows = np.array([self._point(Decimal(time), Decimal(float(height))) for height in y]).reshape(len(y), 3).T
+        with precision(bits_of(self.digits)):
+            rows = np.array([self._point(arb(time), arb(float(height))) for height in y]).reshape(len(y), 3).T
         return BarFields(rows[0], rows[1], rows[2])
 
     def breaks(self, time: float) -> Array:
         """Heights at which velocity or stress is not smooth at an instant, and both ends [m]."""
-        with working(self.digits):
-            now, height = Decimal(time) / self._units.travel, Decimal(self.problem.height)
-            born = [piece.start for piece in self.pieces]
+        with precision(bits_of(self.digits)):
+            now, height = arb(time) / self._units.travel, arb(self.problem.height)
+            born = self._starts
             heights = [now - t for t in born] + [t + sign - now + 1 for t in born for sign in (-1, 1)]
             inside = sorted({float(height * x) for x in heights if 0 < x < 1})
         return np.array([0.0, *inside, self.problem.height])
 
     @cached_property
     def _units(self) -> Units:
-        with working(self.digits):
+        with precision(bits_of(self.digits)):
             return Units.of(self.problem)
 
     @cached_property
-    def _starts(self) -> list[Decimal]:
-        return [piece.start for piece in self.pieces]
+    def _starts(self) -> list[arb]:
+        return [piece.start.mid() for piece in self.pieces]
 
-    def _row(self, time: Decimal) -> tuple[float, ...]:
+    def _row(self, time: arb) -> tuple[float, ...]:
         """Displacement, gap, pressure, mean velocity, impulse and momentum residual."""
         units = self._units
         now = time / units.travel
+        half = arb(1) / 2
         piece, s = self._piece(now)
-        middle = self._up(now - HALF) + self._down(now + HALF) - units.b * now * now / 2
+        middle = self._up(now - half) + self._down(now + half) - units.b * now * now / 2
         mean = self._up(now) - self._down(now) + units.V - (units.q + units.b) * now
         gap, impulse = piece.gap(s), piece.impulse(s)
         residual = mean - units.V + (units.b + units.q) * now - impulse
-        pressure = -units.kappa * gap if piece.closed else ZERO
+        pressure = -units.kappa * gap if piece.closed else arb(0)
         Z, T = units.impedance, units.travel
         return tuple(map(float, (middle * T, gap * T, pressure * Z, mean, impulse * Z * T, residual * Z * T)))
 
-    def _point(self, time: Decimal, y: Decimal) -> tuple[float, ...]:
+    def _point(self, time: arb, y: arb) -> tuple[float, ...]:
         """Displacement, velocity and stress."""
         units = self._units
-        now, height = time / units.travel, y / Decimal(self.problem.height)
+        now, height = time / units.travel, y / arb(self.problem.height)
         before, after = now - height, now + height
         u = self._up(before) + self._down(after) - units.b * now * now / 2
         up, down = self._up_rate(before), self._down_rate(after)
         return tuple(map(float, (u * units.travel, up + down - units.b * now, (down - up) * units.impedance)))
 
-    def _piece(self, now: Decimal) -> tuple[Piece, Decimal]:
+    def _piece(self, now: arb) -> tuple[Piece, arb]:
         """The piece of an instant, and the time since it began."""
-        low = bisect_right(self._starts, now) - 1
-        return self.pieces[low], now - self._starts[low]
+        piece = self.pieces[bisect_right(self._starts, now.mid()) - 1]
+        return piece, now - piece.start
 
-    def _up(self, now: Decimal) -> Decimal:
+    def _up(self, now: arb) -> arb:
         """Wave f at an argument, which is negative for what was on its way at t = 0."""
         if now < 0:
             return self._units.V * now / 2
         piece, s = self._piece(now)
         return piece.wave(s)
 
-    def _up_rate(self, now: Decimal) -> Decimal:
+    def _up_rate(self, now: arb) -> arb:
         if now < 0:
             return self._units.V / 2
         piece, s = self._piece(now)
         return piece.rate(s)
 
-    def _down(self, now: Decimal) -> Decimal:
+    def _down(self, now: arb) -> arb:
         """Wave g at an argument, reflected at the top."""
         units = self._units
         if now < 1:
             return units.V * now / 2
-        return units.V + self._up(now - TWO) - units.q * (now - 1)
+        return units.V + self._up(now - 2) - units.q * (now - 1)
 
-    def _down_rate(self, now: Decimal) -> Decimal:
+    def _down_rate(self, now: arb) -> arb:
         units = self._units
-        return units.V / 2 if now < 1 else self._up_rate(now - TWO) - units.q
+        return units.V / 2 if now < 1 else self._up_rate(now - 2) - units.q
 
 
 def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10_000) -> BarMotion:
@@ -182,7 +191,8 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
     end
         Last instant [s].
     digits
-        Decimal digits of the result before rounding, at least 50; the computation adds those that it loses.
+        Decimal digits of the computation, at least 50; twice as many are taken, up to `MOST_DIGITS`, where the instants
+        of the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
 
@@ -192,6 +202,8 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
         If `end` is not positive and finite or `digits` is below 50.
     TooManySwitchesError
         If there are more switches than `limit`.
+    LostDigitsError
+        If round trips and switches amplify what the motion may be off until nothing can be decided.
     TooMuchWorkError
         If there are more pieces than `PIECES`; see `most_pieces`.
     """
@@ -199,21 +211,39 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 50:
         raise ValueError(f"digits: must be at least 50, got {digits!r}")
-    found: list[Piece] = []
-    switches = 0
-    precision = digits + _lost(problem, end)
-    with working(precision):
+    while True:
+        try:
+            motion = _solved(problem, float(end), digits, limit)
+            if motion.radius <= PROMISED * end:
+                return motion
+            lost = LostDigitsError(motion.switches[0].time, f"{len(motion.switches)} switches have cost the digits")
+        except LostDigitsError as error:
+            lost = error
+        if digits >= MOST_DIGITS:
+            raise lost
+        digits = min(2 * digits, MOST_DIGITS)
+
+
+def _solved(problem: BarProblem, end: float, digits: int, limit: int) -> BarMotion:
+    """The motion in so many digits."""
+    done: list[Piece] = []
+    touches: list[arb] = []
+    switches: list[Switch] = []
+    with precision(bits_of(digits)):
         units = Units.of(problem)
-        for piece in pieces(units, Decimal(end) / units.travel):
-            switches += bool(found) and piece.closed != found[-1].closed
-            found.append(piece)
-            if switches > limit:
-                raise TooManySwitchesError(float(piece.start * units.travel), f"more than {limit} switches")
-            if len(found) > PIECES:
+        for piece in pieces(units, arb(end) / units.travel, touches):
+            time = piece.start * units.travel
+            if done and piece.closed != done[-1].closed:
+                kind = "closes" if piece.closed else "opens"
+                switches.append(Switch(float(time), "base", kind, time.mid().str(40, radius=False), radius_of(time)))
+            done.append(piece)
+            if len(switches) > limit:
+                raise TooManySwitchesError(float(time), f"more than {limit} switches")
+            if len(done) > PIECES:
                 count = f"up to {most_pieces(problem, end):.3g} pieces until {end:g} s, of which {PIECES} are the limit"
-                raise TooMuchWorkError(float(piece.start * units.travel), f"a stiff base opens and closes in {count}")
-        changes = tuple(_switches(found, units.travel))
-    return BarMotion(problem, float(end), precision, found[0].closed, changes, tuple(found))
+                raise TooMuchWorkError(float(time), f"a stiff base opens and closes in {count}")
+        near = tuple(float(touch * units.travel) for touch in touches)
+    return BarMotion(problem, end, digits, done[0].closed, tuple(switches), tuple(done), near)
 
 
 def most_pieces(problem: BarProblem, end: float) -> float:
@@ -224,19 +254,3 @@ def most_pieces(problem: BarProblem, end: float) -> float:
     every round trip, (2/3) n^3 pieces follow by the n-th front.
     """
     return 2 / 3 * (end / problem.travel / FRONT + 1) ** 3
-
-
-def _lost(problem: BarProblem, end: float) -> int:
-    """Digits that cancel.
-
-    Measured over 100 round trips: up to 11 where the spring is stiff, and two for each decade of a soft
-    spring's 1 / kappa, by which integration divides; both are taken larger.
-    """
-    trips = end / problem.travel / 2
-    return math.ceil(10 + trips / 4 + 2.5 * max(0.0, -math.log10(problem.kappa)))
-
-
-def _switches(pieces: list[Piece], travel: Decimal) -> Iterator[Switch]:
-    for before, after in pairwise(pieces):
-        if before.closed != after.closed:
-            yield Switch(float(after.start * travel), "base", "closes" if after.closed else "opens")

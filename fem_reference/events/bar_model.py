@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from decimal import Decimal
+
+from flint import arb
 
 POSITIVE = ("height", "width", "density", "young", "base_stiffness")
 
@@ -56,30 +57,30 @@ class BarProblem:
 class Units:
     """The data in m/s and travel times."""
 
-    travel: Decimal  # H / c [s]
-    impedance: Decimal  # Z = rho c [Pa s/m]
-    kappa: Decimal  # k H / (E W) [-]
-    q: Decimal  # q / Z [m/s]
-    b: Decimal  # b H / c [m/s]
-    gap: Decimal  # g0 c / H [m/s]
-    V: Decimal  # initial velocity [m/s]
+    travel: arb  # H / c [s]
+    impedance: arb  # Z = rho c [Pa s/m]
+    kappa: arb  # k H / (E W) [-]
+    q: arb  # q / Z [m/s]
+    b: arb  # b H / c [m/s]
+    gap: arb  # g0 c / H [m/s]
+    V: arb  # initial velocity [m/s]
 
     @classmethod
     def of(cls, bar: BarProblem) -> Units:
-        """Units of a bar in the precision of the current decimal context."""
-        H, rho, E = Decimal(bar.height), Decimal(bar.density), Decimal(bar.young)
+        """Units of a bar in the precision of the current context."""
+        H, rho, E = arb(bar.height), arb(bar.density), arb(bar.young)
         c = (E / rho).sqrt()
         return cls(
             travel=H / c,
             impedance=rho * c,
-            kappa=Decimal(bar.base_stiffness) * H / (E * Decimal(bar.width)),
-            q=Decimal(bar.pressure) / (rho * c),
-            b=Decimal(bar.gravity) * H / c,
-            gap=Decimal(bar.gap) * c / H,
-            V=Decimal(bar.velocity),
+            kappa=arb(bar.base_stiffness) * H / (E * arb(bar.width)),
+            q=arb(bar.pressure) / (rho * c),
+            b=arb(bar.gravity) * H / c,
+            gap=arb(bar.gap) * c / H,
+            V=arb(bar.velocity),
         )
 
     @property
-    def scale(self) -> Decimal:
+    def scale(self) -> arb:
         """Size of the velocities [m/s]."""
-        return max(abs(self.q), abs(self.b), self.gap, abs(self.V))
+        return arb(max(float(abs(size)) for size in (self.q, self.b, self.gap, self.V)))

@@ -17,31 +17,33 @@ releases the energy T^2 / (2 p_s) of its spring.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from flint import arb, arb_mat
+from numpy.typing import ArrayLike
 
-from fem_reference.events.block_flow import ANGLE, FLOAT_TERMS, ROUNDING
-from fem_reference.events.block_march import March, Node
-from fem_reference.events.block_model import OPEN, RIGHT, STICKS, BlockModel, BlockProblem, Course
+from fem_reference.events.block_flow import to_floats
+from fem_reference.events.block_march import March, Node, difference, radii_of
+from fem_reference.events.block_model import OPEN, RIGHT, BlockModel, BlockProblem, Course
 from fem_reference.events.block_switching import Flows
-from fem_reference.events.enclosure import working
+from fem_reference.events.enclosure import bits_of, precision
 from fem_reference.events.switches import LostDigitsError, Switch
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 60
+DIGITS = 50
 """Decimal digits of the first computation."""
 MOST_DIGITS = 240
 """Decimal digits of the last one, where switches cost those of the ones before."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-CHUNK = 2000
-"""Instants that are computed together."""
-Places = NDArray[np.intp]
+_UNKNOWNS = np.zeros((6, 6))
+"""From (u, v, ux, uy, vx, vy) to (u, v, r, ex, ey, gxy)."""
+_UNKNOWNS[range(6), [0, 1, 4, 2, 5, 3]] = [1, 1, 0.5, 1, 1, 1]
+_UNKNOWNS[[2, 5], [3, 4]] = -0.5, 1
+ROUNDING = 4 * np.finfo(float).eps
+"""Part of a displacement by which floats round it."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ class BlockMotion:
     switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
+    flows: Flows = field(repr=False, compare=False)  # of the states of the corners
 
     @property
     def radius(self) -> float:
@@ -99,45 +102,6 @@ class BlockMotion:
             corners.setdefault(switch.midpoint, set()).add(switch.corner)
         return tuple(float(time) for time, both in corners.items() if len(both) == 2)
 
-    @cached_property
-    def _flows(self) -> Flows:
-        with working(DIGITS):
-            return Flows(BlockModel(self.problem))
-
-    @cached_property
-    def _matrices(self) -> tuple[Array, Array, Array]:
-        model = self._flows.model
-        mass, load = (np.array([float(x) for x in part]) for part in (model.mass, model.load))
-        return mass, np.array([[float(x) for x in row] for row in model.elastic]), load
-
-    @cached_property
-    def _starts(self) -> Array:
-        return np.array([node.start[0] for node in self.nodes])
-
-    @cached_property
-    def _gathered(self) -> Stacked:
-        return Stacked(self.nodes)
-
-    @cached_property
-    def _spent(self) -> Array:
-        """Energy lost by friction and work of the base until each node [J], shape (2, nodes)."""
-        lengths = np.append(self._starts[1:], self.end) - self._starts
-        gains = np.zeros((2, len(self.nodes)))
-        for part in self._series(np.arange(len(self.nodes))):
-            gains[:, part.index] = part.spent(lengths[part.index])
-        return np.hstack([np.zeros((2, 1)), np.cumsum(gains, axis=1)[:, :-1]])
-
-    def _series(self, nodes: Places) -> Iterator[StepSeries]:
-        """The series of some nodes, those of one state of the corners together, at most `CHUNK` at once."""
-        gathered = self._gathered
-        keys = gathered.keys[nodes]
-        for key in np.unique(keys):
-            places = np.flatnonzero(keys == key)
-            for first in range(0, len(places), CHUNK):
-                chunk = places[first : first + CHUNK]
-                with working(DIGITS):
-                    yield StepSeries(self._flows, gathered, nodes[chunk], chunk)
-
     def at(self, times: ArrayLike) -> BlockHistory:
         """The motion at instants in any order.
 
@@ -147,130 +111,62 @@ class BlockMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        x, rate, rest, radius = (np.empty((count, len(t))) for count in (12, 12, 7, 6))
-        nodes = np.searchsorted(self._starts, t, side="right") - 1
-        for part in self._series(nodes):
-            here = part.index
-            s = (t[here] - part.start[0]) - part.start[1]
-            x[:, here], rate[:, here], radius[:, here] = part.values(s)
-            rest[:5, here] = part.contacts(x[:, here])
-            rest[5:, here] = self._spent[:, nodes[here]] + part.spent(s)
-        return self._history(t, x, rate, rest, radius)
-
-    def _history(self, t: Array, x: Array, rate: Array, rest: Array, radius: Array) -> BlockHistory:
-        mass, elastic, load = self._matrices
+        nodes = np.searchsorted([float(node.start) for node in self.nodes], t, side="right") - 1
+        with precision(bits_of(self.digits)):
+            reports = [self._report(self.nodes[node], arb(time)) for node, time in zip(nodes, t.tolist(), strict=True)]
+            model = self.flows.model
+            mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
+        rows = np.array(reports).reshape(len(t), 38).T
+        x, rate, radius, slipped, losses, states = np.split(rows, [12, 24, 30, 32, 36])
         p, ps = self.problem.stiffness, self.problem.shear_stiffness
-        closed = np.asarray(rest[:2] != OPEN, dtype=float)
+        closed = np.asarray(states != OPEN, dtype=float)
         N = -p * x[6:8] if self.problem.locked else closed * np.maximum(0.0, -p * x[6:8])
         T = 0.0 - ps * x[8:10]
         return BlockHistory(
             time=t,
-            displacement=_unknowns(x),
-            velocity=_unknowns(rate),
+            displacement=_UNKNOWNS @ x[:6],
+            velocity=_UNKNOWNS @ rate[:6],
             gap=x[6:8],
             gap_velocity=rate[6:8],
             normal_force=N,
             shear_force=T,
             slide=x[10:12],
-            slipped=rest[2:4],
-            states=rest[:2],
+            slipped=slipped,
+            states=states,
             closed=closed,
             contact_pressure=N.sum(axis=0) / self.problem.width,
             kinetic=mass @ rate[:6] ** 2 / 2,
-            strain=np.einsum("it,ij,jt->t", x[:6], elastic, x[:6]) / 2,
+            strain=losses[3],
             springs=(N**2 / p - T * x[8:10]).sum(axis=0) / 2,
-            load=-load @ x[:6] - rest[6],
-            released=rest[4],
-            friction=rest[5],
-            displacement_radius=radius,
+            load=-load @ x[:6] - losses[2],
+            released=losses[0],
+            friction=losses[1],
+            displacement_radius=abs(_UNKNOWNS) @ radius,
         )
 
-
-def _unknowns(x: Array) -> Array:
-    """(u, v, r, ex, ey, gxy) of the first six rows u, v, ux, uy, vx, vy."""
-    u, v, ux, uy, vx, vy = x[:6]
-    return np.array([u, v, (vx - uy) / 2, ux, vy, uy + vx])
-
-
-class Stacked:
-    """The nodes of a motion as arrays, one column a node."""
-
-    def __init__(self, nodes: tuple[Node, ...]) -> None:
-        self.states = np.array([node.states for node in nodes], dtype=float).T
-        self.keys = 10 * self.states[0] + self.states[1]
-        self.start = np.array([node.start for node in nodes]).T
-        self.values = np.array([node.values for node in nodes]).T
-        self.radius = np.array([node.radius for node in nodes]).T
-        self.base = np.array([node.base for node in nodes]).T
-        self.references = np.array([node.references for node in nodes]).T
-        self.slipped = np.array([node.slipped for node in nodes]).T
-        self.released = np.array([node.released for node in nodes])
-
-
-class StepSeries:
-    """Power series of what is reported, in floats, from nodes in one state of the corners."""
-
-    def __init__(self, flows: Flows, stacked: Stacked, nodes: Places, index: Places) -> None:
-        self.index = index  # places of the nodes among those that were asked for
-        states = stacked.states[:, nodes[0]]
-        self.flow = flows[int(states[0]), int(states[1])]
-        self.scale = ANGLE / self.flow.rate
-        self.start, self.states = stacked.start[:, nodes], stacked.states[:, nodes]
-        self.slipped, self.released = stacked.slipped[:, nodes], stacked.released[nodes]
-        self.references, self.base = stacked.references[:, nodes], stacked.base[:, nodes]
-        table = np.einsum("ij,kjl->kil", self.flow.outputs, self.flow.powers(self.scale))
-        self.c = table @ stacked.values[:, nodes]  # over (s / scale)^k, shape (terms, 12, nodes)
-        # Where vx is zero throughout, w_M is w_N to the last bit. Zero rates at the node are not enough: a base that
-        # begins to move, or a slope, turns the block by its third and higher derivatives.
-        level = ~self.c[:, 4].any(axis=0)
-        self.c[:, 7, level] = self.c[:, 6, level]
-        self.c[0, 8:10] += self.flow.stretched[:, None]
-        for corner in (0, 1):
-            if self.states[corner, 0] == STICKS:
-                self.c[0, 10 + corner] += self.references[corner]
-        for row, (place, speed) in enumerate(((0, 2), (1, 3))):
-            self.c[0, row] += self.base[place]
-            self.c[1, row] += self.base[speed] * self.scale
-        J = np.abs(self.flow.jacobian(self.scale))[:6] + np.eye(14)[:6]
-        self.radius = J @ stacked.radius[:, nodes]
-
-    def values(self, s: Array) -> tuple[Array, Array, Array]:
-        """Unknowns, gaps, stretches s - r and slides, their rates, and radii of the displacements."""
-        z = s / self.scale
-        value, rate, size = self.c[-1].copy(), np.zeros_like(self.c[0]), np.abs(self.c[-1, :6])
-        for k in range(FLOAT_TERMS - 2, -1, -1):
-            rate = rate * z + value
-            value = value * z + self.c[k]
-            size = size * z + np.abs(self.c[k, :6])
-        u, v, ux, uy, vx, vy = self.radius + ROUNDING * size
-        return value, rate / self.scale, np.array([u, v, (vx + uy) / 2, ux, vy, uy + vx])
-
-    def contacts(self, values: Array) -> Array:
-        """States, movements of the references, energies lost by opening, shape (5, nodes)."""
-        slipping = np.abs(self.states) == RIGHT
-        moved = slipping * (values[10:12] - values[8:10] - self.references)
-        return np.vstack([self.states, self.slipped + moved, self.released])
-
-    def spent(self, s: Array) -> Array:
-        """Energy lost by friction and work of the base from the nodes on [J], shape (2, nodes)."""
-        z, count = s / self.scale, 2 * FLOAT_TERMS
-        total = np.zeros((2, count, len(z)))
-        k = np.arange(1, FLOAT_TERMS)[:, None]
-        p, ps = float(self.flow.model.p), float(self.flow.model.ps)
-        for c in (0, 1):
-            stretch, gap = self.c[:, 8 + c], self.c[:, 6 + c]
-            if abs(self.flow.states[c]) == RIGHT:  # the integral of -T r', T = -p_s (s - r)
-                moved = (self.c[:, 10 + c] - stretch)[1:] * k
-                for i in range(FLOAT_TERMS):
-                    total[0, i + 1 : i + FLOAT_TERMS] += ps * stretch[i] * moved
-            if self.flow.states[c] != OPEN:  # the integral of N y' + T x'
-                power = -p * gap * self.base[3] - ps * stretch * self.base[2]
-                total[1, 1 : FLOAT_TERMS + 1] += power * self.scale
-        result, power = np.zeros((2, len(z))), np.ones_like(z)
-        for i in range(1, count):
-            power = power * z
-            result += total[:, i] * power / i
-        return result
+    def _report(self, node: Node, time: arb) -> list[float]:
+        """What is reported at an instant that follows a node: `Flow.outputs`, radii, slips, losses and states."""
+        flow = self.flows[node.states]
+        s = difference(time, node.start)
+        z, J = flow.advance(node.z, s)
+        outputs = (flow.outputs * z).entries()
+        values = [float(entry) for entry in outputs]
+        base, passed = node.base, time - node.row_time
+        for i, (place, rate) in enumerate(((base.x, base.vx), (base.y - self.problem.gap, base.vy))):
+            values[i] = float(outputs[i] + place + rate * passed)
+            values[12 + i] = float(outputs[12 + i] + rate)
+        radius = (np.abs(J) @ node.radius + radii_of(z))[:6] + ROUNDING * np.abs(values[:6])
+        slipped = [
+            float(node.slipped[c] + (flow.references[c] * z)[0, 0] - node.z[12 + c, 0])
+            if abs(node.states[c]) == RIGHT
+            else float(node.slipped[c])
+            for c in (0, 1)
+        ]
+        friction = node.friction + flow.energy(node.z) - flow.energy(z) if flow.dissipates else node.friction
+        work = node.work + flow.model.base_work(node.base, node.z, z, s)
+        x = arb_mat([z.entries()[:6]])
+        strain = (x * (arb_mat(flow.model.elastic) * x.transpose()))[0, 0] / 2
+        return [*values, *radius, *slipped, *map(float, (node.released, friction, work, strain)), *node.states]
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
@@ -307,7 +203,7 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         raise ValueError(f"digits: must be at least 30, got {digits!r}")
     while True:
         try:
-            with working(digits):
+            with precision(bits_of(digits)):
                 march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
                 march.run(problem.velocity)
         except LostDigitsError:
@@ -321,7 +217,7 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         digits = min(2 * digits, max(digits, MOST_DIGITS))
     start = (march.closed_at_start[0], march.closed_at_start[1])
     touches, nodes = tuple(march.touches), tuple(march.nodes)
-    return BlockMotion(problem, float(end), digits, start, tuple(march.switches), touches, nodes)
+    return BlockMotion(problem, float(end), digits, start, tuple(march.switches), touches, nodes, march.flows)
 
 
 def _last_good(march: March) -> float:

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -148,18 +149,29 @@ class Course:
         return index, Base(row.x + row.vx * passed, row.y + row.vy * passed, row.vx, row.vy)
 
 
+def row(x: Sequence[arb | int] = (0,) * 6, one: arb | int = 0) -> arb_mat:
+    """A function of z = (x, x', r, 1), see `BlockModel`, from its weights over the unknowns and its constant part."""
+    return arb_mat([[arb(entry) for entry in (*x, *[0] * 8, one)]])
+
+
 class BlockModel:
-    """Matrices of a block in the unknowns (u, v, ux, uy, vx, vy), in the precision of the current context."""
+    """A block in the unknowns x = (u, v, ux, uy, vx, vy), in the precision of the current context.
+
+    Functions are rows over z = (x, x', r, 1), r being the references of both corners.
+    """
 
     def __init__(self, problem: BlockProblem) -> None:
         a, b = arb(problem.width), arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
         self.mass = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
-        self.height = problem.height  # b [m]
-        # gap and slide of each corner, as rows over the unknowns [-, m]
+        # gap and slide of each corner over the unknowns [-, m]
         self.normal = [[arb(0), arb(1), arb(0), arb(0), x, -b / 2] for x in (-a / 2, a / 2)]
         self.shear = [[arb(1), arb(0), x, -b / 2, arb(0), arb(0)] for x in (-a / 2, a / 2)]
+        self.gaps = [row(weights) for weights in self.normal]  # w [m]
+        self.slides = [row(weights) for weights in self.shear]  # s [m]
+        references = [arb_mat([[arb(int(j == 12 + c)) for j in range(15)]]) for c in (0, 1)]
+        self.stuck = [slide - r for slide, r in zip(self.slides, references, strict=True)]  # s - r [m]
         self.p = arb(problem.stiffness)  # normal stiffness of a corner [N/m]
         self.ps = arb(problem.shear_stiffness)  # shear stiffness of a corner [N/m]
         # tan(phi) of the doubles that DDA computes with too; None: a closed corner never slips
@@ -167,18 +179,33 @@ class BlockModel:
         self.cohesion = a * arb(problem.cohesion) / 2  # of a corner [N]
         self.elastic = _elastic(problem, a * b)  # stiffness of the strained block [N/m, N m]
         self.load = _load(problem, a, b, m)  # loads of pressure, traction and weight [N, N m]
+        self.readings, self.readings_inverse = self._readings()
 
-    @cached_property
+    @property
     def friction(self) -> arb:
         """tan(phi) of a corner that can slip, else 0."""
         return arb(0) if self.tan is None else self.tan
 
-    def accelerations(self, states: States) -> tuple[arb_mat, arb_mat, arb_mat]:
-        """The B, f and R of x'' = f + R r - B x with the springs of the closed corners; B need not be symmetric.
+    @cached_property
+    def reserves(self) -> dict[tuple[int, int], arb_mat]:
+        """What a corner that sticks can carry before it slips, tan(phi) N + C - sign T, by corner and sign [N]."""
+        limits = [gap * (-self.friction * self.p) + row(one=self.cohesion) for gap in self.gaps]
+        return {(c, sign): limits[c] + self.stuck[c] * (sign * self.ps) for c in (0, 1) for sign in (1, -1)}
 
-        r are the references of both corners, which count where a corner sticks.
+    def base_work(self, base: Base, z: arb_mat, later: arb_mat, time: arb) -> arb:
+        """Work of an evenly moving base from one state to a later one: what the springs add to the momentum [J]."""
+        if base.vx == 0 and base.vy == 0:
+            return arb(0)
+        m, load = self.mass[0], self.load
+        along, upwards = (m * (later[6 + i, 0] - z[6 + i, 0]) - load[i] * time for i in (0, 1))
+        return base.vx * along + base.vy * upwards
+
+    def generator(self, states: States) -> arb_mat:
+        """The G of z' = G z with the springs of the closed corners, shape (15, 15).
+
+        x'' = f + R r - B x, where B need not be symmetric; the reference of a corner counts where it sticks.
         """
-        K = [list(row) for row in self.elastic]
+        K = [list(line) for line in self.elastic]
         F, R = list(self.load), [[arb(0), arb(0)] for _ in range(6)]
         for c, state in enumerate(states):
             n, s = self.normal[c], self.shear[c]
@@ -190,10 +217,25 @@ class BlockModel:
                     direction = n[i] + sigma(state) * self.friction * s[i]
                     K[i] = [K[i][j] + self.p * direction * n[j] for j in range(6)]
                     F[i] = F[i] + sigma(state) * self.cohesion * s[i]
-        m = self.mass
-        B = arb_mat([[K[i][j] / m[i] for j in range(6)] for i in range(6)])
-        f = arb_mat([[F[i] / m[i]] for i in range(6)])
-        return B, f, arb_mat([[R[i][c] / m[i] for c in (0, 1)] for i in range(6)])
+        zero = arb(0)
+        G = [[zero] * 15 for _ in range(15)]
+        for i, m in enumerate(self.mass):
+            G[i][6 + i] = arb(1)
+            G[6 + i] = [-K[i][j] / m for j in range(6)] + [zero] * 6 + [R[i][0] / m, R[i][1] / m, F[i] / m]
+        return arb_mat(G)
+
+    def _readings(self) -> tuple[arb_mat, arb_mat]:
+        """Z as gaps, stretches s - r, uy, vy, the rates of these, r and 1, and back.
+
+        They hold what the forces of stiff corners depend on, which floats of the unknowns would lose.
+        """
+        over = [*self.normal, *self.shear, *([arb(int(i == j)) for j in range(6)] for i in (3, 5))]
+        lines = [row(weights).entries() for weights in over]
+        lines += [[arb(0)] * 6 + line[:9] for line in lines]
+        lines += [[arb(int(i == j)) for j in range(15)] for i in (12, 13, 14)]
+        lines[2], lines[3] = (stuck.entries() for stuck in self.stuck)
+        readings = arb_mat(lines)
+        return readings, readings.inv()
 
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:

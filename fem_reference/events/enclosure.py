@@ -21,25 +21,19 @@ NEWTON_STEPS = 200
 
 
 @contextmanager
-def working(digits: float) -> Iterator[None]:
-    """Ball arithmetic of so many decimal digits, whatever the caller's own precision is."""
+def precision(bits: int) -> Iterator[None]:
+    """Ball arithmetic of so many bits, whatever the caller's own precision is."""
     before = ctx.prec
-    ctx.prec = int(digits * BITS_A_DIGIT) + GUARD_BITS
+    ctx.prec = bits
     try:
         yield
     finally:
         ctx.prec = before
 
 
-@contextmanager
-def exact_sums() -> Iterator[None]:
-    """Four times the current precision, in which sums and differences of instants are exact."""
-    before = ctx.prec
-    ctx.prec = 4 * before
-    try:
-        yield
-    finally:
-        ctx.prec = before
+def bits_of(digits: float) -> int:
+    """The bits in which so many decimal digits are computed."""
+    return int(digits * BITS_A_DIGIT) + GUARD_BITS
 
 
 def ball(radius: arb | float) -> arb:
@@ -62,7 +56,7 @@ class Local(NamedTuple):
 
     value: arb  # at the middle
     slope: arb  # at the middle
-    bend: arb  # encloses the second derivative over the interval
+    bend: arb  # encloses the second derivative over the interval, unless this is a point
 
 
 Smooth = Callable[[arb, arb], Local]
@@ -76,19 +70,18 @@ class Fall(NamedTuple):
     grazing: bool  # whether it was too flat to prove that the root is the only one
 
 
-class Polynomial:
+def polynomial(coefficients: list[arb], end: arb) -> Smooth:
     """A polynomial with balls for coefficients, on an interval from zero to `end`."""
+    value = arb_poly(coefficients)
+    slope = value.derivative()
+    bend = slope.derivative()
+    third = arb_poly([abs(c) for c in bend.derivative().coeffs()])(end)  # bounds the third derivative
 
-    def __init__(self, coefficients: list[arb], end: arb) -> None:
-        self.value = arb_poly(coefficients)
-        self.slope = self.value.derivative()
-        self.bend = self.slope.derivative()
-        third = self.bend.derivative()
-        self.third = arb_poly([abs(c) for c in third.coeffs()])(end)  # bounds the third derivative
+    def local(middle: arb, half: arb) -> Local:
+        about = bend(middle) + ball((third * half).upper()) if half else third
+        return Local(value(middle), slope(middle), about)
 
-    def __call__(self, middle: arb, half: arb) -> Local:
-        """The polynomial about the middle of an interval."""
-        return Local(self.value(middle), self.slope(middle), self.bend(middle) + ball((self.third * half).upper()))
+    return local
 
 
 def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> Fall | None:

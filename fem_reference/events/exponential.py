@@ -1,186 +1,107 @@
-"""Polynomials plus a decaying exponential times polynomials, and where such a sum first falls through zero.
+"""Polynomials plus a decaying exponential times polynomials in ball arithmetic, and where such a sum first falls.
 
-Waves on a bar with a spring at its end are such functions, f(s) = P(s) + exp(-kappa s) Q(s). With
-D f = f' + kappa f = exp(-kappa s) (exp(kappa s) f)', the sequence f, D f, D D f, ... ends, after one more step
-than the degree of Q, in a polynomial, and goes on with its derivatives. Between two zeros of any member lies
-one of the next, so that the theorem of Budan and Fourier holds as for polynomials: with V(s) the changes of
-sign along the sequence, f has at most V(a) - V(b) zeros in (a, b], and differs from it by an even number. No
-crossing is missed.
+Waves on a bar with a spring at its end are such functions, f(s) = P(s) + exp(-kappa s) Q(s).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from decimal import Decimal
-from itertools import pairwise, zip_longest
 
-from fem_reference.events.decimals import ZERO, root
+from flint import arb, arb_poly
 
-Coefficients = tuple[Decimal, ...]
+from fem_reference.events.enclosure import Fall, Local, ball, first_fall, is_blank
 
-NOISE = Decimal("1e-40")
-"""Part of its terms below which a sum counts as zero."""
-FINEST = Decimal("1e-30")
-"""Part of an interval below which two crossings are one touch."""
+NOTHING = arb_poly([])
+NOISE_BITS = 130
+"""Bits after which a term counts as zero, of the size of the velocities and of the power of the decay rate."""
 
 
 @dataclass(frozen=True)
 class Exponential:
     """P(s) + exp(-kappa s) Q(s); a function of the time s since a piece began."""
 
-    kappa: Decimal  # decay rate, positive
-    P: Coefficients  # coefficients of 1, s, s^2, ...
-    Q: Coefficients = ()  # coefficients of 1, s, s^2, ... beside the exponential
+    kappa: arb  # decay rate, positive
+    P: arb_poly
+    Q: arb_poly = NOTHING
 
     def __add__(self, other: Exponential) -> Exponential:
-        return Exponential(self.kappa, _sum(self.P, other.P), _sum(self.Q, other.Q))
+        return Exponential(self.kappa, self.P + other.P, self.Q + other.Q)
 
-    def __mul__(self, factor: Decimal) -> Exponential:
-        return Exponential(self.kappa, tuple(factor * x for x in self.P), tuple(factor * x for x in self.Q))
+    def __mul__(self, factor: arb | int) -> Exponential:
+        return Exponential(self.kappa, self.P * factor, self.Q * factor)
 
-    def plus(self, *P: Decimal) -> Exponential:
+    def plus(self, *P: arb) -> Exponential:
         """The function with a polynomial added."""
-        return Exponential(self.kappa, _sum(self.P, P), self.Q)
+        return Exponential(self.kappa, self.P + arb_poly([*P]), self.Q)
 
-    def __call__(self, s: Decimal) -> Decimal:
+    def __call__(self, s: arb) -> arb:
         """Value."""
-        decaying = (-self.kappa * s).exp() * _value(self.Q, s) if self.Q else ZERO
-        return _value(self.P, s) + decaying
+        return self.P(s) + (-self.kappa * s).exp() * self.Q(s)
 
     def derivative(self) -> Exponential:
         """Derivative P' + exp(-kappa s) (Q' - kappa Q)."""
-        return Exponential(
-            self.kappa, _derivative(self.P), _sum(_derivative(self.Q), tuple(-self.kappa * x for x in self.Q))
-        )
+        return Exponential(self.kappa, self.P.derivative(), self.Q.derivative() - self.Q * self.kappa)
 
-    def shifted(self, s: Decimal) -> Exponential:
+    def shifted(self, s: arb) -> Exponential:
         """The function of the time since s."""
-        if not s:
-            return self
-        fade = (-self.kappa * s).exp() if self.Q else ZERO
-        return Exponential(self.kappa, _shifted(self.P, s), tuple(fade * x for x in _shifted(self.Q, s)))
+        later = arb_poly([s, 1])
+        return Exponential(self.kappa, self.P(later), self.Q(later) * (-self.kappa * s).exp())
 
-    def integral(self, start: Decimal) -> Exponential:
+    def integral(self, start: arb) -> Exponential:
         """Antiderivative with the value `start` at zero; beside the exponential S' - kappa S = Q."""
-        S: list[Decimal] = []
-        above = ZERO
-        for k in range(len(self.Q) - 1, -1, -1):
-            above = ((k + 1) * above - self.Q[k]) / self.kappa
-            S.insert(0, above)
-        P = (start - (S[0] if S else ZERO), *(x / (k + 1) for k, x in enumerate(self.P)))
-        return Exponential(self.kappa, P, tuple(S))
+        S = _particular(self.Q, -self.kappa)
+        return Exponential(self.kappa, self.P.integral() + (start - S[0]), S)
 
-    def relaxed(self, start: Decimal) -> Exponential:
+    def relaxed(self, start: arb) -> Exponential:
         """The w with w' + kappa w = f and the value `start` at zero; beside the exponential R' = Q."""
-        P: list[Decimal] = []
-        above = ZERO
-        for k in range(len(self.P) - 1, -1, -1):
-            above = (self.P[k] - (k + 1) * above) / self.kappa
-            P.insert(0, above)
-        first = start - (P[0] if P else ZERO)
-        return Exponential(self.kappa, tuple(P), (first, *(x / (k + 1) for k, x in enumerate(self.Q))))
+        P = _particular(self.P, self.kappa)
+        return Exponential(self.kappa, P, self.Q.integral() + (start - P[0]))
 
-    def without_noise(self, scale: Decimal) -> Exponential:
-        """The function without what rounding has left of polynomial terms that cancel."""
-        P = [x if abs(x) > NOISE * scale else ZERO for x in self.P]
-        while P and not P[-1]:
-            P.pop()
-        return Exponential(self.kappa, tuple(P), self.Q)
+    def without_noise(self, scale: arb) -> Exponential:
+        """The function without the terms that rounding has left of what cancels, which count as zero."""
+        parts = []
+        for part, rate in ((self.P, arb(1)), (self.Q, self.kappa)):
+            coefficients = part.coeffs()
+            for k, c in enumerate(coefficients):
+                if c.contains(0) and abs(c) < scale * arb(2) ** -NOISE_BITS * rate**k:
+                    coefficients[k] = arb(0)
+            parts.append(arb_poly(coefficients))
+        return Exponential(self.kappa, *parts)
 
     def first_sign(self) -> int:
         """Sign just after zero, 0 for the zero function."""
-        signs = [x for x in self._sequence() if x]
-        return signs[0] if signs else 0
+        function = self
+        for _ in range(self.P.length() + self.Q.length() + 1):
+            value = function.P[0] + function.Q[0]
+            if not is_blank(value):
+                return 1 if value > 0 else -1
+            function = function.derivative()
+        return 0
 
-    def first_fall(self, end: Decimal) -> Decimal | None:
+    def first_fall(self, end: arb, touches: list[arb] | None = None) -> Fall | None:
         """The first s in (0, end] at which the function falls through zero, None if it does not.
 
-        The function is positive just after zero. An interval is passed over if the theorem allows no
-        zero in it, or if its slope is too small for one.
+        The function is positive just after zero; see `enclosure.first_fall`.
         """
-        pending = [(self._node(ZERO), self._node(end))]
-        while pending:
-            low, high = pending.pop()
-            bound, length = low.changes - high.changes, high.at - low.at
-            fine = length < FINEST * end
-            if high.here.start < 0 and (bound <= 1 or fine):
-                return self._crossing(low.at, high.at)
-            if bound > 0 and not fine and low.here.start <= length * low.here.steepest(length):
-                middle = self._node((low.at + high.at) / 2)
-                pending += [(middle, high), (low, middle)]
-        return None
+        function = self
+        if self.P.length() == 0:  # the exponential, which may be smaller than any number, has no zero
+            function = Exponential(self.kappa, self.Q)
+        if function.P.length() + function.Q.length() == 0:
+            return None
+        slope = function.derivative()
+        bend = slope.derivative()
 
-    def _node(self, s: Decimal) -> Node:
-        here = self.shifted(s)
-        return Node(s, here, here.changes())
+        def local(middle: arb, half: arb) -> Local:
+            return Local(function(middle), slope(middle), bend(middle + ball(half)))
 
-    def _crossing(self, low: Decimal, high: Decimal) -> Decimal:
-        slope = self.derivative()
-        return root(lambda s: (self(s), slope(s)), low, high)
-
-    @property
-    def start(self) -> Decimal:
-        """Value at zero."""
-        return (self.P[0] if self.P else ZERO) + (self.Q[0] if self.Q else ZERO)
-
-    def steepest(self, length: Decimal) -> Decimal:
-        """Bound of |f'| from zero to a length."""
-        slope = self.derivative()
-        return _value(tuple(map(abs, slope.P)), length) + _value(tuple(map(abs, slope.Q)), length)
-
-    def changes(self) -> int:
-        """Changes of sign along f, D f, D D f, ... at zero."""
-        signs = [x for x in self._sequence() if x]
-        return sum(a != b for a, b in pairwise(signs))
-
-    def _sequence(self) -> Iterable[int]:
-        """Signs of f, D f, D D f, ... and of the derivatives of the last polynomial, at zero."""
-        P, factorial = self.P, Decimal(1)
-        for i, x in enumerate(self.Q):
-            factorial *= max(1, i)
-            yield _sign((P[0] if P else ZERO), factorial * x)
-            P = _sum(_derivative(P), tuple(self.kappa * x for x in P))
-        for x in P:
-            yield _sign(x, ZERO)
+        return first_fall(local, end, touches)
 
 
-@dataclass(frozen=True)
-class Node:
-    """A point of the search for a crossing."""
-
-    at: Decimal  # argument s of the function
-    here: Exponential  # the function of the argument since s
-    changes: int  # its changes of sign
-
-
-def _sign(a: Decimal, b: Decimal) -> int:
-    """Sign of a + b, 0 where both cancel."""
-    total = a + b
-    if abs(total) <= NOISE * (abs(a) + abs(b)):
-        return 0
-    return 1 if total > 0 else -1
-
-
-def _sum(a: Coefficients, b: Coefficients) -> Coefficients:
-    return tuple(x + y for x, y in zip_longest(a, b, fillvalue=ZERO))
-
-
-def _value(a: Coefficients, s: Decimal) -> Decimal:
-    total = ZERO
-    for x in reversed(a):
-        total = total * s + x
-    return total
-
-
-def _derivative(a: Coefficients) -> Coefficients:
-    return tuple(k * x for k, x in enumerate(a))[1:]
-
-
-def _shifted(a: Coefficients, s: Decimal) -> Coefficients:
-    """Coefficients about s, by repeated synthetic division."""
-    c = list(a)
-    for i in range(len(c) - 1):
-        for k in range(len(c) - 2, i - 1, -1):
-            c[k] += s * c[k + 1]
-    return tuple(c)
+def _particular(G: arb_poly, kappa: arb) -> arb_poly:
+    """The polynomial w with w' + kappa w = G."""
+    w: list[arb] = []
+    above = arb(0)
+    for k in range(G.length() - 1, -1, -1):
+        above = (G[k] - (k + 1) * above) / kappa
+        w.insert(0, above)
+    return arb_poly(w)

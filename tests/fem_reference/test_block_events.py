@@ -190,7 +190,7 @@ def test_impulse_and_momentum(seed: int) -> None:
     end = 8 * travel(problem)
     motion = solve(problem, end)
     node, weight = np.polynomial.legendre.leggauss(120)
-    edges = [node.start[0] for node in motion.nodes] + [end]
+    edges = [float(node.start) for node in motion.nodes] + [end]
     impulse = np.zeros(2)
     for low, high in pairwise(edges):
         history = motion.at(low + (high - low) * (node + 1) / 2)

@@ -110,6 +110,7 @@ class Motion(Prepared):
     """A scene whose motion is found from switch to switch; nothing in it is a step, a mesh or a saving."""
 
     names: tuple[str, ...]  # of the columns
+    motion: block_events.BlockMotion | bar_events.BarMotion
 
     def __init__(self, scene: Scene, name: str) -> None:
         self.scene = scene
@@ -186,8 +187,13 @@ class Motion(Prepared):
         return Run(Outcome.COMPLETED, History(self.instants(), requested_columns), work, seconds, notes)
 
     def bounds(self) -> Iterable[str]:
-        """Yield what is proven of the motion that was run."""
-        return ()
+        """Yield the proven radius of the instants of the motion that was run, and where it came near to a switch."""
+        motion = self.motion
+        if motion.switches:
+            yield f"proven: each switch is the first, and its instant lies within {motion.radius:.1e} s of the midpoint"
+        if motion.touches:
+            times = ", ".join(f"{time:.9g}" for time in motion.touches[:SWITCHES_LISTED])
+            yield f"grazing: at {times} s a switch can be neither proven nor excluded, and none is taken"
 
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns in the order of `names`."""
@@ -213,6 +219,7 @@ class BlockMotion(Motion):
 
     names = BLOCK_COLUMNS
     motion: block_events.BlockMotion
+    radius: float  # greatest proven distance of the displacement from the true one [m]
 
     def starts_closed(self, corner: str) -> bool:
         """Whether a corner is closed just after t = 0."""
@@ -226,6 +233,7 @@ class BlockMotion(Motion):
         self.switch_events = self.motion.switches
         state = self.motion.at(self.instants())
         u, v, r = state.displacement[:3]
+        self.radius = float(state.displacement_radius[1].max())
         return (
             v,
             state.contact_pressure,
@@ -239,15 +247,10 @@ class BlockMotion(Motion):
         )
 
     def bounds(self) -> Iterable[str]:
-        """Yield the proven radii of the instants and of the displacement, and what could not be told apart."""
+        """Yield as well the proven radius of the displacement, and whether both corners switch together."""
         motion = self.motion
-        if motion.switches:
-            yield f"proven: each switch is the first, and its instant lies within {motion.radius:.1e} s of the midpoint"
-        radius = motion.at(self.instants()).displacement_radius[1].max()
-        yield f"proven: the displacement is off by at most {radius:.1e} m, of which floats round the most"
-        if motion.touches:
-            times = ", ".join(f"{time:.9g}" for time in motion.touches[:SWITCHES_LISTED])
-            yield f"grazing: at {times} s a switch can be neither proven nor excluded, and none is taken"
+        yield from super().bounds()
+        yield f"proven: the displacement is off by at most {self.radius:.1e} m, of which floats round the most"
         if motion.simultaneous:
             yield f"both corners switch within one ball {len(motion.simultaneous)} times"
 
