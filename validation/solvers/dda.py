@@ -15,7 +15,7 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import dda_limit
+from validation.solvers.blocks.closed import dda_limit, load_of
 from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -39,12 +39,10 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
     """Return the two-block model of a scene."""
     import dda
 
-    b, q = scene.block, scene.load
+    b = scene.block
     block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
     contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
-    return dda.TwoBlockModel(
-        block, contact, q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene), q.slope
-    )
+    return dda.TwoBlockModel(block, contact, load_of(scene, base_motion(scene)), b.base, b.top)
 
 
 def scheme_of(scene: Scene) -> dda.Scheme:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from validation.scenes.scene import Scene
@@ -30,6 +31,21 @@ def closed_corners(stiffness: float, shear: float) -> dda.Contact:
     return dda.Contact(stiffness, shear or FRICTIONLESS * stiffness)
 
 
+def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
+    """Return the loads of a scene, over a base that moves or not."""
+    import dda
+
+    q = scene.load
+    return dda.Load(
+        pressure=q.pressure,
+        eccentricity=q.eccentricity,
+        traction=q.traction,
+        gravity=q.gravity,
+        motion=motion,
+        slope=q.slope,
+    )
+
+
 def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """Return the block of a scene on its base with both corners closed and sticking.
 
@@ -37,10 +53,10 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """
     import dda
 
-    b, c, q = scene.block, scene.contact, scene.load
+    b, c = scene.block, scene.contact
     block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
-    loads = q.pressure or 1.0, b.base, b.top, q.eccentricity, q.traction, q.gravity, None, q.slope
-    return dda.TwoBlockModel(block, closed_corners(c.stiffness, c.shear), *loads)
+    load = replace(load_of(scene), pressure=scene.load.pressure or 1.0)
+    return dda.TwoBlockModel(block, closed_corners(c.stiffness, c.shear), load, b.base, b.top)
 
 
 def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:

@@ -15,7 +15,7 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import dda_limit, opening_frequency, opening_system_frequency
+from validation.solvers.blocks.closed import dda_limit, load_of, opening_frequency, opening_system_frequency
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, flips, naming, no_fields, opened_run
@@ -39,12 +39,11 @@ class OpeningBlock(Prepared):
 
         self.scene, self.scheme, self.full = scene, scheme, full
         self.result: dda.ContactResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
+        b, c = scene.block, scene.contact
         with naming(scene):
             block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
             law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, *friction(scene), c.rules)
-            loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block, law, *loads, b.velocity, q.slope, motion)
+            self.model = dda.UnilateralModel(block, law, load_of(scene, motion), b.base, b.top, velocity=b.velocity)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:

@@ -15,7 +15,7 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import dda_limit, rolling_frequency
+from validation.solvers.blocks.closed import dda_limit, load_of, rolling_frequency
 from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, friction
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
@@ -49,12 +49,19 @@ class RollingBlock(Prepared):
 
         self.scene, self.scheme = scene, scheme
         self.result: RollingResult | None = None
-        b, c, q = scene.block, scene.contact, scene.load
+        b, c = scene.block, scene.contact
         with naming(scene):
             block = dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
             law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, *friction(scene), c.rules)
-            load = dda.Load(q.pressure, q.eccentricity, q.traction, q.gravity, motion, q.slope)
-            self.model = RollingModel(block, law, load, b.base, b.top, math.radians(b.tilt), (0.0, b.velocity))
+            self.model = RollingModel(
+                block,
+                law,
+                load_of(scene, motion),
+                b.base,
+                b.top,
+                tilt=math.radians(b.tilt),
+                velocity=(0.0, b.velocity),
+            )
             self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
 
     def step_limit(self) -> StepLimit:
