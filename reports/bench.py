@@ -516,9 +516,10 @@ with scikit-fem and one factorisation for each set of closed nodes, with its fac
 
 ## Steps that switch
 
-Microseconds of processor time a step of one history with its set-up, the least of some runs, what numba compiles once
-not counted; the budget is what a step is allowed to take. MuJoCo and pymunk step the same box as a rigid one on a plane
-with their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
+Microseconds of processor time a step of one history with its set-up, the least of some runs; the budget is what a step
+is allowed to take. What numba compiles is not counted: for the first long history some 30 s of processor time, once an
+install, and as much again for the first one of a block that turns. MuJoCo and pymunk step the same box as a rigid one
+on a plane with their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
 
 | what | steps | switches | ours [us] | budget [us] | met | MuJoCo [us] | pymunk [us] | answers apart |
 |---|---|---|---|---|---|---|---|---|

@@ -35,12 +35,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.dense import Matrix, Vector, dot, eliminate, scale_of, zeros
 from dda.contact.unilateral import LAGGED, OPEN, SLIP, STICK, Unilateral
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Matrix = Any  # (n, n) array, or a list of lists of floats
-Vector = Any  # (n,) array, or a list of floats
 States = Any  # (n,) array, or a list of ints
 
 Flexible = Any  # `Flexibility`, or what has its fields
@@ -106,6 +105,7 @@ class Work(NamedTuple):
 
     tried: States  # (n,) states of the present solve
     saved: States  # (n,) states to compare with
+    count: States  # (2,) how many contacts are closed, and how many of them close in the step
     closed: States  # (n,) numbers of the closed contacts
     closing: States  # (n,) places among these of contacts that close in the step
     active: States  # (n,) places among these of contacts whose T is unknown
@@ -139,11 +139,6 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     )
 
 
-def zeros(*shapes: int | tuple[int, ...], dtype: type = float) -> list[Any]:
-    """Return arrays of zeros."""
-    return [np.zeros(shape, dtype=dtype) for shape in shapes]
-
-
 def at_rest(gap: Array, capacity: int) -> Contacts:
     """Return contacts without force, closed where they touch, in room for `capacity` of them."""
     state = np.zeros(capacity, dtype=np.int64)
@@ -156,7 +151,7 @@ def at_rest(gap: Array, capacity: int) -> Contacts:
 def work_for(n: int) -> Work:
     """Return room for the equations of n contacts."""
     vectors = zeros(n, n, n, n, (2 * n, 2 * n), (2 * n, n + 1), 2 * n, (n, n), (n, n), (n, 1), 2 * n, n)
-    return Work(*(zeros(n, n, n, n, n, dtype=np.int64) + vectors))
+    return Work(*(zeros(n, n, 2, n, n, n, dtype=np.int64) + vectors))
 
 
 def set_own_flexibility(paired: Matrix, own: Matrix) -> None:
@@ -462,10 +457,12 @@ def trial(
                 work.closing[closing] = closed
                 closing += 1
             closed += 1
+    work.count[0] = closed
+    work.count[1] = closing
     if closed > 0:
-        solve_forces(law, before, free, flexible, friction, closed, closing, after, work)
+        solve_forces(law, before, free, flexible, friction, after, work)
         if closing > 0:
-            find_crossings(law, before, free, flexible, friction, closed, closing, after, work)
+            find_crossings(law, before, free, flexible, friction, after, work)
     for i in range(n):
         after.stretch[i] = 0.0 - after.shear[i] * law.softness
         if after.state[i] != OPEN:
@@ -484,9 +481,7 @@ def trial(
 def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
     n = after.n
-    total = 0.0
-    for j in range(n):
-        total += row[j] * after.normal[j]
+    total = dot(row, after.normal, n)
     if law.shears:
         for j in range(n):
             total += row[n + j] * after.shear[j]
@@ -520,17 +515,10 @@ def crossing_rate(law: Law, before: float, N: float) -> float:
 
 
 def find_crossings(
-    law: Law,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    friction: float,
-    closed: int,
-    closing: int,
-    after: Contacts,
-    work: Work,
+    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
 ) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
+    closing = work.count[1]
     for _ in range(CROSSING_STEPS):
         for k in range(closing):
             place = work.closing[k]
@@ -550,26 +538,20 @@ def find_crossings(
             work.beta[place] = min(max(work.beta[place] + change, 0.0), 1.0)
             if not abs(change) <= CROSSING_CHANGE * work.beta[place]:
                 done = False
-        solve_forces(law, before, free, flexible, friction, closed, closing, after, work)
+        solve_forces(law, before, free, flexible, friction, after, work)
         if done:
             return
-    for place in range(closed):
+    for place in range(work.count[0]):
         after.normal[work.closed[place]] = math.nan
         after.shear[work.closed[place]] = math.nan
 
 
 def solve_forces(
-    law: Law,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    friction: float,
-    closed: int,
-    closing: int,
-    after: Contacts,
-    work: Work,
+    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
 ) -> None:
     """Write N and T of the closed contacts for given `work.beta`, and dN/dbeta of those that close."""
+    closed = work.count[0]
+    closing = work.count[1]
     if closed == 1 and not law.shears:
         i = work.closed[0]
         after.normal[i] = (0.0 - free.gap[i]) / (flexible.C[i][i] + law.compliance)
@@ -693,46 +675,3 @@ def write_forces(
         return
     for k in range(active):
         after.shear[work.closed[work.active[k]]] = right[closed + k][0]
-
-
-def scale_of(diagonal: float) -> float:
-    """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
-    _, exponent = math.frexp(diagonal)
-    return math.ldexp(1.0, -(exponent // 2))
-
-
-def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:
-    """Solve A X = right in place of `right`, by elimination with pivots, rows and columns scaled by `scale`."""
-    for i in range(size):
-        for j in range(size):
-            A[i][j] = A[i][j] * scale[j] * scale[i]
-        for j in range(columns):
-            right[i][j] = right[i][j] * scale[i]
-    for i in range(size):
-        best = i
-        for k in range(i + 1, size):
-            if abs(A[k][i]) > abs(A[best][i]):
-                best = k
-        if best != i:
-            for j in range(size):
-                A[i][j], A[best][j] = A[best][j], A[i][j]
-            for j in range(columns):
-                right[i][j], right[best][j] = right[best][j], right[i][j]
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
-        for k in range(i + 1, size):
-            factor = A[k][i] / pivot
-            if factor != 0:
-                for j in range(i + 1, size):
-                    A[k][j] -= factor * A[i][j]
-                for j in range(columns):
-                    right[k][j] -= factor * right[i][j]
-    for i in range(size - 1, -1, -1):
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
-        for j in range(columns):
-            total = right[i][j]
-            for k in range(i + 1, size):
-                total -= A[i][k] * right[k][j]
-            right[i][j] = total / pivot
-    for i in range(size):
-        for j in range(columns):
-            right[i][j] = right[i][j] * scale[i]

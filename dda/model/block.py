@@ -49,6 +49,11 @@ class Block:
         """Area, centroid and central moments."""
         return section(self.corners)
 
+    @property
+    def total_mass(self) -> float:
+        """Density times area [kg]."""
+        return self.material.density * self.section.area
+
     def edge(self, index: int) -> tuple[Array, Array]:
         """Return the two ends of edge `index`, from corner `index` to the next one [m].
 

@@ -39,6 +39,10 @@ class BaseMotion:
         times, record, asked = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
         return np.column_stack([np.interp(asked, times, column) for column in record.T])
 
+    def along(self, axes: Array) -> BaseMotion:
+        """Return the motion along two axes, the rows of a matrix."""
+        return BaseMotion(self.time, np.asarray(self.displacement, float) @ axes.T)
+
 
 @dataclass(frozen=True)
 class Load:

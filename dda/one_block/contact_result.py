@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.kernel import FOUND
 from dda.contact.unilateral import OPEN
-from dda.one_block.solution import Result
-from dda.stepping.driver import OUTCOMES
+from dda.one_block.solution import Result, step_times
+from dda.scheme.newmark import Scheme
+from dda.stepping.driver import OUTCOMES, History
 
 Array = NDArray[np.float64]
 
@@ -21,7 +24,7 @@ def lazily(name: str, meaning: str) -> cached_property[Array]:
     """Return the property of a result that is made when it is first asked for."""
 
     def read(result: ContactResult) -> Array:
-        return result.parts[name]()
+        return np.asarray(result.parts[name]())
 
     read.__doc__ = meaning
     return cached_property(read)
@@ -46,7 +49,7 @@ class ContactResult(Result):
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
     step_cuts: NDArray[np.int_]  # times that a step was cut
     base_contacts: tuple[int, int]  # rows of M and N
-    parts: Mapping[str, Callable[[], Array]]  # makes what is asked for
+    parts: Mapping[str, Callable[[], Any]]  # makes what is asked for
     balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
 
     normal = lazily("normal", "N, away from the base, (contacts, steps) [N].")
@@ -90,6 +93,47 @@ class ContactResult(Result):
     state_m, state_n = at_corner("states", 0), at_corner("states", 1)
 
 
-def early_end(outcome: int, steps: int) -> Sequence[str]:
-    """Return the note of a history that ends before its last step."""
-    return () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {steps + 1}",)
+def contact_parts(history: History, softness: float, **own: Callable[[], Array]) -> dict[str, Callable[[], Any]]:
+    """Return what makes the properties of a result: those of the contacts, beside what a body has of its own.
+
+    Parameters
+    ----------
+    softness
+        1/p_s, 0 without springs in shear [m/N].
+    """
+    shared: dict[str, Callable[[], Any]] = {
+        "normal": lambda: history.normal[1:].T,
+        "shear": lambda: history.shear[1:].T,
+        "gap": lambda: history.gap[1:].T,
+        "stretch": lambda: 0.0 - history.shear[1:].T * softness,
+        "slipped": lambda: history.slipped[1:].T,
+        "states": lambda: history.state[1:].T,
+    }
+    return shared | own
+
+
+def run_fields(
+    history: History, ended: int, scheme: Scheme, notes: Sequence[str], clock: tuple[float, float]
+) -> dict[str, Any]:
+    """Return the fields of a result that are the same for every body.
+
+    Parameters
+    ----------
+    ended
+        How the history ended, among `dda.stepping.driver.OUTCOMES`.
+    clock
+        When the set-up began, and the steps [s].
+    """
+    steps = len(history.solves) - 1
+    early = () if ended == FOUND else (f"{OUTCOMES[ended]} at step {steps + 1}",)
+    began, ready = clock
+    return {
+        "time": step_times(scheme, steps),
+        "solves": int(history.solves.sum()),
+        "notes": (*notes, *early),
+        "setup_seconds": ready - began,
+        "stepping_seconds": perf_counter() - ready,
+        "outcome": OUTCOMES[ended],
+        "step_solves": history.solves[1:],
+        "step_cuts": history.cuts[1:],
+    }

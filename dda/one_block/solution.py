@@ -70,7 +70,7 @@ def solve(
         If the number of steps is not positive or a column is unknown.
     """
     check_request(steps, columns)
-    check_damping(scheme, model.motion is not None)
+    check_damping(scheme, model.load.motion is not None)
     began = perf_counter()
     form = model.gap_form if full else model.gap_form.reduced()
     with np.errstate(all="ignore"):
@@ -82,7 +82,7 @@ def solve(
         observed *= model.load_size
         observed += 0.0
         overflow = bound_overflow(observed, model.load_size)
-        if model.motion is not None:
+        if model.load.motion is not None:
             observed += _carried(model, scheme, modal, rows, columns, steps)
             overflow = bound_overflow(observed, 1.0)
     ended = perf_counter()
@@ -159,7 +159,7 @@ def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
         raise ValueError(f"floor: must be between 0 and 1, got {floor!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
-    if scheme.damped or model.motion is not None:
+    if scheme.damped or model.load.motion is not None:
         raise ValueError("adaptive discount: goes with neither viscous damping nor a base that moves, got it")
 
 
@@ -167,14 +167,14 @@ def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: b
     """Return why the history is stepped, in words; None where it is blocked."""
     if full:
         return "all savings off"
-    return "the base moves" if model.motion is not None else why_stepped(scheme, modal.frequencies)
+    return "the base moves" if model.load.motion is not None else why_stepped(scheme, modal.frequencies)
 
 
 def _carried(
     model: TwoBlockModel, scheme: Scheme, modal: ModalForm, rows: Array, columns: Sequence[str], steps: int
 ) -> Array:
     """Return the part of the columns that the base's motion causes, (columns, steps)."""
-    motion = model.motion
+    motion = model.load.motion
     if motion is None:
         return np.zeros((len(columns), steps))
     instants = scheme.step * np.arange(steps + 1.0)

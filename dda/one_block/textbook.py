@@ -29,7 +29,8 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
         return "eq. (8) has no viscous damping"
     if scheme.alpha * scheme.step**2 == 0:
         return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
-    if model.traction or model.gravity or model.eccentricity or model.motion is not None:
+    own = model.load
+    if own.traction or own.gravity or own.eccentricity or own.motion is not None:
         return "eq. (31), (32) hold for a centred pressure only"
     corners = np.roll(model.block.corners, -model.base, axis=0)
     x, y = corners.T
@@ -65,7 +66,7 @@ def solve_textbook(
         states = recursion.run(steps)
     still = np.zeros(steps)
     observed = np.array([states[:, _STATE[name]] if name in _STATE else still for name in columns])
-    notes = bound_overflow(observed, model.pressure)
+    notes = bound_overflow(observed, model.load.pressure)
     return Result(
         time=step_times(scheme, steps),
         columns=dict(zip(columns, observed, strict=True)),
@@ -85,7 +86,7 @@ class _Recursion:
     def __init__(self, model: TwoBlockModel, scheme: Scheme) -> None:
         """Form the matrix of eq. (31) and its inverse."""
         self.scheme = scheme
-        self.q, self.p = model.pressure, model.contact.normal
+        self.q, self.p = model.load.pressure, model.contact.normal
         extent = np.ptp(model.block.corners, axis=0)
         self.width, self.height = float(extent[0]), float(extent[1])
         self.area = self.width * self.height

@@ -3,60 +3,34 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.springs import Contact, contact_stiffness
-from dda.model.block import Block
-from dda.model.load import BaseMotion, Load, falling, pressed_part
+from dda.model.load import BaseMotion, pressed_part
+from dda.model.loaded import LoadedBlock
 from dda.one_block.gap_form import GapForm, gap_form
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class TwoBlockModel:
+@dataclass(frozen=True, eq=False, init=False)
+class TwoBlockModel(LoadedBlock):
     """Block A on block B: springs at both ends of the base edge, loads on the top edge and on the mass.
 
-    Edge i runs from corner i to corner i + 1. The pressure acts vertically downwards
-    (global -y) whatever the direction of the top edge. The model is linear,
+    The pressure acts vertically downwards (global -y) whatever the direction of the top edge. The model is linear,
     M D'' + K D = F, in D = (u, v, r, ex, ey, gxy).
-
-    Raises
-    ------
-    ValueError
-        If a load is not finite, the eccentricity leaves nothing of the top edge, or base and top
-        are not two edges of the block.
     """
 
-    block: Block
     contact: Contact
-    pressure: float  # q [Pa]
-    base: int = 0  # edge on the springs
-    top: int = 2  # edge under pressure
-    eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
-    traction: float = 0.0  # towards +x, on the whole top edge [Pa]
-    gravity: float = 0.0  # downwards, switched on at t = 0 [m/s^2]
-    motion: BaseMotion | None = None  # of the springs' base ends
-    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
-
-    def __post_init__(self) -> None:
-        """Check the load and the edges."""
-        self.block.check_edges(self.base, self.top)
-        pressed_part(*self.block.edge(self.top), self.applied.eccentricity)
-
-    @cached_property
-    def applied(self) -> Load:
-        """All loads."""
-        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion, self.slope)
 
     @cached_property
     def load_size(self) -> float:
         """Largest of the constant loads as a stress, gravity as rho g sqrt(area) [Pa]."""
-        return self.applied.size(self.block.material.density * math.sqrt(self.block.section.area))
+        return self.load.size(self.block.material.density * math.sqrt(self.block.section.area))
 
     @cached_property
     def mass(self) -> Array:
@@ -69,15 +43,13 @@ class TwoBlockModel:
         return self.block.elastic() + contact_stiffness(self.block, self.contact, self.base)
 
     @cached_property
-    def load(self) -> Array:
+    def force(self) -> Array:
         """Constant load F in D, 6 entries: eq. (29) with (0, -q), the traction and the weight."""
-        pressed = pressed_part(*self.block.edge(self.top), self.eccentricity)
+        pressed = pressed_part(*self.block.edge(self.top), self.load.eccentricity)
         weight = np.zeros(6)
-        weight[:2] = (
-            self.block.material.density * self.block.section.area * self.gravity * np.array(falling(self.slope))
-        )
-        traction = self.block.edge_load(self.top, (self.traction, 0.0))
-        return self.block.segment_load(*pressed, (0.0, -self.pressure)) + traction + weight
+        weight[:2] = self.block.total_mass * self.load.gravity * np.array(self.load.falling)
+        traction = self.block.edge_load(self.top, (self.load.traction, 0.0))
+        return self.block.segment_load(*pressed, (0.0, -self.load.pressure)) + traction + weight
 
     @cached_property
     def gap_form(self) -> GapForm:
@@ -85,10 +57,11 @@ class TwoBlockModel:
 
         Without a load it is the form under a pressure of 1 Pa.
         """
-        unit = Load(1.0, self.eccentricity, motion=self.motion)
-        if size := self.load_size:
-            constant = (self.pressure / size, self.eccentricity, self.traction / size, self.gravity / size)
-            unit = Load(*constant, self.motion, self.slope)
+        own, size = self.load, self.load_size
+        if size:
+            unit = replace(own, pressure=own.pressure / size, traction=own.traction / size, gravity=own.gravity / size)
+        else:
+            unit = replace(own, pressure=1.0, traction=0.0, gravity=0.0)
         return gap_form(self.block, self.contact, self.base, self.top, unit)
 
     def static(self) -> dict[str, float]:
@@ -96,7 +69,7 @@ class TwoBlockModel:
         form = self.gap_form
         x = form.F / form.K
         static = {name: float(row @ x) * self.load_size + 0.0 for name, row in form.observers.items()}
-        last = carried(self.motion, [math.inf])
+        last = carried(self.load.motion, [math.inf])
         return {name: value + float(last[name][0]) if name in last else value for name, value in static.items()}
 
 

@@ -10,76 +10,45 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.springs import base_directions
 from dda.contact.unilateral import SLIP, Unilateral
-from dda.model.block import Block
-from dda.model.load import BaseMotion, Load, pressed_part
-from dda.one_block.contact_result import ContactResult, early_end
+from dda.model.loaded import LoadedBlock
+from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
-from dda.one_block.unilateral_energy import energies
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.unilateral_step import (
-    CONSERVING,
-    NEWMARK,
-    RULES,
-    BlockHistory,
-    block_equations,
-    history_of,
-    make_steps,
-    start_state,
-)
+from dda.one_block.unilateral_step import CONSERVING, NEWMARK, RULES, block_equations, make_steps, start_state
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
-from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
+from dda.stepping.driver import History, base_record, history_of, reached_history
+from dda.stepping.energy import ENERGIES, GIVEN, spring_energies
 
 Array = NDArray[np.float64]
 
 PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
 
-@dataclass(frozen=True, eq=False)
-class UnilateralModel:
-    """One block over corners that carry no tension, at both ends of its base edge.
+@dataclass(frozen=True, eq=False, init=False)
+class UnilateralModel(LoadedBlock):
+    """One block over corners that carry no tension, at both ends of its base edge; a base that moves starts at zero."""
 
-    Raises
-    ------
-    ValueError
-        If a number is not finite, the eccentricity leaves nothing of the top edge, or base and top are not
-        two edges of the block.
-    """
-
-    block: Block
     contact: Unilateral
-    pressure: float = 0.0  # q, downwards on the top edge from t = 0 on [Pa]
-    base: int = 0  # edge over the corners M (its start) and N (its end)
-    top: int = 2  # edge under pressure
-    eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
-    traction: float = 0.0  # towards +x, on the whole top edge [Pa]
-    gravity: float = 0.0  # downwards [m/s^2]
     velocity: float = 0.0  # of the block at t = 0, upwards positive [m/s]
-    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
-    motion: BaseMotion | None = None  # of the base, from where the block stands at t = 0
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         """Check the numbers and the edges."""
-        self.block.check_edges(self.base, self.top)
+        super().check()
         if not math.isfinite(self.velocity):
             raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
-        pressed_part(*self.block.edge(self.top), self.applied.eccentricity)
-        if self.motion is not None and np.any(start := self.motion.at([0.0])[0]):
+        motion = self.load.motion
+        if motion is not None and np.any(start := motion.at([0.0])[0]):
             raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
-
-    @cached_property
-    def applied(self) -> Load:
-        """All loads."""
-        return Load(self.pressure, self.eccentricity, self.traction, self.gravity, self.motion, self.slope)
 
     @cached_property
     def reduced(self) -> UnilateralForm:
@@ -88,7 +57,7 @@ class UnilateralModel:
 
     def form(self, full: bool = False) -> UnilateralForm:
         """Return matrices and load in the unknowns that move; in all six if `full`."""
-        return unilateral_form(self.block, self.contact, self.base, self.top, self.applied, self.velocity, full)
+        return unilateral_form(self, self.contact, self.velocity, full)
 
 
 @dataclass(frozen=True)
@@ -111,10 +80,15 @@ class UnilateralOptions:
         """Check the ranges."""
         if self.rule not in RULES:
             raise ValueError(f"rule: must be among {', '.join(RULES)}, got {self.rule!r}")
-        if isinstance(self.solve_limit, bool) or not isinstance(self.solve_limit, int) or self.solve_limit < 1:
-            raise ValueError(f"solve_limit: must be a positive integer, got {self.solve_limit!r}")
-        if not 0 < self.cut < 1:
-            raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")
+        check_iteration(self.solve_limit, self.cut)
+
+
+def check_iteration(solve_limit: int, cut: float) -> None:
+    """Raise ValueError where the numbers of the open-close iteration are out of range."""
+    if isinstance(solve_limit, bool) or not isinstance(solve_limit, int) or solve_limit < 1:
+        raise ValueError(f"solve_limit: must be a positive integer, got {solve_limit!r}")
+    if not 0 < cut < 1:
+        raise ValueError(f"cut: must be between 0 and 1, got {cut!r}")
 
 
 def solve_unilateral(
@@ -154,82 +128,104 @@ def solve_unilateral(
         law = replace(law, shear=0.0)
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
-    block = block_equations(form, law, scheme, options.rule, options.solve_limit, model.motion is not None)
+    motion = model.load.motion
+    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None)
     state = start_state(form, law, scheme, model.velocity, options.rule)
-    history, counts = history_of(block, steps), counts_of(steps, options.energies)
+    base = base_record(motion and motion.along(form.axes))
+    history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
     ready = perf_counter()
-    (reached, outcome), left, how = run_loop(
-        make_steps, (block, state, state), (base_record(model.motion),), (history, counts, steps, options.cut), seconds
+    (reached, ended), left, how = run_loop(
+        make_steps, (block, state, state), (base,), (history, steps, options.cut), seconds
     )
-    history = BlockHistory(*reached_rows(history, reached))
+    history = reached_history(history, reached)
     with np.errstate(all="ignore"):
-        values = observed(form, history, base_directions(model.block, model.base)[2], columns)
-    for name, moved in carried(model.motion, step_times(scheme, reached)).items():
+        values = observed(form, history, model.base_length, columns)
+    for name, moved in carried(motion, step_times(scheme, reached)).items():
         if name in values:
             values[name] = values[name] + moved
-    saved = (f"both corners as one, unknowns {', '.join(form.unknowns)}",) if len(form.unknowns) < 6 else ()
-    losses = counts.losses[:reached]
-    mass = model.block.material.density * model.block.section.area
+    notes = [f"stepped, {how}: contact opens and closes"]
+    if len(form.unknowns) < 6:
+        notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
     return ContactResult(
-        time=step_times(scheme, reached),
+        **run_fields(history, ended, scheme, notes, (began, ready)),
         columns=values,
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=int(left[0].made[0]),
-        solves=int(counts.solves[:reached].sum()),
-        notes=(*saved, f"stepped, {how}: contact opens and closes", *early_end(outcome, reached)),
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
-        outcome=OUTCOMES[outcome],
-        step_solves=counts.solves[:reached],
-        step_cuts=counts.cuts[:reached],
         base_contacts=(0, 1),
-        parts=_parts(form, law, history, form.translation.T / (mass * scheme.step)),
-        balance=(lambda: energies(form, law, scheme.step, model.motion, history, losses)) if options.energies else None,
+        parts=_parts(model, form, scheme, history),
+        balance=(lambda: energies(model, form, scheme, history)) if options.energies else None,
     )
 
 
-def observed(form: UnilateralForm, history: BlockHistory, a: float, names: Sequence[str]) -> dict[str, Array]:
+def observed(form: UnilateralForm, history: History, a: float, names: Sequence[str]) -> dict[str, Array]:
     """Return the asked columns; `a` is the length of the base [m]."""
+    D = history.motion[1:, : len(form.unknowns)]
     values = {}
     for name in names:
         if name == "contact_pressure":
-            values[name] = history.normal.sum(axis=1) * (2 / form.contacts / a) + 0.0
+            values[name] = history.normal[1:].sum(axis=1) * (2 / form.contacts / a) + 0.0
         else:
             row = form.observers[name]
-            values[name] = history.D @ row - row @ form.start + 0.0
+            values[name] = D @ row - row @ form.start + 0.0
     return values
 
 
-def _parts(
-    form: UnilateralForm, law: Unilateral, history: BlockHistory, momentum: Array
-) -> dict[str, Callable[[], Array]]:
-    """Return what makes the properties of a result; a contact that stands for both corners is N.
+def energies(model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History) -> dict[str, Array]:
+    """Return the energies [J] after every step, the losses summed from t = 0 on.
 
-    Parameters
-    ----------
-    momentum : (2, n) array
-        Horizontal and vertical velocity of the centroid by P [1/(kg s)].
+    They are those of `dda.stepping.energy`. Energy-conserving contact does the work U0 - U1 itself and loses nothing.
     """
-    both, mirror = [0, -1], np.array([[1.0 if form.contacts == 2 else -1.0], [1.0]])
+    n = len(form.unknowns)
+    D = history.motion[1:, :n]
+    V = history.motion[1:, n:] / scheme.step
+    load = -(D - form.start) @ form.F - history.sums[1:, GIVEN]
+    if model.load.motion is not None:
+        moved = model.load.motion.at(step_times(scheme, len(D)))
+        load -= moved @ (form.axes.T @ form.translation.T @ form.F)
+    springs = spring_energies(model.contact, history.normal[1:], history.shear[1:])
+    stored = (
+        np.einsum("ki,ij,kj->k", V, np.linalg.inv(form.M), V) / 2,
+        (D * D) @ form.K / 2,
+        form.multiplicity * springs,
+        load,
+    )
+    return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
 
-    def states() -> Array:
-        state = history.state.T[both].astype(int)
-        turned = np.array([[form.contacts == 1], [False]]) & (np.abs(state) == SLIP)
-        return np.where(turned, -state, state)
 
-    return {
-        "normal": lambda: history.normal.T[both],
-        "shear": lambda: mirror * history.shear.T[both] + 0.0,
-        "gap": lambda: history.gap.T[both],
-        "stretch": lambda: 0.0 - mirror * history.shear.T[both] / law.shear if law.shear else 0 * history.gap.T[both],
-        "slide": lambda: form.slide @ history.D.T,
-        "slipped": lambda: mirror * history.slipped.T[both] + 0.0,
-        "states": states,
-        "velocity": lambda: history.P @ momentum[1],
-        "horizontal_velocity": lambda: history.P @ momentum[0],
-    }
+def _parts(
+    model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History
+) -> dict[str, Callable[[], Any]]:
+    """Return what makes the properties of a result; a contact that stands for both corners is N."""
+    n = len(form.unknowns)
+    momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
+    parts = contact_parts(
+        history,
+        softness=1 / model.contact.shear if model.contact.shear else 0.0,
+        slide=lambda: form.slide @ history.motion[1:, :n].T,
+        horizontal_velocity=lambda: history.motion[1:, n:] @ momentum[0],
+        velocity=lambda: history.motion[1:, n:] @ momentum[1],
+    )
+    if form.contacts == 1:
+        for name in ("normal", "gap"):
+            parts[name] = partial(_at_both, parts[name], 1.0)
+        for name in ("shear", "stretch", "slipped"):
+            parts[name] = partial(_at_both, parts[name], -1.0)
+        parts["states"] = partial(_mirrored_states, history)
+    return parts
+
+
+def _at_both(of_one: Callable[[], Array], sign: float) -> Array:
+    """Return what one contact has that stands for both corners, at M with a sign."""
+    values: Array = np.array([[sign], [1.0]]) * of_one() + 0.0
+    return values
+
+
+def _mirrored_states(history: History) -> Array:
+    """Return the states of one contact that stands for both corners: they slip in opposite directions."""
+    state = history.state[1:].T
+    return np.vstack([np.where(np.abs(state) == SLIP, -state, state), state])
 
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
@@ -245,7 +241,7 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
             f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
             f"got stiffness = {law.stiffness:g} and band = {law.band}"
         )
-    if options.rule == CONSERVING and model.motion is not None:
+    if options.rule == CONSERVING and model.load.motion is not None:
         raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
     if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
         raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law.shear:g}")

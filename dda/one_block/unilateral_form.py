@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
-from dda.model.load import Load
+from dda.model.loaded import LoadedBlock
 from dda.one_block.gap_form import GapForm, gap_form
 
 Array = NDArray[np.float64]
@@ -43,8 +43,9 @@ class UnilateralForm:
     M: Array  # (n, n) inertia
     K: Array  # (n,) diagonal of the elastic stiffness
     F: Array  # (n,) constant load
-    translation: Array  # (n, 2) x of a rigid translation by 1 m in x and in y
-    B: Array  # (c, n) or, if glued, (2c, n): gaps, then slides in the coordinates of dda.contact.kernel.Free [m]
+    translation: Array  # (n, 2) R, x of a rigid translation by 1 m along the base and away from it
+    axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the block
+    B: Array  # (c, n), or (2c, n) with shear: gaps, then slides in the coordinates of dda.contact.kernel.Free [m]
     contacts: int  # c, 1 or 2
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
@@ -52,22 +53,20 @@ class UnilateralForm:
     slide: Array  # (2, n) displacement of M and N along the base by x
 
 
-def unilateral_form(
-    block: Block, law: Unilateral, base: int, top: int, load: Load, velocity: float, full: bool
-) -> UnilateralForm:
+def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: bool) -> UnilateralForm:
     """Assemble one block over no-tension corners; `velocity` only tells what moves, `full` keeps all unknowns."""
-    tangent, _, a = base_directions(block, base)
-    form = gap_form(block, Contact(1.0), base, top, load)  # of its springs nothing is used below
-    R = np.zeros((6, 2))
-    R[:2] = [[tangent[0], tangent[1]], [-tangent[1], tangent[0]]]
-    pushed = form.F + velocity * (form.M @ R[:, 1])
+    block, load = model.block, model.load
+    tangent, normal, a = base_directions(block, model.base)
+    axes = np.array([tangent, normal])
+    form = gap_form(block, Contact(1.0), model.base, model.top, load)  # of its springs nothing is used below
+    pushed = form.F + velocity * (form.M[:, :2] @ axes[:, 1])
     if load.motion is not None:
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
     reached = _reached(form, pushed)
     if not full and not reached[0] and not reached[2] and not reached[5]:
         kept = [i for i in _SYMMETRIC if reached[i] or i != 3]
-        return _symmetric(block, law, form, a, R, kept)
-    return _two_corners(block, law, form, a, R)
+        return _symmetric(block, law, form, a, axes, kept)
+    return _two_corners(block, law, form, a, axes)
 
 
 def _reached(form: GapForm, pushed: Array) -> NDArray[np.bool_]:
@@ -86,7 +85,9 @@ def _elastic(block: Block) -> Array:
     return block.section.area * np.array(moduli)
 
 
-def _symmetric(block: Block, law: Unilateral, form: GapForm, a: float, R: Array, kept: Sequence[int]) -> UnilateralForm:
+def _symmetric(
+    block: Block, law: Unilateral, form: GapForm, a: float, axes: Array, kept: Sequence[int]
+) -> UnilateralForm:
     """Both corners as one contact; its tangential displacement is that of N, and M has the opposite one."""
     names = {3: "ex", 4: "e2", 1: "w"}
     elastic = dict(zip((3, 4, 1), (*_elastic(block)[:2], 0.0), strict=True))
@@ -99,7 +100,8 @@ def _symmetric(block: Block, law: Unilateral, form: GapForm, a: float, R: Array,
         M=form.M[np.ix_(index, index)],
         K=np.array([elastic[i] for i in kept]),
         F=form.F[index],
-        translation=R[index],
+        translation=np.eye(6, 2)[index],
+        axes=axes,
         B=np.array(rows),
         contacts=1,
         multiplicity=2.0,
@@ -109,7 +111,7 @@ def _symmetric(block: Block, law: Unilateral, form: GapForm, a: float, R: Array,
     )
 
 
-def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, R: Array) -> UnilateralForm:
+def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, axes: Array) -> UnilateralForm:
     T = np.zeros((6, 6))  # gap_form's unknowns (U, w, s, ex, e2, gxy) from (ex, e2, gxy, U, w_M, w_N)
     T[0, 3] = T[3, 0] = T[4, 1] = T[5, 2] = 1.0
     T[1, 4:] = 0.5
@@ -118,7 +120,8 @@ def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, R: Arra
     B[0, 4] = B[1, 5] = 1.0
     B[2, 3], B[3, 0] = 1.0, a
     translation = np.zeros((6, 2))
-    translation[3], translation[4:] = R[0], R[1]
+    translation[3, 0] = 1.0
+    translation[4:, 1] = 1.0
     M = T.T @ form.M @ T
     return UnilateralForm(
         unknowns=UNKNOWNS,
@@ -126,6 +129,7 @@ def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, R: Arra
         K=np.array([*_elastic(block), 0.0, 0.0, 0.0]),
         F=T.T @ form.F,
         translation=translation,
+        axes=axes,
         B=B if law.shear else B[:2],
         contacts=2,
         multiplicity=1.0,

@@ -28,23 +28,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.conserving import conserving
+from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
     Contacts,
     Free,
     Law,
-    Matrix,
-    Vector,
     Work,
     at_rest,
-    eliminate,
     find_contacts,
     law_of,
-    scale_of,
     set_own_flexibility,
-    spring_energy,
     work_for,
-    zeros,
 )
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
@@ -56,7 +51,8 @@ from dda.scheme.newmark import (
     momentum_balance,
     velocity_corrector,
 )
-from dda.stepping.driver import BaseRecord, Counts, base_at, driver
+from dda.stepping.driver import BaseRecord, base_displacement, driver
+from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss
 
 Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
@@ -94,13 +90,11 @@ class Room(NamedTuple):
     x: Vector
     forces: Vector  # (q,) N, then T in the coordinates of B
     free: Free  # the contacts in a step without their forces
-    where: Vector  # (c,) slides s at the end of the step
+    slide: Vector  # (c,) displacement of the contacts along the base
     A: Matrix  # (n, n)
-    right: Matrix
     scale: Vector
-    base: Vector  # (2,) displacement of the base in the step [m]
-    first: Vector  # (n,) vectors of the account of energy
-    second: Vector
+    base: Vector  # (2,) displacement of the base in the step, along and away from itself [m]
+    change: Vector  # (n,)
 
 
 class BlockEquations(NamedTuple):
@@ -122,8 +116,8 @@ class BlockEquations(NamedTuple):
     load: Vector  # (n,) F
     B: Matrix  # (q, n) gaps, then slides by the unknowns
     multiplicity: float
-    translation: Matrix  # (n, 2)
-    carried: Matrix  # (n, 2) M times translation
+    translation: Matrix  # (n, 2) R, along and away from the base
+    carried: Matrix  # (n, 2) M R
     moves: bool  # whether the base does
     inverse_mass: Matrix  # (n, n)
     whole: StepLength  # of a whole step
@@ -131,18 +125,6 @@ class BlockEquations(NamedTuple):
     made: Vector  # (1,) step lengths made
     room: Room
     work: Work
-
-
-class BlockHistory(NamedTuple):
-    """States after every step, a row each."""
-
-    D: Array  # (steps, n)
-    P: Array  # (steps, n)
-    normal: Array  # (steps, c)
-    shear: Array  # (steps, c)
-    gap: Array  # (steps, c)
-    slipped: Array  # (steps, c) summed over the parts of a step
-    state: NDArray[np.int8]  # (steps, c)
 
 
 def block_equations(
@@ -185,7 +167,7 @@ def empty_room() -> Room:
     """Return room for the vectors of a step."""
     n, c = UNKNOWNS, CONTACTS
     free = [Free(*zeros(c, c, c))]
-    return Room(*(zeros(n, n, n, n, 2 * c) + free + zeros(c, (n, n), (n, n), n, 2, n, n)))
+    return Room(*(zeros(n, n, n, n, 2 * c) + free + zeros(c, (n, n), n, 2, n)))
 
 
 def empty_length() -> StepLength:
@@ -201,17 +183,10 @@ def padded(values: Array, *shape: int) -> Array:
     return out
 
 
-def history_of(block: BlockEquations, steps: int) -> BlockHistory:
-    """Return room for so many steps."""
-    n, c = block.unknowns, block.contacts
-    shapes = [(steps, n)] * 2 + [(steps, c)] * 4
-    return BlockHistory(*(zeros(*shapes) + zeros((steps, c), dtype=np.int8)))
-
-
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap."""
     dt = scheme.step
-    P = (dt * velocity) * (form.M @ form.translation[:, 1])
+    P = (dt * velocity) * (form.M @ (form.translation @ form.axes[:, 1]))
     F = dt * dt * form.F
     f = F if rule == CONSERVING else initial_acceleration(scheme, F)
     contacts = at_rest(np.full(form.contacts, law.gap), CONTACTS)
@@ -228,39 +203,32 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
     """
     n = block.unknowns
     q = block.forces
+    own = block.room
     step = block.step * ratio
     h2 = step * step
     length.numbers[0] = ratio
     length.numbers[1] = block.gg**ratio
     length.numbers[2] = step
-    A = block.room.A
+    copy_matrix(block.M, own.A, n)
     for i in range(n):
         length.k[i] = h2 * block.K[i]
         length.F[i] = h2 * block.load[i]
-        for j in range(n):
-            A[i][j] = block.M[i][j]
-            block.room.right[i][j] = 1.0 if i == j else 0.0
-        A[i][i] += block.alpha * length.k[i]
-        block.room.scale[i] = scale_of(A[i][i])
-    eliminate(A, block.room.right, block.room.scale, n, n)
+        own.A[i][i] += block.alpha * length.k[i]
+    invert(own.A, n, own.scale, length.inverse)
     weight = (block.alpha if block.rule == 0 else 0.5) * h2 * block.multiplicity
     for i in range(n):
-        for j in range(n):
-            length.inverse[i][j] = block.room.right[i][j]
         for j in range(q):
-            total = 0.0
-            for k in range(n):
-                total += block.room.right[i][k] * block.B[j][k]
-            length.pushed[i][j] = weight * total
+            length.pushed[i][j] = weight * dot(length.inverse[i], block.B[j], n)
     for i in range(q):
         for j in range(q):
             total = 0.0
             for k in range(n):
                 total += block.B[i][k] * length.pushed[k][j]
             length.C_paired[i][j] = total
-            length.C[i][j] = total
     if q == 4:
         set_own_flexibility(length.C_paired, length.C)
+    else:
+        copy_matrix(length.C_paired, length.C, q)
     block.made[0] += 1
 
 
@@ -318,38 +286,26 @@ def free_step(
         own.f[i] = ratio * ratio * state.f[i]
         own.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], own.P[i], own.f[i])
     if block.moves:
-        base_displacement(block, base, begun, ratio)
+        base_displacement(base, block.step, begun, ratio, own.base)
         for i in range(n):
-            own.balance[i] -= block.carried[i][0] * own.base[0] + block.carried[i][1] * own.base[1]
-    for i in range(n):
-        total = 0.0
-        for j in range(n):
-            total += length.inverse[i][j] * own.balance[j]
-        own.x[i] = total
+            own.balance[i] -= dot(block.carried[i], own.base, 2)
+    multiply(length.inverse, own.balance, n, n, own.x)
     for i in range(c):  # the gaps are the last unknowns
         own.free.gap[i] = state.D[n - c + i] + own.x[n - c + i]
     if block.law.shears:
-        for i in range(c):
-            total = 0.0
-            for j in range(n):
-                total += block.B[c + i][j] * own.x[j]
-            own.free.paired[i] = total
-        own_slides(own.free.paired, own.free.slide, c)
+        slides_by(block, own.x, own.free.slide)
 
 
-def own_slides(paired: Vector, own: Vector, count: int) -> None:
-    """Write the slides of one contact, or of two from their mean and difference."""
-    own[0] = paired[0]
-    if count == 2:
-        own[0] = paired[0] - paired[1] / 2
-        own[1] = paired[0] + paired[1] / 2
-
-
-def base_displacement(block: BlockEquations, base: BaseRecord, begun: float, ratio: float) -> None:
-    """Write how far the base moves in a part of a step."""
-    for axis in range(2):
-        start = base_at(base, axis, begun * block.step)
-        block.room.base[axis] = base_at(base, axis, (begun + ratio) * block.step) - start
+def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
+    """Write how far the contacts slide by x; room.free.paired is left with the coordinates of B."""
+    c = block.contacts
+    paired = block.room.free.paired
+    for i in range(c):
+        paired[i] = dot(block.B[c + i], x, block.unknowns)
+    slide[0] = paired[0]
+    if c == 2:
+        slide[0] = paired[0] - paired[1] / 2
+        slide[1] = paired[0] + paired[1] / 2
 
 
 def accept(
@@ -362,10 +318,7 @@ def accept(
     contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
-        total = 0.0
-        for j in range(block.forces):
-            total += length.pushed[i][j] * own.forces[j]
-        after.D[i] = state.D[i] + own.x[i] + total
+        after.D[i] = state.D[i] + own.x[i] + dot(length.pushed[i], own.forces, block.forces)
     for i in range(c):
         after.D[n - c + i] = after.contacts.gap[i]
     for i in range(n):
@@ -410,27 +363,22 @@ def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:
     own = block.room
     c = block.contacts
     contacts = after.contacts
-    for i in range(c):
-        total = 0.0
-        for j in range(block.unknowns):
-            total += block.B[c + i][j] * after.D[j]
-        own.free.paired[i] = total
-    own_slides(own.free.paired, own.where, c)
+    slides_by(block, after.D, own.slide)
     staying = 0
     apart = 0.0
     for i in range(c):
         if stays(before, contacts, i):
             staying += 1
-            apart += before.reference[i] + contacts.stretch[i] - own.where[i]
+            apart += before.reference[i] + contacts.stretch[i] - own.slide[i]
     if c == 2 and staying > 0:
         after.D[U_INDEX] += apart / staying
         for i in range(c):
-            own.where[i] += apart / staying
+            own.slide[i] += apart / staying
     for i in range(c):
         if stays(before, contacts, i):
             contacts.reference[i] = before.reference[i]
         else:
-            contacts.reference[i] = own.where[i] - contacts.stretch[i]
+            contacts.reference[i] = own.slide[i] - contacts.stretch[i]
 
 
 def stays(before: Contacts, after: Contacts, i: int) -> bool:
@@ -448,134 +396,53 @@ def account(
     base: BaseRecord,
     begun: float,
     ratio: float,
-    history: BlockHistory,
-    counts: Counts,
-    number: int,
+    sums: Vector,
 ) -> None:
-    """Add what an accepted part of a step slips and loses."""
-    for i in range(block.contacts):
-        history.slipped[number, i] += after.contacts.slipped[i]
-    if len(counts.losses) > 0:
-        add_losses(block, state, after, base, begun, ratio, counts.losses, number)
-
-
-def keep(block: BlockEquations, state: BlockState, history: BlockHistory, number: int) -> bool:
-    """Write the state at the end of a step; tell whether it is finite."""
-    total = 0.0
-    for i in range(block.unknowns):
-        history.D[number, i] = state.D[i]
-        history.P[number, i] = state.P[i]
-        total += state.D[i]
-    contacts = state.contacts
-    for i in range(block.contacts):
-        history.normal[number, i] = contacts.normal[i]
-        history.shear[number, i] = contacts.shear[i]
-        history.gap[number, i] = contacts.gap[i]
-        history.state[number, i] = contacts.state[i]
-    return math.isfinite(total)
-
-
-def add_losses(
-    block: BlockEquations,
-    state: BlockState,
-    after: BlockState,
-    base: BaseRecord,
-    begun: float,
-    ratio: float,
-    losses: Array,
-    number: int,
-) -> None:
-    """Add the losses of a part of a step, as `dda.one_block.unilateral_energy` tells [J]."""
+    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
     own = block.room
     n = block.unknowns
-    c = block.contacts
-    dt = block.step
     length = length_of(block, ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
-    late = block.delta if block.rule == 0 else 1.0
-    over = block.delta - 0.5
-    algorithmic = 0.0
-    given = 0.0
-    if block.moves:
-        base_displacement(block, base, begun, ratio)
-    contact_forces(block, state.contacts.normal, state.contacts.shear)
+    dt2 = block.step * block.step
+    sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
+    stiff = 0.0
     for i in range(n):
-        moved = after.D[i] - state.D[i]
-        carried = 0.0
-        if block.moves:
-            carried = block.translation[i][0] * own.base[0] + block.translation[i][1] * own.base[1]
-        pressed = pushed_by(block, i)
-        algorithmic += over * moved * moved * block.K[i]
-        if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
-            missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
-            if block.rule == 0:
-                missing += h2 * pressed
-            algorithmic += (1 - block.delta) * (moved + carried) * missing / h2
-        given += (1 - late) * pressed * carried
-    contact_forces(block, after.contacts.normal, after.contacts.shear)
-    if block.moves:
-        for i in range(n):
-            carried = block.translation[i][0] * own.base[0] + block.translation[i][1] * own.base[1]
-            given += late * pushed_by(block, i) * carried
-    share = block.alpha - block.delta / 2
-    if share != 0:
-        for i in range(n):
-            own.first[i] = (after.f[i] - state.f[i]) / dt / dt
-        stored = kinetic(block, after.f) / dt / dt / dt / dt - kinetic(block, state.f) / dt / dt / dt / dt
-        algorithmic += share * h2 * (stored + 2 * over * kinetic(block, own.first))
-    damped = (1 - gg * gg) * kinetic(block, state.P) / dt / dt
-    switching = 0.0
-    friction = 0.0
+        own.change[i] = after.D[i] - state.D[i]
+        stiff += own.change[i] * own.change[i] * block.K[i]
     if block.rule != 2:
-        slides_of(block, state, after)
-        for i in range(c):
-            rubbed = 0.0 - block.multiplicity * after.contacts.shear[i] * after.contacts.slipped[i]
-            lost = contact_loss(block, state.contacts, after.contacts, late, i) - rubbed
-            friction += rubbed
-            if (state.contacts.state[i] == OPEN) == (after.contacts.state[i] == OPEN):
-                algorithmic += lost
-            else:
-                switching += lost
-    losses[number, 0] += algorithmic
-    losses[number, 1] += damped
-    losses[number, 2] += switching
-    losses[number, 3] += friction
-    losses[number, 4] += given
+        if block.law.shears:
+            slides_by(block, own.change, own.slide)
+        late = block.delta if block.rule == 0 else 1.0
+        share = block.multiplicity
+        add_contact_losses(
+            block.law, state.contacts, after.contacts, own.slide, own.base, late, length.numbers[2], share, sums
+        )
+    if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+        for i in range(n):
+            missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
+            moved = own.change[i] + dot(block.translation[i], own.base, 2)
+            sums[ALGORITHMIC] += (1 - block.delta) * moved * missing / h2
+    kinetic = 0.0
+    kinetic_of_change = 0.0
+    if block.alpha != block.delta / 2:
+        for i in range(n):
+            own.change[i] = (after.f[i] - state.f[i]) / dt2
+        stored = quadratic(block.inverse_mass, after.f, n) - quadratic(block.inverse_mass, state.f, n)
+        kinetic = stored / 2 / dt2 / dt2
+        kinetic_of_change = quadratic(block.inverse_mass, own.change, n) / 2
+    sums[ALGORITHMIC] += bulk_loss(block.alpha, block.delta, h2, stiff, kinetic, kinetic_of_change)
 
 
-def kinetic(block: BlockEquations, momentum: Vector) -> float:
-    """Return momentum' M^-1 momentum / 2."""
+def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:
+    """Write D and P at the end of a step; tell whether it is finite."""
     n = block.unknowns
     total = 0.0
     for i in range(n):
-        for j in range(n):
-            total += momentum[i] * block.inverse_mass[i][j] * momentum[j]
-    return total / 2
-
-
-def slides_of(block: BlockEquations, state: BlockState, after: BlockState) -> None:
-    """Write how far the contacts slide in a part of a step."""
-    own = block.room
-    c = block.contacts
-    for i in range(c):
-        own.where[i] = 0.0
-        own.free.paired[i] = 0.0
-    if not block.law.shears:
-        return
-    for i in range(c):
-        for j in range(block.unknowns):
-            own.free.paired[i] += block.B[c + i][j] * (after.D[j] - state.D[j])
-    own_slides(own.free.paired, own.where, c)
-
-
-def contact_loss(block: BlockEquations, before: Contacts, after: Contacts, late: float, i: int) -> float:
-    """Return what the springs of a contact lose beside the work that it does on the block [J]."""
-    N = (1 - late) * before.normal[i] + late * after.normal[i]
-    T = (1 - late) * before.shear[i] + late * after.shear[i]
-    work = N * (after.gap[i] - before.gap[i]) + T * block.room.where[i]
-    lost = spring_energy(block.law, before, i) - spring_energy(block.law, after, i) - work
-    return float(block.multiplicity * lost)
+        rows[number, i] = state.D[i]
+        rows[number, n + i] = state.P[i]
+        total += state.D[i]
+    return math.isfinite(total)
 
 
 make_steps = driver(advance, account, keep)

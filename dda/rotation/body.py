@@ -30,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.kernel import Matrix, Vector
+from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.block import Block
 
@@ -78,25 +78,28 @@ def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
             out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2
 
 
-def place(c: Vector, Q: Matrix, e: Vector, x: float, y: float) -> tuple[float, float]:
-    """Return where a point of the unstrained outline is [m]."""
-    across = x + (x * e[0] + y * e[2] / 2)
-    up = y + (x * e[2] / 2 + y * e[1])
-    return c[0] + (across * Q[0][0] + up * Q[0][1]), c[1] + (across * Q[1][0] + up * Q[1][1])
+def strained(q: Vector, x: float, y: float) -> tuple[float, float]:
+    """Return (I + E) xi of a point of the unstrained outline."""
+    return x + (x * q[3] + y * q[5] / 2), y + (x * q[5] / 2 + y * q[4])
 
 
-def directions(spin: Matrix, stretch: Matrix, e: Vector, x: float, y: float, across: Vector, up: Vector) -> None:
+def place(q: Vector, Q: Matrix, x: float, y: float) -> tuple[float, float]:
+    """Return where a point of the unstrained outline is, for the unknowns q = (c, r, e) [m]."""
+    across, up = strained(q, x, y)
+    return q[0] + (across * Q[0][0] + up * Q[0][1]), q[1] + (across * Q[1][0] + up * Q[1][1])
+
+
+def directions(spin: Matrix, stretch: Matrix, q: Vector, x: float, y: float, across: Vector, up: Vector) -> None:
     """Write B of a point of the unstrained outline, its rows of x and of y.
 
     Parameters
     ----------
     spin, stretch
         The matrices that stand for dQ/dr and Q.
-    e
-        Strain with which the point turns.
+    q
+        Unknowns with whose strain the point turns.
     """
-    turning_x = x + (x * e[0] + y * e[2] / 2)
-    turning_y = y + (x * e[2] / 2 + y * e[1])
+    turning_x, turning_y = strained(q, x, y)
     for axis in range(2):
         row = across if axis == 0 else up
         row[0] = 1.0 - axis
@@ -107,15 +110,30 @@ def directions(spin: Matrix, stretch: Matrix, e: Vector, x: float, y: float, acr
         row[5] = stretch[axis][0] / 2 * y + stretch[axis][1] / 2 * x
 
 
-def strain_matrix(e: Array) -> Array:
-    """Return E of (ex, ey, gxy)."""
-    return np.array([[e[0], e[2] / 2], [e[2] / 2, e[1]]])
+class RollingMotion(NamedTuple):
+    """Where a block is at some instants."""
+
+    c: Array  # (k, 2) centroid [m]
+    r: Array  # (k,) sum of the steps' rotations [rad]
+    e: Array  # (k, 3) strains in axes that turn with the block
+    V: Array  # (k, 6) velocities of c, r, e
+    Q: Array  # (k, 2, 2) turn of the outline
+
+    def points(self, xi: Array) -> Array:
+        """Return points of the unstrained outline where they are, (k, points, 2) [m]."""
+        local = xi + np.einsum("mi,kij->kmj", xi, strain_matrices(self.e))
+        placed: Array = self.c[:, None] + np.einsum("kij,kmj->kmi", self.Q, local)
+        return placed
 
 
-def positions(c: Array, Q: Array, e: Array, xi: Array) -> Array:
-    """Return the points of the block, (n, 2) [m]."""
-    placed: Array = c + (xi + xi @ strain_matrix(e)) @ Q.T
-    return placed
+def motion_of(rows: Array) -> RollingMotion:
+    """Return the motion of rows that hold q, V and Q."""
+    return RollingMotion(rows[:, :2], rows[:, 2], rows[:, 3:6], rows[:, 6:12], rows[:, 12:].reshape(-1, 2, 2))
+
+
+def strain_matrices(e: Array) -> Array:
+    """Return E of (ex, ey, gxy), (k, 2, 2)."""
+    return np.array([[e[:, 0], e[:, 2] / 2], [e[:, 2] / 2, e[:, 1]]]).transpose(2, 0, 1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -11,17 +10,18 @@ from numpy.typing import NDArray
 
 from dda.contact.kernel import at_rest
 from dda.contact.unilateral import Unilateral
-from dda.model.block import Block
-from dda.model.load import Load, pressed_part
-from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, positions, turned
+from dda.model.load import pressed_part
+from dda.model.loaded import LoadedBlock
+from dda.one_block.unilateral import check_iteration
+from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, turned
 from dda.rotation.step import RollingState, Setting, room_for
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class RollingModel:
+@dataclass(frozen=True, eq=False, init=False)
+class RollingModel(LoadedBlock):
     """One convex block that slides, rocks, topples and rolls over the line of its base edge, prolonged both ways.
 
     Pressure and traction are dead loads: they keep size and direction and act on the material points of the top edge.
@@ -33,24 +33,19 @@ class RollingModel:
         of the top edge, or base and top are not two edges of the block.
     """
 
-    block: Block
     contact: Unilateral  # at every corner of the outline
-    load: Load = field(default_factory=Load)
-    base: int = 0  # edge on the plane at t = 0
-    top: int = 2  # edge under pressure and traction
     tilt: float = 0.0  # counter-clockwise at t = 0, about the end of the base that stays down [rad]
     velocity: tuple[float, float] = (0.0, 0.0)  # of the centroid at t = 0, in x and y of the block's coordinates [m/s]
     spin: float = 0.0  # at t = 0, counter-clockwise [rad/s]
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         """Check the numbers and the edges."""
-        self.block.check_edges(self.base, self.top)
+        super().check()
         for name in ("tilt", "spin", "velocity"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
         if any(self.contact.band):
             raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
-        pressed_part(*self.block.edge(self.top), self.load.eccentricity)
         _ = self.body
 
     @cached_property
@@ -77,25 +72,28 @@ class RollingModel:
 
     def start(self, setting: Setting, scheme: Scheme) -> RollingState:
         """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
-        own, Q, e = self.body, turned(self.tilt), np.zeros(3)
-        upright = own.centroid + own.xi[own.base[0 if self.tilt >= 0 else 1]]
-        c = upright - Q @ own.xi[own.base[0 if self.tilt >= 0 else 1]] + np.array([0.0, self.contact.gap])
-        gap = positions(c, Q, e, own.xi)[:, 1]
+        own = self.body
+        Q = turned(self.tilt)
         touching = own.base if self.tilt == 0 else own.base[:1] if self.tilt > 0 else own.base[1:]
+        down = own.xi[touching[0]]
+        q = np.zeros(6)
+        q[:2] = own.centroid + down - Q @ down + np.array([0.0, self.contact.gap])
+        gap = (q[:2] + own.xi @ Q.T)[:, 1]
         gap[list(touching)] = self.contact.gap
-        V: Array = np.zeros(6)
-        A: Array = np.zeros(6)
-        V[:2], V[2] = own.to_base @ self.velocity, self.spin
+        V = np.zeros(6)
+        V[:2] = own.to_base @ self.velocity
+        V[2] = self.spin
+        A = np.zeros(6)
         if scheme.start == "consistent":
             push = np.zeros(6)
             push[:2] = own.M[0, 0] * setting.weight
             spin = np.array([-Q[1], Q[0]])
             across, up = np.zeros((2, 6))
             for (x, y), force in zip(setting.where, setting.dead, strict=True):
-                directions(spin, Q, e, x, y, across, up)
+                directions(spin, Q, q, x, y, across, up)
                 push += force[0] * across + force[1] * up
             A[:] = np.linalg.solve(own.M, push)
-        return RollingState(c, Q, np.zeros(1), e, V, A, at_rest(gap, room_for(len(gap))))
+        return RollingState(q, Q, V, A, at_rest(gap, room_for(len(gap))))
 
 
 @dataclass(frozen=True)
@@ -116,7 +114,4 @@ class RollingOptions:
         """Check the ranges."""
         if self.rotation not in (EXACT, FIRST_ORDER):
             raise ValueError(f"rotation: must be {EXACT!r} or {FIRST_ORDER!r}, got {self.rotation!r}")
-        if isinstance(self.solve_limit, bool) or not isinstance(self.solve_limit, int) or self.solve_limit < 1:
-            raise ValueError(f"solve_limit: must be a positive integer, got {self.solve_limit!r}")
-        if not (math.isfinite(self.cut) and 0 < self.cut < 1):
-            raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")
+        check_iteration(self.solve_limit, self.cut)

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.model.load import BaseMotion
-from dda.one_block.contact_result import early_end
-from dda.one_block.solution import check_damping, check_request, step_times
+from dda.one_block.contact_result import contact_parts, run_fields
+from dda.one_block.solution import check_damping, check_request
 from dda.one_block.unilateral import check_scheme
-from dda.rotation.energy import energies
+from dda.rotation.body import motion_of
 from dda.rotation.model import RollingModel, RollingOptions
-from dda.rotation.result import RollingResult, observed, parts_of
-from dda.rotation.step import RollingHistory, history_of, make_steps, rolling_equations
+from dda.rotation.result import RollingResult, energies, observed
+from dda.rotation.step import STATE, make_steps, rolling_equations
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
-from dda.stepping.driver import OUTCOMES, base_record, counts_of, reached_rows
+from dda.stepping.driver import base_record, history_of, reached_history
 
 Array = NDArray[np.float64]
 
@@ -27,10 +27,7 @@ PLAIN_STEP = 4e-4  # seconds of plain Python for each step
 
 def base_motion(model: RollingModel) -> BaseMotion | None:
     """Return the motion of the base, along and away from it."""
-    motion = model.load.motion
-    if motion is None:
-        return None
-    return BaseMotion(motion.time, np.asarray(motion.displacement, dtype=float) @ model.body.to_base.T)
+    return model.load.motion and model.load.motion.along(model.body.to_base)
 
 
 def solve_rolling(
@@ -68,41 +65,43 @@ def solve_rolling(
     began = perf_counter()
     setting = model.setting(options)
     start = model.start(setting, scheme)
-    motion = base_motion(model)
+    base = base_motion(model)
     body = rolling_equations(setting, scheme)
-    history, counts = history_of(body.corners, steps), counts_of(steps, True)
+    history = history_of(steps, STATE, body.corners, energies=True)
     ready = perf_counter()
-    (reached, outcome), left, how = run_loop(
-        make_steps,
-        (body, start, start),
-        (base_record(motion),),
-        (history, counts, steps, options.cut),
-        steps * PLAIN_STEP,
+    (reached, ended), left, how = run_loop(
+        make_steps, (body, start, start), (base_record(base),), (history, steps, options.cut), steps * PLAIN_STEP
     )
-    history = RollingHistory(*reached_rows(history, reached))
-    values = observed(setting.body, start, history)
-    instants = scheme.step * np.arange(reached + 1.0)
-    base = np.zeros(reached + 1) if motion is None else motion.at(instants)[:, 0]
+    history = reached_history(history, reached)
+    motion = motion_of(history.motion)
+    values = observed(setting.body, motion, history)
+    velocity = motion.V[1:, :2] @ model.body.to_base
+
+    def slide() -> Array:
+        placed = motion.points(setting.body.xi)[:, :, 0].T
+        if base is not None:
+            placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
+        return placed[:, 1:] - placed[:, :1]
+
+    parts = contact_parts(
+        history,
+        body.law.softness,
+        slide=slide,
+        slipped=lambda: np.abs(history.slipped[1:].T),
+        horizontal_velocity=lambda: velocity[:, 0],
+        velocity=lambda: velocity[:, 1],
+    )
+    note = f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation"
     return RollingResult(
-        time=step_times(scheme, reached),
+        **run_fields(history, ended, scheme, [note], (began, ready)),
         columns={name: values[name] for name in columns},
         unknowns=6,
         nonzeros=int(np.count_nonzero(setting.body.M)),
         factorisations=int(left[0].made[0]),
-        solves=int(counts.solves[:reached].sum()),
-        notes=(
-            f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation",
-            *early_end(outcome, reached),
-        ),
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
-        outcome=OUTCOMES[outcome],
-        step_solves=counts.solves[:reached],
-        step_cuts=counts.cuts[:reached],
         base_contacts=setting.body.base,
-        parts=parts_of(setting.body, start, history, base, body.law.softness),
-        balance=lambda: energies(setting, start, history, counts.losses[:reached]),
+        parts=parts,
+        balance=lambda: energies(setting, motion, history),
         body=setting.body,
-        start=start,
+        motion=motion,
         history=history,
     )

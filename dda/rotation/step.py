@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
     NONE,
@@ -32,30 +33,26 @@ from dda.contact.kernel import (
     Flexibility,
     Free,
     Law,
-    Matrix,
     States,
-    Vector,
     Work,
     at_rest,
-    eliminate,
     find_contacts,
     law_of,
-    scale_of,
     set_paired_flexibility,
-    spring_energy,
     work_for,
-    zeros,
 )
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
-from dda.stepping.driver import BaseRecord, Counts, base_at, driver
+from dda.stepping.driver import BaseRecord, base_at, driver
+from dda.stepping.energy import DAMPING, add_contact_losses
 
 Array = NDArray[np.float64]
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 PAIRS = 32  # of corners that are tried in a step
+STATE = 16  # numbers that are kept of a state: q, V and Q
 OUTLINE = 8  # corners that there is room for, or a multiple of it
 
 
@@ -75,11 +72,9 @@ class Setting:
 class RollingState(NamedTuple):
     """Where the block is."""
 
-    c: Vector  # (2,) centroid [m]
+    q: Vector  # (6,) centroid [m], sum of the steps' rotations [rad], strains in axes that turn with the block
     Q: Matrix  # (2, 2) turn of the outline
-    r: Vector  # (1,) sum of the steps' rotations [rad]
-    e: Vector  # (3,) strains in axes that turn with the block
-    V: Vector  # (6,) velocities of c, r, e
+    V: Vector  # (6,) velocities of q
     A: Vector  # (6,) accelerations
     contacts: Contacts  # of all corners
 
@@ -104,26 +99,27 @@ class Room(NamedTuple):
     D: Vector  # (6,)
     new: Vector  # (6,)
     push: Vector  # (6,) generalised force of loads and contact
-    e: Vector  # (3,)
-    c: Vector  # (2,)
-    turn: Turn
-    end: Matrix  # (2, 2) dQ/dr at the end of the step
-    before: Matrix  # (corners, 2) from the base at the start of the step [m]
-    after: Matrix  # (corners, 2) at its end
-    near: Vector  # (corners,) least height in the step
-    base: Vector  # (2,) displacement of the base at the end of the step [m]
-    B: Matrix  # (4, 6) directions of the gaps, then of the slides, of the corners that may touch
-    P: Matrix  # (6, 4) what their unit forces move
-    force: Vector  # (4,)
+    q: Vector  # (6,)
     across: Vector  # (6,) directions of a point in x and in y, of the chord and of the end
     up: Vector
     across_end: Vector
     up_end: Vector
+    scale: Vector
+    turn: Turn
+    spin: Matrix  # (2, 2) dQ/dr at the end of the step
+    before: Matrix  # (corners, 2) from the base at the start of the step [m]
+    after: Matrix  # (corners, 2) at its end
+    near: Vector  # (corners,) least height in the step
+    slide: Vector  # (corners,)
+    start: Vector  # (2,) displacement of the base at the start of the step [m]
+    base: Vector  # (2,) at its end
+    moved: Vector  # (2,) between them
+    B: Matrix  # (4, 6) directions of the gaps, then of the slides, of the corners that may touch
+    P: Matrix  # (4, 6) what their unit forces move
+    force: Vector  # (4,)
+    A: Matrix  # (6, 6)
     at: States  # (2,) corners that may touch
     tried: States  # (PAIRS,)
-    A: Matrix  # (6, 6)
-    right: Matrix
-    scale: Vector
 
 
 class Touching(NamedTuple):
@@ -163,22 +159,6 @@ class RollingEquations(NamedTuple):
     work: Work
 
 
-class RollingHistory(NamedTuple):
-    """States after every step, a row each."""
-
-    c: Array  # (steps, 2)
-    Q: Array  # (steps, 4)
-    r: Array  # (steps, 1)
-    e: Array  # (steps, 3)
-    V: Array  # (steps, 6)
-    impulse: Array  # (steps, 1) of all N, as the scheme takes it [N s]
-    normal: Array  # (steps, corners)
-    shear: Array
-    gap: Array
-    slipped: Array  # size of all slip in the step [m]
-    state: NDArray[np.int8]
-
-
 def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     """Return the equations as numbers."""
     own, loads = setting.body, len(setting.where)
@@ -189,11 +169,10 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     where[:loads], dead[:loads] = setting.where, setting.dead
     pairs = [Touching(at_rest(np.zeros(n), 2), at_rest(np.zeros(n), 2)) for n in (1, 2)]
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
-    vector, square = (6,), (6, 6)
-    turning: list[Any] = [Turn(*zeros((2, 2), (2, 2), (2, 2)))]
-    before = zeros(*[vector] * 6, 3, 2) + turning + zeros((2, 2), (capacity, 2), (capacity, 2), capacity, 2)
-    directions_of = zeros((4, 6), (6, 4), 4, *[vector] * 4)
-    room = Room(*(before + directions_of + zeros(2, PAIRS, dtype=np.int64) + zeros(square, square, 6)))
+    rows: list[Any] = zeros(*[6] * 12)
+    rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
+    rows += zeros((2, 2), (capacity, 2), (capacity, 2), capacity, capacity, 2, 2, 2, (4, 6), (4, 6), 4, (6, 6))
+    rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
         corners=len(own.xi),
         loads=loads,
@@ -214,7 +193,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         whole=lengths[0],
         part=lengths[1],
         made=np.zeros(1),
-        room=room,
+        room=Room(*rows),
         one=pairs[0],
         two=pairs[1],
         free=Free(*np.zeros((3, 2))),
@@ -231,12 +210,6 @@ def room_for(corners: int) -> int:
     while capacity < corners:
         capacity *= 2
     return capacity
-
-
-def history_of(corners: int, steps: int) -> RollingHistory:
-    """Return room for so many steps."""
-    shapes = [(steps, width) for width in (2, 4, 1, 3, 6, 1, *[corners] * 4)]
-    return RollingHistory(*(zeros(*shapes) + zeros((steps, corners), dtype=np.int8)))
 
 
 # ---- the step --------------------------------------------------------------------------------------------------------
@@ -267,39 +240,21 @@ def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, made: StepMatr
             made.M[i][j] = body.M[i][j] * growth
             if i > 1 and j > 1:
                 made.M[i][j] *= growth
-            own.A[i][j] = made.M[i][j]
+    copy_matrix(made.M, own.A, 6)
+    invert(own.A, 6, own.scale, made.accelerating)
+    copy_matrix(made.M, own.A, 6)
     for i in range(3):
         for j in range(3):
             made.K[i][j] = growth * body.K[i][j]
-    invert(own, made.accelerating)
-    for i in range(6):
+            own.A[3 + i][3 + j] += weight * made.K[i][j]
+    invert(own.A, 6, own.scale, made.flexible)
+    for i in range(6):  # M is symmetric: its rows are its columns
         for j in range(6):
-            own.A[i][j] = made.M[i][j]
-            if i > 2 and j > 2:
-                own.A[i][j] += weight * made.K[i - 3][j - 3]
-    invert(own, made.flexible)
-    for i in range(6):
-        for j in range(6):
-            total = 0.0
-            for k in range(6):
-                total += made.flexible[i][k] * made.M[k][j]
-            made.kept[i][j] = total
+            made.kept[i][j] = dot(made.flexible[i], made.M[j], 6)
     for i in range(6):
         for j in range(6):
             made.flexible[i][j] *= weight
     body.made[0] += 1
-
-
-def invert(own: Room, inverse: Matrix) -> None:
-    """Write the inverse of own.A, positive definite."""
-    for i in range(6):
-        own.scale[i] = scale_of(own.A[i][i])
-        for j in range(6):
-            own.right[i][j] = 1.0 if i == j else 0.0
-    eliminate(own.A, own.right, own.scale, 6, 6)
-    for i in range(6):
-        for j in range(6):
-            inverse[i][j] = own.right[i][j]
 
 
 def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices:
@@ -324,7 +279,7 @@ def advance(
         Where it begins and how long it is, in steps.
     """
     made = matrices_of(body, state.Q, ratio)
-    start_step(body, made, state, base, begun, ratio)
+    predict(body, made, state, base, begun, ratio)
     own = body.room
     near = nearest(body, own.near, REACH * body.size)
     total = 0
@@ -351,53 +306,55 @@ def pair_number(at: States, near: int) -> int:
     return number
 
 
-def start_step(
+def predict(
     body: RollingEquations, made: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
 ) -> None:
     """Write what is known of a step before its contact: the step without it, and where the corners come from."""
     own = body.room
-    h = made.numbers[2]
     gg = made.numbers[1]
+    h = made.numbers[2]
+    for axis in range(2):
+        own.start[axis] = base_at(base, axis, body.step * begun)
+        own.base[axis] = base_at(base, axis, body.step * (begun + ratio))
+        own.moved[axis] = own.base[axis] - own.start[axis]
+    hold(body, made, state.q, own.held)
     for i in range(6):
-        own.held[i] = 0.0
         own.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
         own.new[i] = gg * h * state.V[i] + h * h * (0.5 - body.alpha) * state.A[i]
-    for i in range(2):
-        own.held[i] = made.M[0][0] * body.weight[i]
-    for i in range(3):
-        for j in range(3):
-            own.held[3 + i] -= made.K[i][j] * state.e[j]
     for i in range(6):
-        total = 0.0
-        for j in range(6):
-            total += made.flexible[i][j] * own.held[j]
-            total += made.kept[i][j] * own.new[j]
-        own.free[i] = total
-    for axis in range(2):
-        own.base[axis] = base_at(base, axis, body.step * begun)
-    for i in range(body.corners):
-        x, y = place(state.c, state.Q, state.e, body.xi[i][0], body.xi[i][1])
-        own.before[i][0] = x - own.base[0]
-        own.before[i][1] = y - own.base[1]
-    for axis in range(2):
-        own.base[axis] = base_at(base, axis, body.step * (begun + ratio))
-    place_corners(body, state, own.free)
+        own.free[i] = dot(made.flexible[i], own.held, 6) + dot(made.kept[i], own.new, 6)
+    place_corners(body, state.q, state.Q, own.start, own.before)
+    move(body, state, own.free, 1.0)
+    place_corners(body, own.q, own.turn.end, own.base, own.after)
     for i in range(body.corners):
         own.near[i] = min(own.before[i][1], own.after[i][1])
 
 
-def place_corners(body: RollingEquations, state: RollingState, D: Vector) -> None:
-    """Write where an increment D brings the corners, and its turn."""
+def hold(body: RollingEquations, made: StepMatrices, q: Vector, force: Vector) -> None:
+    """Write weight and elastic force of a block at q."""
+    for i in range(2):
+        force[i] = made.M[0][0] * body.weight[i]
+    force[2] = 0.0
+    for i in range(3):
+        force[3 + i] = 0.0
+        for j in range(3):
+            force[3 + i] -= made.K[i][j] * q[3 + j]
+
+
+def move(body: RollingEquations, state: RollingState, D: Vector, share: float) -> None:
+    """Write the turn of an increment D, and q after a share of it."""
     own = body.room
     turn(state.Q, D[2], body.exact, own.turn)
-    for i in range(2):
-        own.c[i] = state.c[i] + D[i]
-    for i in range(3):
-        own.e[i] = state.e[i] + D[3 + i]
+    for i in range(6):
+        own.q[i] = state.q[i] + share * D[i]
+
+
+def place_corners(body: RollingEquations, q: Vector, Q: Matrix, base: Vector, out: Matrix) -> None:
+    """Write where the corners are, from the base."""
     for i in range(body.corners):
-        x, y = place(own.c, own.turn.end, own.e, body.xi[i][0], body.xi[i][1])
-        own.after[i][0] = x - own.base[0]
-        own.after[i][1] = y - own.base[1]
+        x, y = place(q, Q, body.xi[i][0], body.xi[i][1])
+        out[i][0] = x - base[0]
+        out[i][1] = y - base[1]
 
 
 def nearest(body: RollingEquations, heights: Vector, reach: float) -> int:
@@ -450,18 +407,11 @@ def settle(
         turn(state.Q, own.D[2], body.exact, own.turn)
         push_of_loads(body, state)
         for i in range(6):
-            total = own.free[i]
-            for j in range(6):
-                total += made.flexible[i][j] * own.push[j]
-            own.new[i] = total
+            own.new[i] = own.free[i] + dot(made.flexible[i], own.push, 6)
         if near > 0:
             set_directions(body, state, near)
             for row in range(2 * near):
-                for i in range(6):
-                    total = 0.0
-                    for j in range(6):
-                        total += made.flexible[i][j] * own.B[row][j]
-                    own.P[i][row] = total
+                multiply(made.flexible, own.B[row], 6, 6, own.P[row])
             take_forces(own, pair.after, near)
             set_free(body, state, near)
             outcome, spent = find_contacts(
@@ -471,9 +421,7 @@ def settle(
             if outcome != FOUND:
                 return outcome, solves
             take_forces(own, pair.after, near)
-            for i in range(6):
-                for row in range(2 * near):
-                    own.new[i] += own.P[i][row] * own.force[row]
+            add_rows(own.P, own.force, 2 * near, 6, own.new)
         settled = True
         for i in range(6):
             change = abs(own.new[i] - own.D[i]) * (body.size if i > 1 else 1.0)
@@ -506,34 +454,25 @@ def take_forces(own: Room, contacts: Contacts, near: int) -> None:
 def set_free(body: RollingEquations, state: RollingState, near: int) -> None:
     """Write gaps and slides for the flexibility about the place to which the present forces bring the corners."""
     own = body.room
+    free = body.free
     C = body.flexible.C
-    for row in range(2 * near):
-        for column in range(2 * near):
-            total = 0.0
-            for i in range(6):
-                total += own.B[row][i] * own.P[i][column]
-            C[row][column] = total
+    rows = 2 * near
+    for row in range(rows):
+        for column in range(rows):
+            C[row][column] = dot(own.B[row], own.P[column], 6)
     for i in range(6):
         own.push[i] = own.new[i]
-        for row in range(2 * near):
-            own.push[i] += own.P[i][row] * own.force[row]
-    turn(state.Q, own.push[2], body.exact, own.turn)
-    for i in range(2):
-        own.c[i] = state.c[i] + own.push[i]
-    for i in range(3):
-        own.e[i] = state.e[i] + own.push[3 + i]
+    add_rows(own.P, own.force, rows, 6, own.push)
+    move(body, state, own.push, 1.0)
     for k in range(near):
         corner = own.at[k]
-        x, y = place(own.c, own.turn.end, own.e, body.xi[corner][0], body.xi[corner][1])
-        body.free.gap[k] = y - own.base[1]
-        body.free.slide[k] = x - own.base[0] - own.before[corner][0]
-        for column in range(2 * near):
-            body.free.gap[k] -= C[k][column] * own.force[column]
-            body.free.slide[k] -= C[near + k][column] * own.force[column]
+        x, y = place(own.q, own.turn.end, body.xi[corner][0], body.xi[corner][1])
+        free.gap[k] = y - own.base[1] - dot(C[k], own.force, rows)
+        free.slide[k] = x - own.base[0] - own.before[corner][0] - dot(C[near + k], own.force, rows)
     if near == 2:
         set_paired_flexibility(C, body.flexible.C_paired)
-        body.free.paired[0] = (body.free.slide[0] + body.free.slide[1]) / 2
-        body.free.paired[1] = body.free.slide[1] - body.free.slide[0]
+        free.paired[0] = (free.slide[0] + free.slide[1]) / 2
+        free.paired[1] = free.slide[1] - free.slide[0]
 
 
 def set_directions(body: RollingEquations, state: RollingState, near: int) -> None:
@@ -551,17 +490,17 @@ def force_directions(body: RollingEquations, state: RollingState, x: float, y: f
     """Write B_f of a point, for own.D and its turn."""
     own = body.room
     late = late_share(body.delta) if body.exact else 0.0
-    for i in range(3):
-        own.e[i] = state.e[i] + own.D[3 + i] / 2
-    directions(own.turn.chord, own.turn.mean, own.e, x, y, own.across, own.up)
+    for i in range(3, 6):
+        own.q[i] = state.q[i] + own.D[i] / 2
+    directions(own.turn.chord, own.turn.mean, own.q, x, y, own.across, own.up)
     if late == 0:
         return
-    for i in range(3):
-        own.e[i] = state.e[i] + own.D[3 + i]
+    for i in range(3, 6):
+        own.q[i] = state.q[i] + own.D[i]
     for j in range(2):
-        own.end[0][j] = -own.turn.end[1][j]
-        own.end[1][j] = own.turn.end[0][j]
-    directions(own.end, own.turn.end, own.e, x, y, own.across_end, own.up_end)
+        own.spin[0][j] = -own.turn.end[1][j]
+        own.spin[1][j] = own.turn.end[0][j]
+    directions(own.spin, own.turn.end, own.q, x, y, own.across_end, own.up_end)
     for i in range(6):
         own.across[i] = (1 - late) * own.across[i] + late * own.across_end[i]
         own.up[i] = (1 - late) * own.up[i] + late * own.up_end[i]
@@ -581,38 +520,11 @@ def push_of_loads(body: RollingEquations, state: RollingState) -> None:
 def accept(body: RollingEquations, made: StepMatrices, state: RollingState, after: RollingState, near: int) -> None:
     """Write the state at the end of the step."""
     own = body.room
-    D = own.D
     h = made.numbers[2]
-    place_corners(body, state, D)
+    turn(state.Q, own.D[2], body.exact, own.turn)
     push_of_loads(body, state)
-    if near > 0:
-        set_directions(body, state, near)
-        pair = body.one if near == 1 else body.two
-        take_forces(own, pair.after, near)
-        for row in range(2 * near):
-            for i in range(6):
-                own.push[i] += own.force[row] * own.B[row][i]
-    for i in range(6):
-        own.push[i] += own.held[i]
-    for i in range(3):
-        for j in range(3):
-            own.push[3 + i] -= made.K[i][j] * D[3 + j]
-    for i in range(6):
-        total = 0.0
-        for j in range(6):
-            total += made.accelerating[i][j] * own.push[j]
-        after.A[i] = total
-        after.V[i] = made.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * total)
-    for i in range(2):
-        after.c[i] = state.c[i] + D[i]
-        for j in range(2):
-            after.Q[i][j] = own.turn.end[i][j]
-    for i in range(3):
-        after.e[i] = state.e[i] + D[3 + i]
-    after.r[0] = state.r[0] + D[2]
     contacts = after.contacts
     for i in range(body.corners):
-        contacts.gap[i] = own.after[i][1]
         contacts.state[i] = OPEN
         contacts.normal[i] = 0.0
         contacts.shear[i] = 0.0
@@ -620,8 +532,26 @@ def accept(body: RollingEquations, made: StepMatrices, state: RollingState, afte
         contacts.slipped[i] = 0.0
     if near > 0:
         pair = body.one if near == 1 else body.two
-        for k in range(near):
-            copy_contact(pair.after, k, contacts, own.at[k])
+        set_directions(body, state, near)
+        take_forces(own, pair.after, near)
+        add_rows(own.B, own.force, 2 * near, 6, own.push)
+    move(body, state, own.D, 1.0)
+    hold(body, made, own.q, own.held)
+    for i in range(6):
+        own.push[i] += own.held[i]
+        after.q[i] = own.q[i]
+    for i in range(6):
+        after.A[i] = dot(made.accelerating[i], own.push, 6)
+        after.V[i] = made.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * after.A[i])
+    for i in range(2):
+        for j in range(2):
+            after.Q[i][j] = own.turn.end[i][j]
+    place_corners(body, own.q, own.turn.end, own.base, own.after)
+    for i in range(body.corners):
+        contacts.gap[i] = own.after[i][1]
+        own.slide[i] = own.after[i][0] - own.before[i][0]
+    for k in range(near):
+        copy_contact(pair.after, k, contacts, own.at[k])
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -634,68 +564,46 @@ def account(
     base: BaseRecord,
     begun: float,
     ratio: float,
-    history: RollingHistory,
-    counts: Counts,
-    number: int,
+    sums: Vector,
 ) -> None:
-    """Add what an accepted part of a step slips, gives and loses, as `dda.rotation.energy` tells."""
+    """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
     own = body.room
-    late = body.delta
     gg = body.gg**ratio
-    moved_x = base_at(base, 0, body.step * (begun + ratio)) - base_at(base, 0, body.step * begun)
-    moved_y = base_at(base, 1, body.step * (begun + ratio)) - base_at(base, 1, body.step * begun)
-    if number > 0 and begun == number:
-        history.impulse[number, 0] = history.impulse[number - 1, 0]
-    losses = counts.losses
-    losses[number, 1] += (1 - gg * gg) * kinetic(body, state)
-    before = state.contacts
-    contacts = after.contacts
-    for i in range(body.corners):
-        N = (1 - late) * before.normal[i] + late * contacts.normal[i]
-        T = (1 - late) * before.shear[i] + late * contacts.shear[i]
-        history.impulse[number, 0] += body.step * ratio * N
-        history.slipped[number, i] += abs(contacts.slipped[i])
-        friction = abs(contacts.shear[i] * contacts.slipped[i])
-        losses[number, 3] += friction
-        losses[number, 4] += N * moved_y + T * moved_x
-        if (before.state[i] == OPEN) != (contacts.state[i] == OPEN):
-            work = N * (contacts.gap[i] - before.gap[i]) + T * (own.after[i][0] - own.before[i][0])
-            losses[number, 2] += spring_energy(body.law, before, i) - spring_energy(body.law, contacts, i)
-            losses[number, 2] -= work + friction
+    sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
+    add_contact_losses(
+        body.law,
+        state.contacts,
+        after.contacts,
+        own.slide,
+        own.moved,
+        body.delta,
+        body.step * ratio,
+        1.0,
+        sums,
+    )
 
 
 def kinetic(body: RollingEquations, state: RollingState) -> float:
     """Return the kinetic energy [J]."""
     growth = area_growth(body, state.Q)
-    moving = 0.0
+    moving = quadratic(body.M, state.V, 2)
     turning = 0.0
-    for i in range(6):
-        for j in range(6):
-            if i < 2 and j < 2:
-                moving += state.V[i] * body.M[i][j] * state.V[j]
-            elif i > 1 and j > 1:
-                turning += state.V[i] * body.M[i][j] * state.V[j]
+    for i in range(2, 6):
+        for j in range(2, 6):
+            turning += state.V[i] * body.M[i][j] * state.V[j]
     return float((growth * moving + growth * growth * turning) / 2)
 
 
-def keep(body: RollingEquations, state: RollingState, history: RollingHistory, number: int) -> bool:
-    """Write the state at the end of a step; tell whether it is finite."""
-    total = state.c[0] + state.c[1]
-    history.r[number, 0] = state.r[0]
-    for i in range(2):
-        history.c[number, i] = state.c[i]
-        for j in range(2):
-            history.Q[number, 2 * i + j] = state.Q[i][j]
-    for i in range(3):
-        history.e[number, i] = state.e[i]
+def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) -> bool:
+    """Write q, V and Q at the end of a step; tell whether it is finite."""
+    total = state.q[0] + state.q[1]
     for i in range(6):
-        history.V[number, i] = state.V[i]
+        rows[number, i] = state.q[i]
+        rows[number, 6 + i] = state.V[i]
         total += state.V[i]
-    for i in range(body.corners):
-        history.normal[number, i] = state.contacts.normal[i]
-        history.shear[number, i] = state.contacts.shear[i]
-        history.gap[number, i] = state.contacts.gap[i]
-        history.state[number, i] = state.contacts.state[i]
+    for i in range(2):
+        for j in range(2):
+            rows[number, 12 + 2 * i + j] = state.Q[i][j]
     return math.isfinite(total)
 
 

@@ -19,7 +19,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,7 @@ WORTHWHILE = 3.0  # the same from which it is compiled and kept
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 PLAIN, COMPILED = "plain Python", "compiled"
 
-loops: dict[object, tuple[list[object], Loop | None]] = {}  # by loop and types: what it was made of, and itself
+loops: dict[tuple[Loop, object], tuple[list[Use], Loop | None]] = {}  # by loop and types
 _jitable: set[FunctionType] = set()
 
 
@@ -102,7 +102,7 @@ def is_worthwhile(loop: Loop, seconds: float) -> bool:
     if seconds < WORTHWHILE_KEPT:  # and nothing is looked for, nor made, in the user's cache
         return False
     if seconds < WORTHWHILE:
-        return is_kept(loop)
+        return any(known is loop for known, _ in loops) or is_kept(loop)
     return seconds >= WORTHWHILE_ANEW or cache_directory() is not None
 
 
@@ -117,8 +117,7 @@ def is_kept(loop: Loop) -> bool:
         return False
     if directory is None:
         return False
-    functions = [part for part in parts_of(loop) if isinstance(part, FunctionType)]
-    return any((directory / _digest(functions, numba_version)).rglob("*.nbi"))
+    return any((directory / _digest(functions_of(loop), numba_version)).rglob("*.nbi"))
 
 
 def as_lists(value: Any) -> Any:
@@ -133,7 +132,7 @@ def as_lists(value: Any) -> Any:
 def as_record(value: Any) -> Any:
     """Return a named tuple as a record of NumPy: one block of memory, however many arrays there are."""
     record = np.recarray(1, dtype=_type_of(value))
-    _fill(record[0], value)
+    _fill(record.view(np.ndarray), value)
     return record[0]
 
 
@@ -146,70 +145,82 @@ def _type_of(value: Any) -> Any:
     return np.dtype((np.int64 if own.dtype.kind in "bi" else np.float64, own.shape))
 
 
-def _fill(record: Any, value: Any) -> None:
+def _fill(records: Any, value: Any) -> None:
     for name, part in zip(value._fields, value, strict=True):
         if isinstance(part, tuple):
-            _fill(record[name], part)
+            _fill(records[name], part)
         else:
-            record[name] = part
+            records[name][0] = part
 
 
 def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
     """Return the compiled loop for such arguments, or None where the plain one is to run."""
-    parts = list(parts_of(loop))
-    if any(_is_foreign(part, loop) for part in parts):
-        return None
     key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
     if key not in loops:
-        loops[key] = parts, _compile(loop, parts, arguments)
-    made_of, own = loops[key]
-    same = len(parts) == len(made_of) and all(map(_same, parts, made_of))
-    return own if same else None
+        functions = functions_of(loop)
+        uses = [use for function in functions for use in uses_of(function)]
+        if any(_is_foreign(part, loop) for part in [*functions, *(use.value for use in uses)]):
+            return None
+        loops[key] = uses, _compile(loop, functions, arguments)
+    uses, own = loops[key]
+    unchanged = all(use.names.get(use.name) is use.value for use in uses)
+    return own if unchanged else None
 
 
-def _is_foreign(part: object, loop: Loop) -> bool:
+def _is_foreign(value: object, loop: Loop) -> bool:
     """Tell whether a function comes from elsewhere than the package of the loop: nobody knows what it holds."""
-    if not callable(part) or isinstance(part, type):
+    if not callable(value) or isinstance(value, type):
         return False
     package = loop.__module__.partition(".")[0]
-    return not isinstance(part, FunctionType) or part.__module__.partition(".")[0] != package
+    return not isinstance(value, FunctionType) or value.__module__.partition(".")[0] != package
 
 
-def _same(part: object, other: object) -> bool:
-    return part is other or (type(part) is type(other) and not callable(part) and part == other)
+class Use(NamedTuple):
+    """A function or a constant that compiled code was made of, and where it is looked up."""
+
+    names: dict[str, Any]
+    name: str
+    value: object
 
 
-def parts_of(loop: Loop) -> Iterator[object]:
-    """Yield a function of this package, all that it calls, and the constants that these read."""
-    seen: set[int] = set()
+def uses_of(function: FunctionType) -> Iterator[Use]:
+    """Yield the functions and constants that a function looks up by name."""
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if callable(value) or isinstance(value, int | float | tuple):
+            yield Use(function.__globals__, name, value)
+
+
+def called_by(function: FunctionType) -> list[object]:
+    """Return what a function holds in its closure, and what it looks up by name."""
+    return [cell.cell_contents for cell in function.__closure__ or ()] + [use.value for use in uses_of(function)]
+
+
+def functions_of(loop: Loop) -> list[FunctionType]:
+    """Return a function of this package and all that it calls."""
+    functions: list[FunctionType] = []
     waiting: list[object] = [loop]
     while waiting:
-        part = waiting.pop()
-        if id(part) in seen and isinstance(part, FunctionType):
-            continue
-        seen.add(id(part))
-        yield part
-        if not isinstance(part, FunctionType):
-            continue
-        names = [name for name in part.__code__.co_names if name in part.__globals__]
-        cells = [cell.cell_contents for cell in part.__closure__ or ()]
-        values = [part.__globals__[name] for name in names] + cells
-        waiting += [value for value in values if callable(value) or isinstance(value, int | float | tuple)]
+        function = waiting.pop()
+        if isinstance(function, FunctionType) and function not in functions:
+            functions.append(function)
+            waiting += called_by(function)
+    return functions
 
 
-def _compile(loop: Loop, parts: list[object], arguments: tuple[Any, ...]) -> Loop | None:
+def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ...]) -> Loop | None:
     """Return the compiled loop, or None where numba, this Python or this machine cannot make it."""
     try:
         import numba
         from numba.extending import register_jitable
     except Exception:  # not installed, or not for this Python
         return None
-    functions = [part for part in parts if isinstance(part, FunctionType)]
-    direct = [cell.cell_contents for cell in getattr(loop, "__closure__", None) or ()]
+    direct = called_by(functions[0])
     for function in functions:
         if function is not loop and function not in _jitable:
             # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step
-            register_jitable(forceinline=function in direct)(function)
+            # and nobody else calls it: without an entry from C there is less to compile
+            register_jitable(forceinline=function in direct, no_cfunc_wrapper=True)(function)
             _jitable.add(function)
     directory = cache_directory()
     if directory is not None:

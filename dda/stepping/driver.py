@@ -12,8 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.kernel import FAILURES, FOUND, zeros
+from dda.contact.dense import Vector, zeros
+from dda.contact.kernel import FAILURES, FOUND, Contacts
 from dda.model.load import BaseMotion
+from dda.stepping.energy import SUMS
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -22,39 +24,54 @@ SHORTEST = 0.01  # shortest step that a cut may leave, over the scheme's step
 OVERFLOW = 3  # outcome besides those of the contacts
 COMPLETED = "completed"
 OUTCOMES = {FOUND: COMPLETED, OVERFLOW: "overflow", **FAILURES}
-LOSSES = 5  # by the algorithm, by gg, by switching, by friction, and what the base's motion gives [J]
 
 
-class Counts(NamedTuple):
-    """What is kept of every step, whatever makes it; losses are sums from t = 0 on."""
+class History(NamedTuple):
+    """What is kept of every step, whatever makes it; row 0 is the state at t = 0, from which the sums go on."""
 
-    solves: Integers  # (steps,) of the open-close iteration, the confirming one, repeated and cut steps included
-    cuts: Integers  # (steps,) times that the step was cut
-    losses: Array  # (steps, LOSSES) [J]; (0, LOSSES) if they are not asked for
+    motion: Array  # (steps + 1, m) what the body keeps of itself
+    normal: Array  # (steps + 1, contacts)
+    shear: Array
+    gap: Array
+    slipped: Array  # summed over the parts of a step
+    state: NDArray[np.int8]
+    solves: Integers  # (steps + 1,) of the open-close iteration, the confirming one, repeated and cut steps included
+    cuts: Integers  # (steps + 1,) times that the step was cut
+    sums: Array  # (steps + 1, SUMS) of `dda.stepping.energy`; (0, SUMS) if the energies are not asked for
 
 
-def counts_of(steps: int, energies: bool) -> Counts:
-    """Return room for what is kept of so many steps."""
-    solves, cuts = zeros(steps, steps, dtype=np.int64)
-    return Counts(solves, cuts, np.zeros((steps if energies else 0, LOSSES)))
+def history_of(steps: int, motion: int, contacts: int, energies: bool) -> History:
+    """Return room for so many steps, of bodies with so many numbers and contacts of their own."""
+    rows = zeros((steps + 1, motion), *[(steps + 1, contacts)] * 4)
+    rows.append(np.zeros((steps + 1, contacts), dtype=np.int8))
+    rows += zeros(steps + 1, steps + 1, dtype=np.int64)
+    rows.append(np.zeros((steps + 1 if energies else 0, SUMS)))
+    return History(*rows)
 
 
-def reached_rows(history: tuple[Any, ...], reached: int) -> list[Any]:
-    """Return the arrays of a history without the steps that were not reached."""
-    return [part[:reached] for part in history]
+def reached_history(history: History, reached: int) -> History:
+    """Return the history without the steps that were not reached."""
+    rows: list[Any] = [part[: reached + 1] for part in history]
+    return History(*rows)
 
 
 class BaseRecord(NamedTuple):
     """Displacement of the base, linear between the instants of a record and constant beyond them."""
 
     instants: Any  # (n,) [s]
-    displacement: Any  # (n, 2) in x and y of the block's coordinates [m]
+    displacement: Any  # (n, 2) along and away from itself [m]
 
 
 def base_record(motion: BaseMotion | None) -> BaseRecord:
     """Return the record of a base that moves, or of one at rest."""
     own = motion or BaseMotion([0.0], [[0.0, 0.0]])
     return BaseRecord(np.array(own.time, dtype=float), np.array(own.displacement, dtype=float, order="C"))
+
+
+def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, out: Vector) -> None:
+    """Write how far the base moves in a part of a step [m], which begins and lasts so many steps of `step` [s]."""
+    for axis in range(2):
+        out[axis] = base_at(base, axis, (begun + ratio) * step) - base_at(base, axis, begun * step)
 
 
 def base_at(base: BaseRecord, axis: int, time: float) -> float:
@@ -91,43 +108,54 @@ def driver(
         Makes a step, or a part of one: (body, state, after, base, begun, ratio) -> outcome and solves, with where it
         begins and how long it is, in steps. It writes `after` and leaves `state` as it is.
     account
-        Adds what an accepted part of step `number` slips and loses: (body, state, after, base, begun, ratio,
-        history, counts, number).
+        Adds what an accepted part of a step loses to the sums: (body, state, after, base, begun, ratio, sums).
     keep
-        Writes the state at the end of step `number` into the history, and tells whether it is finite.
+        Writes the state at the end of a step into a row, (body, state, rows, number), and tells whether it is finite.
     """
 
     def make_steps(
-        body: Any, state: Any, after: Any, base: Any, history: Any, counts: Any, steps: int, cut: float
+        body: Any, state: Any, after: Any, base: Any, history: History, steps: int, cut: float
     ) -> tuple[int, int]:
         """Make the steps that are reached; return how many, and how it ended."""
+        keep(body, state, history.motion, 0)
+        keep_contacts(state.contacts, history, 0)
         for number in range(steps):
             left = 1.0
             ratio = 1.0
-            solves = 0
-            cuts = 0
-            if len(counts.losses) > 0 and number > 0:
-                for k in range(LOSSES):
-                    counts.losses[number, k] = counts.losses[number - 1, k]
+            row = number + 1
+            if len(history.sums) > 0:
+                for k in range(SUMS):
+                    history.sums[row, k] = history.sums[number, k]
             while True:
-                outcome, spent = advance(body, state, after, base, number + (1.0 - left), ratio)
-                solves += spent
+                outcome, solves = advance(body, state, after, base, number + (1.0 - left), ratio)
+                history.solves[row] += solves
                 if outcome != FOUND:
                     if ratio <= SHORTEST:
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
-                    cuts += 1
+                    history.cuts[row] += 1
                     continue
-                account(body, state, after, base, number + (1.0 - left), ratio, history, counts, number)
+                if len(history.sums) > 0:
+                    account(body, state, after, base, number + (1.0 - left), ratio, history.sums[row])
+                for i in range(after.contacts.n):
+                    history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state
                 if ratio == left:
                     break
                 left -= ratio
                 ratio = left
-            if not keep(body, state, history, number):
+            if not keep(body, state, history.motion, row):
                 return number, OVERFLOW
-            counts.solves[number] = solves
-            counts.cuts[number] = cuts
+            keep_contacts(state.contacts, history, row)
         return steps, FOUND
 
     return make_steps
+
+
+def keep_contacts(contacts: Contacts, history: History, number: int) -> None:
+    """Write the contacts at the end of a step."""
+    for i in range(contacts.n):
+        history.normal[number, i] = contacts.normal[i]
+        history.shear[number, i] = contacts.shear[i]
+        history.gap[number, i] = contacts.gap[i]
+        history.state[number, i] = contacts.state[i]

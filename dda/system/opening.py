@@ -15,10 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dda.contact.kernel import (
     FOUND,
@@ -30,16 +29,16 @@ from dda.contact.kernel import (
     law_of,
     set_paired_flexibility,
     work_for,
-    zeros,
 )
 from dda.contact.springs import Contact, base_directions
-from dda.contact.unilateral import OPEN, Unilateral
+from dda.contact.unilateral import Unilateral
 from dda.model.load import BaseMotion
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import Counts, driver
+from dda.stepping.driver import BaseRecord, base_displacement, driver
+from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss
 from dda.system.joints import FIXED
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
@@ -60,14 +59,8 @@ class OpeningSystem:
     normals: Array  # (points, unknowns) gap by D
     tangents: Array  # (points, unknowns) displacement along the base by D
     velocity: float  # at t = 0, upwards positive [m/s]
-    axes: Array  # (2, 2) unit normal of the base, into the blocks, and its tangent from M to N
+    axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the blocks
     motion: BaseMotion | None  # of the base
-
-    def base(self, instants: ArrayLike) -> Array:
-        """Return the displacement of the base along its normal and its tangent, (len(instants), 2) [m]."""
-        moved = np.zeros((len(np.asarray(instants)), 2)) if self.motion is None else self.motion.at(instants)
-        along: Array = moved @ self.axes.T
-        return along
 
     @property
     def equations(self) -> Equations:
@@ -85,27 +78,28 @@ def opening_subdivided(
     ValueError
         If the block is not a convex quadrilateral, or a number is out of range.
     """
-    loads = model.pressure, model.base, model.top, model.eccentricity, model.traction, model.gravity, None, model.slope
-    locked = subdivided(TwoBlockModel(model.block, Contact(1.0), *loads), columns, rows, glue, pattern)
+    load = replace(model.load, motion=None)
+    locked = TwoBlockModel(model.block, Contact(1.0), load, model.base, model.top)
+    cut = subdivided(locked, columns, rows, glue, pattern)
     tangent, normal, _ = base_directions(model.block, model.base)
-    supports = [joint for joint in locked.joints if joint.second == FIXED]
+    supports = [joint for joint in cut.joints if joint.second == FIXED]
     supports.sort(key=lambda joint: float(tangent @ np.array(joint.start)))
     ends = [(joint.first, np.array(place)) for joint in supports for place in (joint.start, joint.end)]
-    normals, tangents = np.zeros((2, len(ends), len(locked.blocks), 6))
+    normals, tangents = np.zeros((2, len(ends), len(cut.blocks), 6))
     for i, (number, (x, y)) in enumerate(ends):
-        T = locked.blocks[number].T(float(x), float(y))
+        T = cut.blocks[number].T(float(x), float(y))
         normals[i, number], tangents[i, number] = normal @ T, tangent @ T
     share = supports[0].normal  # a side that is cut evenly has edges of one length
     own = model.contact
     law = replace(own, stiffness=own.stiffness * share, shear=own.shear * share, cohesion=own.cohesion * share)
     return OpeningSystem(
-        system=replace(locked, joints=[joint for joint in locked.joints if joint.second != FIXED]),
+        system=replace(cut, joints=[joint for joint in cut.joints if joint.second != FIXED]),
         law=law,
         normals=normals.reshape(len(ends), -1),
         tangents=tangents.reshape(len(ends), -1),
         velocity=model.velocity,
-        axes=np.array([normal, tangent]),
-        motion=model.motion,
+        axes=np.array([tangent, normal]),
+        motion=model.load.motion,
     )
 
 
@@ -141,82 +135,28 @@ class Length:
             set_paired_flexibility(C, self.flexible.C_paired)
 
 
-class SystemHistory(NamedTuple):
-    """What is kept of every step, a row each."""
-
-    columns: Array  # (steps, columns)
-    momentum: Array  # (steps, 2) dt times the momentum in x and y
-    stored: Array  # (steps, 4) kinetic, strain, spring and load energy [J]; (0, 4) if they are not asked for
-    normal: Array  # (steps, points)
-    shear: Array
-    gap: Array
-    slide: Array
-    slipped: Array
-    state: NDArray[np.int8]
-
-
-class SystemLosses:
-    """Energy of sub-blocks: the entries of `dda.one_block.unilateral_energy`; `dt` is the step of their units [s].
-
-    Strain counts the sub-blocks and their glue. The losses of a step are those of one block, with D' K0 D the energy of
-    both, D' Ke D + lambda' kappa^-1 lambda.
-    """
+class SystemEnergy:
+    """Energy of sub-blocks, of which strain counts the sub-blocks and their glue: D' Ke D + lambda' kappa^-1 lambda."""
 
     def __init__(self, opening: OpeningSystem, dt: float) -> None:
+        """Keep the matrices; `dt` is the step of the units of `SystemState` [s]."""
         self.opening, self.dt = opening, dt
         e = opening.equations
         self.inverse, self.elastic = e.blockwise(inverses(e.mass)), e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
 
     def stored(self, state: SystemState) -> tuple[float, ...]:
-        """Return kinetic, strain, spring and load energy, without what the base gave."""
-        strain = self._stiff(state.D, state.mu / self.dt**2) / 2
-        springs = float(np.sum(self._springs(state.contacts)))
-        return self._kinetic(state.P / self.dt), strain, springs, -float(self.F @ state.D)
+        """Return kinetic and strain energy, and that of the load without what the base gave."""
+        strain = self.stiff(state.D, state.mu / self.dt**2) / 2
+        return self.kinetic(state.P / self.dt), strain, -float(self.F @ state.D)
 
-    def of_part(self, length: Length, before: SystemState, after: SystemState, carried: Array) -> tuple[float, ...]:
-        """Return the losses of a part in which the base moved by `carried`, along its normal and tangent."""
-        late, gg = length.scheme.delta, length.scheme.gg
-        old, new = before.contacts, after.contacts
-        N = (1 - late) * np.array(old.normal) + late * np.array(new.normal)
-        T = (1 - late) * np.array(old.shear) + late * np.array(new.shear)
-        slid = self.opening.tangents @ (after.D - before.D) - carried[1]
-        given = float(np.sum(N)) * carried[0] + float(np.sum(T)) * carried[1]
-        friction = -np.array(new.shear) * np.array(new.slipped)
-        work = N * np.subtract(new.gap, old.gap) + T * slid
-        lost = self._springs(old) - self._springs(new) - work - friction
-        same = (np.array(old.state) == OPEN) == (np.array(new.state) == OPEN)
-        algorithmic = self._bulk(length, before, after) + np.sum(lost[same])
-        damped = (1 - gg**2) * self._kinetic(before.P / self.dt)
-        return float(algorithmic), damped, float(np.sum(lost[~same])), float(np.sum(friction)), given
-
-    def _bulk(self, length: Length, before: SystemState, after: SystemState) -> float:
-        """Return the loss of the sub-blocks, with what A0 adds where M A0 was not F - K0 D0."""
-        scheme, dt2 = length.scheme, self.dt**2
-        c, over = scheme.alpha - scheme.delta / 2, scheme.delta - 0.5
-        moved, R0, R1 = after.D - before.D, before.f / dt2, after.f / dt2
-        loss = over * self._stiff(moved, (after.mu - before.mu) / dt2)
-        held = self.elastic @ before.D + self.opening.equations.B.T @ (before.mu / dt2)
-        normal, shear = np.array(before.contacts.normal), np.array(before.contacts.shear)
-        pressed = self.opening.normals.T @ normal + self.opening.tangents.T @ shear
-        loss += (1 - scheme.delta) * float(moved @ (self.F - held + pressed - R0))
-        if c:
-            stored = self._kinetic(R1) - self._kinetic(R0)
-            loss += c * scheme.step**2 * (stored + 2 * over * self._kinetic(R1 - R0))
-        return loss
-
-    def _kinetic(self, momentum: Array) -> float:
+    def kinetic(self, momentum: Array) -> float:
+        """Return momentum' M^-1 momentum / 2."""
         return float(momentum @ (self.inverse @ momentum)) / 2
 
-    def _stiff(self, D: Array, force: Array) -> float:
+    def stiff(self, D: Array, force: Array) -> float:
         """Return D' Ke D + lambda' kappa^-1 lambda."""
         return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
-
-    def _springs(self, contacts: Contacts) -> Array:
-        law = self.opening.law
-        shear = np.square(contacts.shear) / law.shear if law.shear else 0.0
-        energy: Array = (np.square(contacts.normal) * law.compliance + shear) / 2
-        return energy
 
 
 class OpeningBody:
@@ -234,7 +174,8 @@ class OpeningBody:
         self.pressure = pressure / opening.system.base_length
         self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
         self.law, self.work = self.find.room(law_of(opening.law)), self.find.room(work_for(points))
-        self.losses = SystemLosses(opening, scheme.step) if energies else None
+        self.energy = SystemEnergy(opening, scheme.step) if energies else None
+        self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
 
     def length(self, ratio: float) -> Length:
         """Return what belongs to a length, over the scheme's step; that of the whole step is always kept."""
@@ -257,22 +198,14 @@ class OpeningBody:
         contacts = at_rest(np.full(self.points, self.opening.law.gap), self.points)
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
-    def history(self, steps: int) -> SystemHistory:
-        """Return room for so many steps."""
-        stored = steps if self.losses else 0
-        points = [(steps, self.points)] * 5
-        rows = zeros((steps, len(self.observers)), (steps, 2), (stored, 4), *points)
-        return SystemHistory(*(rows + zeros((steps, self.points), dtype=np.int8)))
-
-    def base(self, begun: float, ratio: float) -> Array:
-        """Return how far the base moves in a part of a step, along its normal and its tangent [m]."""
-        start, end = self.opening.base([begun * self.scheme.step, (begun + ratio) * self.scheme.step])
-        moved: Array = end - start
-        return moved
+    def moved_base(self, base: BaseRecord, begun: float, ratio: float) -> Array:
+        """Return how far the base moves in a part of a step, along and away from itself [m]."""
+        base_displacement(base, self.scheme.step, begun, ratio, self.carried)
+        return self.carried
 
 
 def advance(
-    body: OpeningBody, state: SystemState, after: SystemState, base: object, begun: float, ratio: float
+    body: OpeningBody, state: SystemState, after: SystemState, base: BaseRecord, begun: float, ratio: float
 ) -> tuple[int, int]:
     """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves."""
     length = body.length(ratio)
@@ -281,11 +214,11 @@ def advance(
     held = stepper.k @ state.D + stepper.Bt @ mu
     dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - held), length.still)
     moved = length.rows @ dD
-    carried = body.base(begun, ratio)
+    carried = body.moved_base(base, begun, ratio)
     n = body.points
-    free = Free(np.array(state.contacts.gap) + moved[:n] - carried[0], np.zeros(n), np.zeros(n))
+    free = Free(np.array(state.contacts.gap) + moved[:n] - carried[1], np.zeros(n), np.zeros(n))
     if len(moved) > n:
-        free.slide[:] = moved[n:] - carried[1]
+        free.slide[:] = moved[n:] - carried[0]
         free.paired[:2] = (free.slide[0] + free.slide[-1]) / 2, free.slide[-1] - free.slide[0]
     outcome, solves = body.find(body.law, state.contacts, free, length.flexible, body.limit, after.contacts, body.work)
     if outcome != FOUND:
@@ -309,32 +242,40 @@ def account(
     body: OpeningBody,
     state: SystemState,
     after: SystemState,
-    base: object,
+    base: BaseRecord,
     begun: float,
     ratio: float,
-    history: SystemHistory,
-    counts: Counts,
-    number: int,
+    sums: Array,
 ) -> None:
-    """Add what an accepted part of a step slips and loses."""
-    history.slipped[number] += after.contacts.slipped
-    if body.losses:
-        length = body.length(ratio)
-        counts.losses[number] += body.losses.of_part(length, state, after, body.base(begun, ratio))
+    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
+    energy = body.energy
+    if energy is None:
+        return
+    opening = body.opening
+    length = body.length(ratio)
+    scheme = length.scheme
+    dt2 = body.scheme.step**2
+    carried = body.moved_base(base, begun, ratio)
+    moved = after.D - state.D
+    slide = opening.tangents @ moved - carried[0]
+    add_contact_losses(body.law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums)
+    sums[DAMPING] += (1 - scheme.gg**2) * energy.kinetic(state.P / body.scheme.step)
+    R0, R1 = state.f / dt2, after.f / dt2
+    held = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
+    pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (energy.F - held + pressed - R0))
+    stiff = energy.stiff(moved, (after.mu - state.mu) / dt2)
+    kinetic = energy.kinetic(R1) - energy.kinetic(R0)
+    change = energy.kinetic(R1 - R0)
+    sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, scheme.step**2, stiff, kinetic, change)
 
 
-def keep(body: OpeningBody, state: SystemState, history: SystemHistory, number: int) -> bool:
-    """Write the state at the end of a step; tell whether it is finite."""
-    contacts = state.contacts
-    history.columns[number] = body.observers @ state.D + body.pressure * np.sum(contacts.normal)
-    history.momentum[number] = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
-    history.normal[number] = contacts.normal
-    history.shear[number] = contacts.shear
-    history.gap[number] = contacts.gap
-    history.state[number] = contacts.state
-    history.slide[number] = body.opening.tangents @ state.D - body.base(0.0, number + 1.0)[1]
-    if body.losses:
-        history.stored[number] = body.losses.stored(state)
+def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> bool:
+    """Write columns, momentum and energy at the end of a step; tell whether it is finite."""
+    columns = body.observers @ state.D + body.pressure * np.sum(state.contacts.normal)
+    momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
+    stored = body.energy.stored(state) if body.energy else ()
+    rows[number] = np.concatenate([columns, momentum, body.opening.tangents @ state.D, stored])
     return bool(np.isfinite(state.D).all())
 
 

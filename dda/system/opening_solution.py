@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.unilateral import CONSISTENT, LAGGED
-from dda.one_block.contact_result import ContactResult, early_end
+from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.unilateral import UnilateralOptions, check_scheme
-from dda.one_block.unilateral_energy import ENERGIES
 from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme
-from dda.stepping.driver import OUTCOMES, counts_of, reached_rows
-from dda.system.opening import OpeningBody, OpeningSystem, SystemHistory, make_steps
+from dda.stepping.driver import base_record, history_of, reached_history
+from dda.stepping.energy import ENERGIES, GIVEN, spring_energies
+from dda.system.opening import OpeningBody, OpeningSystem, make_steps
 
 Array = NDArray[np.float64]
 
@@ -52,39 +51,38 @@ def solve_opening_system(
     began = perf_counter()
     body = OpeningBody(opening, scheme, options.solve_limit, columns, steps, options.energies)
     nonzeros = body.length(1.0).stepper.factor.nonzeros
-    history, counts = body.history(steps), counts_of(steps, options.energies)
+    own, points = len(columns), body.points
+    history = history_of(steps, own + 2 + points + 3 * options.energies, points, options.energies)
+    base = base_record(opening.motion and opening.motion.along(opening.axes))
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        reached, outcome = make_steps(
-            body, body.start_state(), body.start_state(), None, history, counts, steps, options.cut
-        )
-    history = SystemHistory(*reached_rows(history, reached))
-    mass = math.fsum(block.material.density * block.section.area for block in opening.system.blocks)
-    velocity = history.momentum.T / (mass * scheme.step)
-    losses = counts.losses[:reached]
+        reached, ended = make_steps(body, body.start_state(), body.start_state(), base, history, steps, options.cut)
+    history = reached_history(history, reached)
+    motion = history.motion[1:]
+    mass = math.fsum(block.total_mass for block in opening.system.blocks)
+    velocity = motion[:, own : own + 2].T / (mass * scheme.step)
+
+    def slide() -> Array:
+        moved: Array = motion[:, own + 2 : own + 2 + points].T
+        if opening.motion is not None:
+            moved = moved - opening.motion.at(step_times(scheme, reached)) @ opening.axes[0]
+        return moved
 
     def balance() -> dict[str, Array]:
-        stored = history.stored.copy()
-        stored[:, 3] -= losses[:, 4]
-        return dict(zip(ENERGIES, (*stored.T, *losses[:, :4].T), strict=True))
+        kinetic, strain, load = motion[:, own + 2 + points :].T
+        springs = spring_energies(law, history.normal[1:], history.shear[1:])
+        stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
+        return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
 
-    parts = {name: np.transpose(getattr(history, name)) for name in ("normal", "shear", "gap", "slide", "slipped")}
-    parts["stretch"] = 0.0 - parts["shear"] / law.shear if law.shear else np.zeros_like(parts["shear"])
-    parts |= {"states": history.state.T.astype(int), "horizontal_velocity": velocity[0], "velocity": velocity[1]}
+    softness = 1 / law.shear if law.shear else 0.0
+    own_parts = {"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]}
     return ContactResult(
-        time=step_times(scheme, reached),
-        columns=dict(zip(columns, history.columns.T + 0.0, strict=True)),
+        **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),
+        columns=dict(zip(columns, motion[:, :own].T + 0.0, strict=True)),
         unknowns=len(opening.equations.F),
         nonzeros=nonzeros,
         factorisations=body.made,
-        solves=int(counts.solves[:reached].sum()),
-        notes=(f"stepped, {body.find.how}: contact opens and closes", *early_end(outcome, reached)),
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
-        outcome=OUTCOMES[outcome],
-        step_solves=counts.solves[:reached],
-        step_cuts=counts.cuts[:reached],
         base_contacts=(0, -1),
-        parts={name: partial(np.asarray, values) for name, values in parts.items()},
+        parts=contact_parts(history, softness, **own_parts),
         balance=balance if options.energies else None,
     )

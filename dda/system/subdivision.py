@@ -70,10 +70,10 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         centroid,
         a,
         loads,
-        model.gravity,
-        model.motion,
+        model.load.gravity,
+        model.load.motion,
         base_normal=(float(normal[0]), float(normal[1])),
-        slope=model.slope,
+        slope=model.load.slope,
     )
 
 
@@ -133,13 +133,13 @@ def _surface_loads(model: TwoBlockModel, number: int, ends: tuple[Point, Point])
     """Return traction and pressure on one sub-block's part of the top edge."""
     start, end = np.array(ends[0]), np.array(ends[1])
     loads = []
-    if model.traction:
-        loads.append(SurfaceLoad(number, ends[0], ends[1], (model.traction, 0.0)))
+    if model.load.traction:
+        loads.append(SurfaceLoad(number, ends[0], ends[1], (model.load.traction, 0.0)))
     part: tuple[Point, Point] | None = ends
-    if model.eccentricity != 0:
-        part = _overlap(start, end, *pressed_part(*model.block.edge(model.top), model.eccentricity))
-    if part and model.pressure:
-        loads.append(SurfaceLoad(number, *part, (0.0, -model.pressure)))
+    if model.load.eccentricity != 0:
+        part = _overlap(start, end, *pressed_part(*model.block.edge(model.top), model.load.eccentricity))
+    if part and model.load.pressure:
+        loads.append(SurfaceLoad(number, *part, (0.0, -model.load.pressure)))
     return loads
 
 

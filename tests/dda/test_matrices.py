@@ -43,7 +43,7 @@ def test_springs_of_a_square_are_eq_24_to_27(a, p):
 def test_load_of_the_top_edge_is_eq_29():
     model = TwoBlockModel(Block.rectangle(3.0, 0.8, MATERIALS[0]), Contact(1.0), 7.0)
     np.testing.assert_allclose(
-        model.load, [0, -21.0, 0, 0, -3.0 * 0.8 / 2 * 7.0, 0], rtol=1e-14, atol=1e-14
+        model.force, [0, -21.0, 0, 0, -3.0 * 0.8 / 2 * 7.0, 0], rtol=1e-14, atol=1e-14
     )  # rounding of x0
 
 
@@ -52,7 +52,7 @@ def test_matrices_agree_with_high_precision(material):
     model = TwoBlockModel(Block(PENTAGON, material), Contact(2e9, 0.7e9), 5e6, base=1, top=3)
     with mp.workdps(mp_reference.DIGITS):
         M, K, F, _ = mp_reference.matrices(model)
-    for got, exact in ((model.mass, M), (model.stiffness, K), (model.load[:, None], F)):
+    for got, exact in ((model.mass, M), (model.stiffness, K), (model.force[:, None], F)):
         exact = np.array(exact.tolist(), dtype=float)
         np.testing.assert_allclose(got, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
 
@@ -68,8 +68,8 @@ def test_gap_coordinates_are_the_same_model(material, vertices):
     np.testing.assert_allclose(K / scale, np.eye(6), rtol=0, atol=2e-14)
     M, m = form.Q.T @ model.mass @ form.Q, np.sqrt(np.diag(form.M))
     np.testing.assert_allclose(M / np.outer(m, m), form.M / np.outer(m, m), rtol=0, atol=2e-14)
-    F = form.Q.T @ model.load
-    np.testing.assert_allclose(F, model.pressure * form.F, rtol=0, atol=2e-14 * np.abs(F).max())
+    F = form.Q.T @ model.force
+    np.testing.assert_allclose(F, model.load.pressure * form.F, rtol=0, atol=2e-14 * np.abs(F).max())
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ def model(pressure=3e6, mu=0.3, **edges):
 @pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
 def test_steps_are_the_printed_ones(alpha, delta, start):
     m, scheme = model(), Scheme(alpha, delta, 0.93, 8e-4, start)
-    M, K, F, dt = m.mass, m.stiffness, m.load, scheme.step
+    M, K, F, dt = m.mass, m.stiffness, m.force, scheme.step
     D, V = np.zeros((2, 6))
     A = np.linalg.solve(M, F) if start == "consistent" else np.zeros(6)
     result = solve(m, scheme, 12, COLUMNS)
@@ -42,7 +42,7 @@ def test_steps_are_the_printed_ones(alpha, delta, start):
 def test_central_differences_are_the_two_step_formula(gg):
     m, dt = model(mu=0.0), 2e-4
     result = solve(m, Scheme(0.0, 0.5, gg, dt, "consistent"), 40, ("displacement", "strain_y"))
-    M, K, F = m.mass, m.stiffness, m.load
+    M, K, F = m.mass, m.stiffness, m.force
     D, V, A = np.zeros(6), np.zeros(6), np.linalg.solve(M, F)
     for n in range(40):
         D = D + gg * dt * V + dt**2 / 2 * A

@@ -56,8 +56,8 @@ def errors(name, alpha, delta, truth, steps):
     """Return the errors of centroid and angle at T."""
     found = []
     for n in steps:
-        last = solve_rolling(model(name), Scheme(alpha, delta, 1.0, T / n, "consistent"), n).history
-        found.append(np.linalg.norm([*(last.c[-1] - truth[:2]), last.r[-1, 0] + CASES[name][0] - truth[2]]))
+        last = solve_rolling(model(name), Scheme(alpha, delta, 1.0, T / n, "consistent"), n).motion
+        found.append(np.linalg.norm([*(last.c[-1] - truth[:2]), last.r[-1] + CASES[name][0] - truth[2]]))
     return np.array(found)
 
 

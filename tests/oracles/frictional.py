@@ -107,7 +107,7 @@ def sliding(model, scheme, steps):
     slips = np.append(np.all((result.states == 2) | (result.states == 0), axis=0), False)
     n = int(slips.argmin())
     u, v = (result.columns[name][:n] for name in both)
-    right, up = model.applied.falling
+    right, up = model.load.falling
     tangent = model.contact.friction
     return u + tangent * v, free_fall(scheme, n, model.gravity * (right + tangent * up)), np.abs(u) + np.abs(v)
 

@@ -30,7 +30,7 @@ def matrices(prepared: Prepared) -> tuple[np.ndarray, ...]:
     normal, _ = spring_vectors(model.block, model.base)
     length = prepared.scene.block.base_length
     pressure = -model.contact.normal / length * normal.sum(axis=0)
-    return model.mass, model.stiffness, model.load, np.array([np.eye(6)[1], pressure])
+    return model.mass, model.stiffness, model.force, np.array([np.eye(6)[1], pressure])
 
 
 def rule_of(scene: Scene) -> Rule:

@@ -77,7 +77,7 @@ def momentum(model, scheme, result):
     x, y = model.block.corners[[model.top, (model.top + 1) % 4]].T
     part = 1 - 2 * abs(model.eccentricity) / np.hypot(x[1] - x[0], y[1] - y[0])
     length = np.hypot(x[1] - x[0], y[1] - y[0])
-    right, up = model.applied.falling
+    right, up = model.load.falling
     weight = mass * model.gravity
     loads = (model.traction * length + weight * right, -model.pressure * part * length + weight * up)
     contact = (result.shear_force_m + result.shear_force_n, result.normal_force_m + result.normal_force_n)

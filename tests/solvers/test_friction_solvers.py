@@ -83,7 +83,7 @@ def test_a_slope_is_a_turned_weight_on_locked_springs_too():
         assert static["contact_pressure"] == pytest.approx(weight * math.cos(beta) / 2.0, rel=1e-6)
         assert cut or static["displacement"] == pytest.approx(settled, rel=1e-12)
     model = model_of(parse_scene(given, "locked.toml"))
-    assert model.load[:2] == pytest.approx([weight * math.sin(beta), -weight * math.cos(beta)], rel=1e-14)
+    assert model.force[:2] == pytest.approx([weight * math.sin(beta), -weight * math.cos(beta)], rel=1e-14)
 
 
 @pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])

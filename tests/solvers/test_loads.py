@@ -23,12 +23,12 @@ RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-
 
 def textbook_newmark(model, scheme, steps):
     """Return the columns by plain Newmark on absolute accelerations in D, the springs' base ends moving."""
-    M, K, F = model.mass, model.stiffness, model.load
+    M, K, F = model.mass, model.stiffness, model.force
     tangent, normal, a = dda.contact.springs.base_directions(model.block, model.base)
     n_rows, t_rows = dda.spring_vectors(model.block, model.base)
     p, ps = model.contact.normal, model.contact.shear
     instants = scheme.step * np.arange(steps + 1)
-    moved = model.motion.at(instants) if model.motion else np.zeros((steps + 1, 2))
+    moved = model.load.motion.at(instants) if model.load.motion else np.zeros((steps + 1, 2))
     forces = F + np.outer(moved @ normal, p * n_rows.sum(0)) + np.outer(moved @ tangent, ps * t_rows.sum(0))
     D = stepped(M, K, forces, scheme)
     pressure = -p * (D @ n_rows.sum(0) - 2 * moved[1:] @ normal) / a
@@ -120,7 +120,7 @@ def test_loads_of_the_mesh_on_affine_fields_are_those_of_the_block(loads, degree
     x, y = assembled.basis.doflocs + np.array(TRAPEZIUM[0])[:, None]
     component = translation(assembled.basis)[:, 1].astype(int)
     T = np.array([block.T(*point)[c] for point, c in zip(zip(x, y, strict=True), component, strict=True)])
-    np.testing.assert_allclose(T.T @ assembled.F, model.load, rtol=0, atol=1e-13 * np.abs(model.load).max())
+    np.testing.assert_allclose(T.T @ assembled.F, model.force, rtol=0, atol=1e-13 * np.abs(model.force).max())
     rotation = assembled.observers["rotation"] @ T
     np.testing.assert_allclose(rotation, [0, 0, 1, 0, 0, 0], rtol=0, atol=1e-12)
 

@@ -62,7 +62,7 @@ def _centroid_shares(scene: Scene) -> list[float]:
     """Shares of the modes of (v, ey) in the static displacement of the centroid, largest first."""
     model = get_solver("dda").prepare(scene).model  # type: ignore[attr-defined]
     squares, shapes = eigh(model.stiffness[np.ix_([1, 4], [1, 4])], model.mass[np.ix_([1, 4], [1, 4])])
-    parts = shapes[0] * (shapes.T @ model.load[[1, 4]]) / squares
+    parts = shapes[0] * (shapes.T @ model.force[[1, 4]]) / squares
     return list(parts / parts.sum())
 
 

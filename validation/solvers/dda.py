@@ -15,7 +15,7 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import block_of, dda_limit
+from validation.solvers.blocks.closed import block_of, dda_limit, load_of
 from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
 from validation.solvers.columns.names import AT_HEIGHTS
@@ -40,10 +40,8 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
     import dda
 
     b = scene.block
-    q = scene.load
     contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
-    loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity, base_motion(scene), q.slope
-    return dda.TwoBlockModel(block_of(scene), contact, *loads)
+    return dda.TwoBlockModel(block_of(scene), contact, load_of(scene, base_motion(scene)), b.base, b.top)
 
 
 def scheme_of(scene: Scene) -> dda.Scheme:

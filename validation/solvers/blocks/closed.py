@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from validation.scenes.scene import Scene
@@ -38,6 +39,21 @@ def block_of(scene: Scene) -> dda.Block:
     return dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
 
 
+def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
+    """Return the loads of a scene, over a base that moves or not."""
+    import dda
+
+    q = scene.load
+    return dda.Load(
+        pressure=q.pressure,
+        eccentricity=q.eccentricity,
+        traction=q.traction,
+        gravity=q.gravity,
+        motion=motion,
+        slope=q.slope,
+    )
+
+
 def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """Return the block of a scene on its base with both corners closed and sticking.
 
@@ -46,10 +62,9 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
     import dda
 
     b = scene.block
-    q = scene.load
     corners = closed_corners(scene.contact.stiffness, scene.contact.shear)
-    loads = q.pressure or 1.0, b.base, b.top, q.eccentricity, q.traction, q.gravity, None, q.slope
-    return dda.TwoBlockModel(block_of(scene), corners, *loads)
+    load = replace(load_of(scene), pressure=scene.load.pressure or 1.0)
+    return dda.TwoBlockModel(block_of(scene), corners, load, b.base, b.top)
 
 
 def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:

@@ -15,7 +15,13 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import block_of, dda_limit, opening_frequency, opening_system_frequency
+from validation.solvers.blocks.closed import (
+    block_of,
+    dda_limit,
+    load_of,
+    opening_frequency,
+    opening_system_frequency,
+)
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
@@ -44,10 +50,9 @@ class OpeningBlock(Prepared):
         self.result: dda.ContactResult | None = None
         b = scene.block
         c = scene.contact
-        q = scene.load
         with naming(scene):
-            loads = q.pressure, b.base, b.top, q.eccentricity, q.traction, q.gravity
-            self.model = dda.UnilateralModel(block_of(scene), law_of(scene), *loads, b.velocity, q.slope, motion)
+            load = load_of(scene, motion)
+            self.model = dda.UnilateralModel(block_of(scene), law_of(scene), load, b.base, b.top, velocity=b.velocity)
             self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:

@@ -12,7 +12,7 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import block_of, dda_limit, rolling_frequency
+from validation.solvers.blocks.closed import block_of, dda_limit, load_of, rolling_frequency
 from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, law_of, record_of_steps
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
@@ -47,7 +47,6 @@ class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None) -> None:
-        import dda
         from dda.rotation.model import RollingModel, RollingOptions
 
         self.scene = scene
@@ -55,12 +54,16 @@ class RollingBlock(Prepared):
         self.result: RollingResult | None = None
         b = scene.block
         c = scene.contact
-        q = scene.load
         with naming(scene):
-            block = block_of(scene)
-            law = law_of(scene)
-            load = dda.Load(q.pressure, q.eccentricity, q.traction, q.gravity, motion, q.slope)
-            self.model = RollingModel(block, law, load, b.base, b.top, math.radians(b.tilt), (0.0, b.velocity))
+            self.model = RollingModel(
+                block_of(scene),
+                law_of(scene),
+                load_of(scene, motion),
+                b.base,
+                b.top,
+                tilt=math.radians(b.tilt),
+                velocity=(0.0, b.velocity),
+            )
             self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
 
     def step_limit(self) -> StepLimit:

@@ -1,0 +1,105 @@
+"""Operations on small matrices as plain loops, which take arrays as well as lists and can be compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+Matrix = Any  # (n, m) array, or a list of lists of floats
+Vector = Any  # (n,) array, or a list of floats
+
+
+def zeros(*shapes: int | tuple[int, ...], dtype: type = float) -> list[Any]:
+    """Return arrays of zeros."""
+    return [np.zeros(shape, dtype=dtype) for shape in shapes]
+
+
+def dot(a: Vector, b: Vector, n: int) -> float:
+    """Return the sum of the first n products."""
+    total = 0.0
+    for i in range(n):
+        total += a[i] * b[i]
+    return total
+
+
+def multiply(A: Matrix, x: Vector, n: int, m: int, y: Vector) -> None:
+    """Write the first n entries of A x, of the first m columns of A."""
+    for i in range(n):
+        y[i] = dot(A[i], x, m)
+
+
+def add_rows(A: Matrix, x: Vector, n: int, m: int, y: Vector) -> None:
+    """Add A' x to y: the first n rows of A, m entries of each."""
+    for k in range(n):
+        for i in range(m):
+            y[i] += A[k][i] * x[k]
+
+
+def quadratic(A: Matrix, x: Vector, n: int) -> float:
+    """Return x' A x."""
+    total = 0.0
+    for i in range(n):
+        for j in range(n):
+            total += x[i] * A[i][j] * x[j]
+    return total
+
+
+def copy_matrix(source: Matrix, target: Matrix, n: int) -> None:
+    """Write the first n rows and columns of a matrix."""
+    for i in range(n):
+        for j in range(n):
+            target[i][j] = source[i][j]
+
+
+def scale_of(diagonal: float) -> float:
+    """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
+    _, exponent = math.frexp(diagonal)
+    return math.ldexp(1.0, -(exponent // 2))
+
+
+def invert(A: Matrix, n: int, scale: Vector, inverse: Matrix) -> None:
+    """Write the inverse of a positive definite matrix, which is lost."""
+    for i in range(n):
+        scale[i] = scale_of(A[i][i])
+        for j in range(n):
+            inverse[i][j] = 1.0 if i == j else 0.0
+    eliminate(A, inverse, scale, n, n)
+
+
+def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:
+    """Solve A X = right in place of `right`, by elimination with pivots, rows and columns scaled by `scale`."""
+    for i in range(size):
+        for j in range(size):
+            A[i][j] = A[i][j] * scale[j] * scale[i]
+        for j in range(columns):
+            right[i][j] = right[i][j] * scale[i]
+    for i in range(size):
+        best = i
+        for k in range(i + 1, size):
+            if abs(A[k][i]) > abs(A[best][i]):
+                best = k
+        if best != i:
+            for j in range(size):
+                A[i][j], A[best][j] = A[best][j], A[i][j]
+            for j in range(columns):
+                right[i][j], right[best][j] = right[best][j], right[i][j]
+        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        for k in range(i + 1, size):
+            factor = A[k][i] / pivot
+            if factor != 0:
+                for j in range(i + 1, size):
+                    A[k][j] -= factor * A[i][j]
+                for j in range(columns):
+                    right[k][j] -= factor * right[i][j]
+    for i in range(size - 1, -1, -1):
+        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        for j in range(columns):
+            total = right[i][j]
+            for k in range(i + 1, size):
+                total -= A[i][k] * right[k][j]
+            right[i][j] = total / pivot
+    for i in range(size):
+        for j in range(columns):
+            right[i][j] = right[i][j] * scale[i]

@@ -1,0 +1,87 @@
+r"""What a step on contact that opens takes from the energy, whatever stands on the contacts.
+
+For any Newmark scheme whose accelerations obey M A = F - K0 D + B' lambda at both ends of a step, with
+c = alpha - delta/2 and V the velocity after gg,
+
+    E1 - E0 = - (delta - 1/2) dD' K0 dD - c h^2 [ A' M A / 2 ] - (delta - 1/2) c h^2 dA' M dA
+              + sum over contacts of U1 - U0 + dw [(1 - delta) N0 + delta N1] + ds [(1 - delta) T0 + delta T1],
+
+[ ] the change over the step and U = N^2/(2 p) + T^2/(2 p_s). A contact that keeps its state is part of the
+algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Of what a contact loses that slips,
+friction takes -T1 (r1 - r0), never negative. Where the base moves by y the loads work on x = D + R y, and its own work
+-lambda' B R y is counted as theirs. Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the
+first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.dense import Vector
+from dda.contact.kernel import Contacts, Law, spring_energy
+from dda.contact.unilateral import OPEN, Unilateral
+
+Array = NDArray[np.float64]
+
+STORED = ("kinetic", "strain", "springs", "load")
+LOST = ("algorithmic", "kinetic damping", "switching", "friction")
+ENERGIES = STORED + LOST
+ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE = range(6)  # of the sums [J, N s]
+SUMS = 6
+
+
+def add_contact_losses(
+    law: Law,
+    before: Contacts,
+    after: Contacts,
+    slide: Vector,
+    base: Vector,
+    late: float,
+    length: float,
+    share: float,
+    sums: Vector,
+) -> None:
+    """Add what the contacts lose in a part of a step of some length [s], and what the base gives through them [J].
+
+    Parameters
+    ----------
+    slide, base
+        Displacement of each contact along the base, less that of the base, and of the base along and away from itself.
+    late
+        Weight of the forces at the end beside those at the beginning.
+    share
+        Number of contacts that each of these stands for.
+    """
+    for i in range(after.n):
+        N = (1 - late) * before.normal[i] + late * after.normal[i]
+        T = (1 - late) * before.shear[i] + late * after.shear[i]
+        friction = 0.0 - after.shear[i] * after.slipped[i]
+        work = N * (after.gap[i] - before.gap[i]) + T * slide[i]
+        lost = spring_energy(law, before, i) - spring_energy(law, after, i) - work - friction
+        kept = (before.state[i] == OPEN) == (after.state[i] == OPEN)
+        sums[ALGORITHMIC if kept else SWITCHING] += share * lost
+        sums[FRICTION] += share * friction
+        sums[GIVEN] += share * (N * base[1] + T * base[0])
+        sums[IMPULSE] += share * length * N
+
+
+def bulk_loss(alpha: float, delta: float, h2: float, stiff: float, kinetic: float, kinetic_of_change: float) -> float:
+    """Return the algorithmic loss without contact [J].
+
+    Parameters
+    ----------
+    stiff
+        dD' K0 dD [J].
+    kinetic, kinetic_of_change
+        [A' M A / 2], and dA' M dA / 2 [J/s^2].
+    """
+    over = delta - 0.5
+    return over * stiff + (alpha - delta / 2) * h2 * (kinetic + 2 * over * kinetic_of_change)
+
+
+def spring_energies(law: Unilateral, normal: Array, shear: Array) -> Array:
+    """Return the energy of the springs of all contacts after every step, whose rows the forces have [J]."""
+    softness = 1 / law.shear if law.shear else 0.0
+    energies: Array = np.sum(normal**2 * law.compliance + shear**2 * softness, axis=1) / 2
+    return energies
