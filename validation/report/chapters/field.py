@@ -188,7 +188,7 @@ def absent(field: Field) -> Table:
 
 def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
     """Return a line for each text, with the problems that it applies to; the first line names the program."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     title = program.title
     for text, problems in problems_by_text.items():
         names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)

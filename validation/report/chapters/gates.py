@@ -47,7 +47,8 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     blocks: list[Block] = [Heading("Gates that did not pass", 2)]
     failures = sum(v["verdict"] == "FAIL" for v in bad)
     if failures:
-        blocks.append(Callout("One gate fails." if failures == 1 else f"{failures} gates fail.", "fail"))
+        text = "One gate fails." if failures == 1 else f"{failures} gates fail."
+        blocks.append(Callout(text, "fail"))
     titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:

@@ -322,4 +322,6 @@ def verdict_line(verdicts: Sequence[VerdictRecord]) -> Callout:
     text = f"{len(verdicts)} {gates}: {outcomes}"
     if count["FAIL"]:
         return Callout(text, "fail")
-    return Callout(text, "warn" if count["NOT RUN"] else "pass")
+    if count["NOT RUN"]:
+        return Callout(text, "warn")
+    return Callout(text, "pass")
