@@ -49,7 +49,8 @@ def test_what_is_advised_is_just_good_enough(values: dict[str, object], waveleng
     assert found.advised.loss <= 0.1 * (1 + 1e-9)
     assert abs(found.advised.delay) <= 0.05 * (1 + 1e-9)
     (blocks,) = found.blocks
-    exact = wave_advice._WavePath((replace(wave_advice.layers_of(scene)[0], blocks=blocks),), 5.0, found.distance / 100.0)
+    layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
+    exact = wave_advice._WavePath((layer,), 5.0, found.distance / 100.0)
     w2 = np.array([exact.omega**2 + 0j])
     assert abs(exact.passed(w2)[1][0]) <= 0.025
     fewer = replace(exact, layers=(replace(exact.layers[0], blocks=max(blocks - 1, 1)),))
