@@ -94,8 +94,8 @@ def test_what_a_discount_leaves_of_a_way_is_what_dda_slides(gg: float, step: flo
     assert found.braked == pytest.approx(cut, abs=6e-5)
     run = solve(case, "dda").history.columns["horizontal_displacement"][-1]
     assert run == pytest.approx(found.braked + found.offset, rel=1e-6)
-    assert advice.kept_way(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
-    assert advice.kept_way(1.0, step, 1.0) == 1
+    assert advice.distance_share(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
+    assert advice.distance_share(1.0, step, 1.0) == 1
 
 
 def test_the_command_contact_says_it(tmp_path: Path) -> None:

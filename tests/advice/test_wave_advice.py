@@ -26,7 +26,7 @@ SPEED = (1e9 / 2700) ** 0.5
 def passage(scene: Scene, found: wave_advice.WaveAdvice, blocks: int, step: float) -> wave_advice.Passage:
     """Return what becomes of the advised way with other blocks or another step."""
     layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
-    way = wave_advice._Way((layer,), found.frequency, found.distance / 100.0)
+    way = wave_advice._WavePath((layer,), found.frequency, found.distance / 100.0)
     return way.passage(wave_advice._stepping(scene, step))
 
 
@@ -49,7 +49,8 @@ def test_what_is_advised_is_just_good_enough(values: dict[str, object], waveleng
     assert found.advised.loss <= 0.1 * (1 + 1e-9)
     assert abs(found.advised.delay) <= 0.05 * (1 + 1e-9)
     (blocks,) = found.blocks
-    exact = wave_advice._Way((replace(wave_advice.layers_of(scene)[0], blocks=blocks),), 5.0, found.distance / 100.0)
+    layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
+    exact = wave_advice._WavePath((layer,), 5.0, found.distance / 100.0)
     w2 = np.array([exact.omega**2 + 0j])
     assert abs(exact.passed(w2)[1][0]) <= 0.025
     fewer = replace(exact, layers=(replace(exact.layers[0], blocks=max(blocks - 1, 1)),))
@@ -86,7 +87,7 @@ def test_the_present_step_is_told_in_words() -> None:
 
 @pytest.mark.parametrize(("delay", "words"), [(0.25, "0.25 periods late"), (-0.25, "0.25 periods early")])
 def test_an_arrival_is_late_or_early_by_its_sign(delay: float, words: str) -> None:
-    way = wave_advice._Way(wave_advice.layers_of(COLUMN), 5.0, 1.0)
+    way = wave_advice._WavePath(wave_advice.layers_of(COLUMN), 5.0, 1.0)
     passage = wave_advice.Passage(0.01, 1.0, (2.0,), 0.25, delay, 0.05)
     said = wave_advice._sentence(COLUMN, way, passage)
     assert "75 % of a wave arrives" in said and said.endswith(f"{words}.")
@@ -223,7 +224,7 @@ def test_layers_share_the_phase_error_that_is_allowed() -> None:
     scene = load_scene("waves-site")
     found = advise_wave(scene, 8.0, 0.1)
     cut = [replace(layer, blocks=n) for layer, n in zip(wave_advice.layers_of(scene), found.blocks, strict=True)]
-    way = wave_advice._Way(tuple(cut), 8.0, 1.0)
+    way = wave_advice._WavePath(tuple(cut), 8.0, 1.0)
     assert abs(way.passed(np.array([way.omega**2 + 0j]))[1][0]) <= 0.025  # half of it; the step has the other
 
 

@@ -131,7 +131,7 @@ def test_what_is_needed_is_told_with_its_own_step_depth_and_returns() -> None:
     none = steps | {"longest": None, "best": 0.4}
     assert contact_page._allowed(none, 0.99).startswith("none with gg = 0.99; the least error is 40 %")
     assert contact_page._allowed(None, 1.0).startswith("not known")
-    left = 100 * friction.kept_way(0.9, 0.01, 1.0)
+    left = 100 * friction.distance_share(0.9, 0.01, 1.0)
     assert f"it leaves {left:.3g} % of the distance covered from rest in a second" in text[-1]
     assert contact_page._depth(need | {"depth": 1e-5}, 1e-5).endswith("penetrates 1e-05 m")
 

@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex
 
 from validation.engine.study import Study
 from validation.gates.gate import Gate
-from validation.report.chapters.data import Case, Group
+from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.runs.history import History
 from validation.runs.results import Results, Row
 from validation.runs.run import Outcome
@@ -35,15 +35,15 @@ def made_case(
     metrics: Mapping[str, Mapping[str, Any] | Row],
     histories: Mapping[str, History] | None = None,
     label: str = "",
-) -> Case:
+) -> CaseResults:
     """Return a case of a report's page from the metrics, or the rows, of its solvers."""
     rows = {s: m if isinstance(m, Row) else made_row(s, m, scene.name) for s, m in metrics.items()}
-    return Case(scene.name, label or scene.name, scene, rows, histories or {})
+    return CaseResults(scene.name, label or scene.name, scene, rows, histories or {})
 
 
-def made_group(*cases: Case, **parts: Any) -> Group:
+def made_group(*cases: CaseResults, **parts: Any) -> CaseGroup:
     """Return a scene of a study, with comparisons, verdicts, alarms or budgets."""
-    return Group("scene", "A scene", cases, parts.pop("comparisons", ()), parts.pop("verdicts", ()), **parts)
+    return CaseGroup("scene", "A scene", cases, parts.pop("comparisons", ()), parts.pop("verdicts", ()), **parts)
 
 
 def between(scene: str, solver: str, reference: str, **metrics: float) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from validation.report.blocks import Heading, Table
 from validation.report.chapters import paper as chapters_paper
 from validation.report.chapters.limits import stability as chapters_stability
 from validation.report.chapters.limits import stiff_contact as chapters_contact
-from validation.report.chapters.limits.stability import Cell
+from validation.report.chapters.limits.stability import ExtremeRun
 from validation.report.chapters.paper import PaperFigure
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
@@ -160,7 +160,7 @@ def test_steps_to_settle_stand_under_their_scheme_and_beside_their_stiffness() -
 
 def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme() -> None:
     table = chapters_contact.by_ratio(CONTACT)
-    lines = {line.name: (list(line.ratios), list(line.steps)) for line in chapters_contact.lines(table)}
+    lines = {line.name: (list(line.ratios), list(line.steps)) for line in chapters_contact.curves(table)}
     nan = pytest.approx(np.nan, nan_ok=True)
     assert lines == {
         "displacement (1/2, 1)": ([1.0, 100.0], [50.0, 60.0]),
@@ -175,12 +175,12 @@ def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme(
 # ---- extremes -----------------------------------------------------------------------------------------------------
 
 
-def extreme(solver: str, ratio: float, step: float, error: float | None, **more: Any) -> Cell:
+def extreme(solver: str, ratio: float, step: float, error: float | None, **more: Any) -> ExtremeRun:
     outcome = more.get("outcome", Outcome.COMPLETED)
     metrics = {"stability.kind": more.get("kind", "stable")} | more.get("metrics", {})
     errors = {} if error is None else {"displacement": error, "pressure": 10 * error}
     row = made_row(solver, metrics, outcome=outcome)
-    return Cell(more.get("scene", "extremes-a"), solver, ratio, step, row, errors)
+    return ExtremeRun(more.get("scene", "extremes-a"), solver, ratio, step, row, errors)
 
 
 def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() -> None:
@@ -206,7 +206,7 @@ def test_a_cell_of_extremes_has_its_stiffness_over_young_and_its_own_measure(tmp
     apart = {"displacement.max": 0.1, "displacement.scaled": 0.2, "displacement.l2": 0.3}
     pairs = [{"scene": scene.name, "solver": name, "reference": "x", "metrics": apart} for name in ("dda", "bar")]
     manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
-    found = chapters_stability.cells(results, manifest)
+    found = chapters_stability.extreme_runs(results, manifest)
     assert [(cell.solver, cell.ratio, cell.step, cell.errors["displacement"]) for cell in found] == [
         ("dda", 4.0, 0.002, 0.1), ("bar", 4.0, 0.002, 0.2)]  # fmt: skip
 

@@ -94,7 +94,7 @@ def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_co
     for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
         assert axes.get_title(loc="left") == part
         shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
-        filled = shown[to_hex(ledger.ROUNDED if part == "code" else ledger.DOT)]
+        filled = shown[to_hex(ledger.ROUNDING_COLOR if part == "code" else ledger.DOT_COLOR)]
         hollow = shown.get("#ffffff")
         assert filled.get_xdata()[0] == (rounding if part == "code" else displacement)
         assert round(filled.get_ydata()[0]) == 1  # the second line of the ledger

@@ -18,7 +18,7 @@ from validation.report.figures.curves import style_of
 from validation.report.figures.front import charts
 from validation.report.figures.front.model import model_figure
 from validation.report.front import closed, decisions, first
-from validation.report.front.found import paper_scene
+from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.registry import get_solver
 
@@ -203,7 +203,7 @@ def test_one_line_of_verdicts(words: list[str], said: str, tone: str) -> None:
 
 
 def test_the_figure_of_the_first_page_holds_closed_form_and_runs() -> None:
-    damping, error = first.carrying(FOUND, PAPER)
+    damping, error = first.damping_and_error(FOUND, PAPER)
     line, dots = damping.strokes
     assert np.interp(2.0, line.x, line.y) == pytest.approx(16.02, abs=0.02)
     assert sorted(zip(dots.x, dots.y, strict=True)) == [(1.0, pytest.approx(8.45)), (10.0, pytest.approx(37.2))]
@@ -211,7 +211,7 @@ def test_the_figure_of_the_first_page_holds_closed_form_and_runs() -> None:
     model, time = error.strokes
     assert (list(model.x), list(model.y)) == (pytest.approx([0.1, 2, 10]), pytest.approx([64, 3.6, 0.8]))
     assert list(time.y) == pytest.approx([70, 50, 60])
-    assert "64\u00a0% at 0.1\u00a0ms, 0.8\u00a0% at 10\u00a0ms" in first.carrying_caption(FOUND, PAPER)
+    assert "64\u00a0% at 0.1\u00a0ms, 0.8\u00a0% at 10\u00a0ms" in first.damping_and_error_caption(FOUND, PAPER)
 
 
 def test_results_without_a_finished_paper_scene_have_no_such_page() -> None:
@@ -292,13 +292,13 @@ def test_how_far_springs_give_way_depends_on_the_shape(width: float, height: flo
     q, p, E = 5e6, 1e10, 1e9
     springs, block = width * q / (2 * p), height * q / (2 * E)
     assert closed.closed_forms.static_displacement(scene) == pytest.approx(-springs - block)
-    assert closed.given_way(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
+    assert closed.spring_share(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
 
 
 @pytest.mark.parametrize("ratio", [10.0, 100.0])
 def test_the_contact_flips_each_step_beyond_four_over_its_frequency_and_not_before(ratio: float) -> None:
     scene = closed.stiffer(PAPER, ratio)
-    w, limit = closed.closed_forms.contact_frequency(scene), closed.flips_beyond(scene)
+    w, limit = closed.closed_forms.contact_frequency(scene), closed.sign_change_step(scene)
     for step, flips in ((0.99 * limit, False), (1.01 * limit, True), (2e-3, True)):
         root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
         nearest = root[np.argmin(np.real(root))]
@@ -359,7 +359,7 @@ def test_a_chart_names_curves_at_their_ends_and_marks_limits() -> None:
     chart = charts.Chart(
         "A title [%]", ("dt [ms]", ""),
         (charts.Stroke("up", x, x, "#0072b2"), charts.Stroke("gone", x, np.array([2.0, 1.0, np.nan]), "#009e73"),
-         charts.Stroke("as run", x, 2 * x, "#cc79a7", dots=True, line=False, named=False)),
+         charts.Stroke("as run", x, 2 * x, "#cc79a7", dots=True, line=False, has_label=False)),
         (1.0, 100.0), (0.5, 200.0), {"limit": 20.0}, {"5 %": 5.0},
     )  # fmt: skip
     (axes,) = charts.charts_figure([chart]).axes

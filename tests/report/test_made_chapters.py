@@ -100,18 +100,18 @@ def test_ten_blocks_a_wavelength_are_told_with_speed_and_amplitude() -> None:
 def test_a_site_is_told_off_at_the_surface_by_the_displacement_and_at_the_base_by_the_stress() -> None:
     scene = load_scene("waves-site")
     apart = (between(scene.name, "dda", "layers", displacement_l2=0.14, pressure_l2=0.32),)
-    said = waves._said([made_group(made_case(scene, {}), comparisons=apart)])
+    said = waves._site_sentence([made_group(made_case(scene, {}), comparisons=apart)])
     assert "DDA is 14\u00a0% off at the surface and 32\u00a0% off on the base" in said
 
 
 def test_measured_waves_and_closed_forms_have_speed_beside_what_is_left() -> None:
     case, rows = of_scene("waves-blocks", wave_speed_error=0.0167, wave_left=0.25)
     (travel,) = waves.travels({"waves-blocks": made_group(case)}, rows)
-    assert (travel.scheme, list(travel.blocks), list(travel.speed), list(travel.left)) == (
+    assert (travel.scheme, list(travel.blocks), list(travel.speed), list(travel.amplitude)) == (
         "(1/2, 1)", [10.0], [0.0167], [0.25],
     )  # fmt: skip
     line = waves._curve({"scheme": "s", "courant": 0.5, "blocks": [8.0], "speed": [0.01], "left": [0.75]})
-    assert (list(line.blocks), list(line.speed), list(line.left)) == ([8.0], [0.01], [0.75])
+    assert (list(line.blocks), list(line.speed), list(line.amplitude)) == ([8.0], [0.01], [0.75])
 
 
 def test_a_site_draws_the_exact_layers_once_and_dda_at_each_step(drawn: dict[str, Figure], tmp_path: Path) -> None:
@@ -218,4 +218,4 @@ def test_an_impact_has_its_instants_in_milliseconds_and_its_force_in_meganewtons
     metrics = {"switches.first_closing": 0.5, "switches.first_opening": 0.75, "switches.second_closing": 0.875,
                "contact.restitution": 0.625, "contact.peak_force": 2.5e6, "contact.penetration": 4e-3}  # fmt: skip
     case = made_case(load_scene("drop").expand()[0], {"dda": metrics})
-    assert [float(cell) for cell in impacts.cells(case, "dda")] == [500, 750, 875, 0.625, 2.5, 4]
+    assert [float(cell) for cell in impacts.table(made_group(case)).rows[0][2:]] == [500, 750, 875, 0.625, 2.5, 4]

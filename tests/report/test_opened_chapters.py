@@ -54,9 +54,9 @@ def test_the_chapter_of_rebound_tells_restitution_and_energy(
 
 
 def test_circles_stand_where_the_impacts_were(results: Results) -> None:
-    from validation.report.chapters.data import groups
+    from validation.report.chapters.data import case_groups
 
-    found = {group.name: group for group in groups(results, results.manifest("rebound"))}
+    found = {group.name: group for group in case_groups(results, results.manifest("rebound"))}
     ((omega, e),) = rebound_chapter.impact_dots(found["rebound-constant"])
     assert (omega, e) == pytest.approx((2.0, 1 / 3), rel=1e-6)
     exact = rebound_chapter.exact_switches([found["contact-map-constant"]])

@@ -68,7 +68,7 @@ def test_speed_is_in_per_cent_beside_what_is_left_as_a_share() -> None:
     for travel in (lost, kept):
         shade = waves.COLORS[travel.scheme]
         assert np.allclose(line_in(speed, shade)[1], 100 * travel.speed)
-        assert np.allclose(line_in(left, shade)[1], travel.left)
+        assert np.allclose(line_in(left, shade)[1], travel.amplitude)
     named = names_at(left)
     assert named["(1/2, 1), c dt/h = 0.5"] == (pytest.approx(0.8), waves.COLORS["(1/2, 1)"])
     assert named["(1/4, 1/2), every dt"] == (pytest.approx(1.0), waves.COLORS["(1/4, 1/2)"])
@@ -84,8 +84,8 @@ def test_measured_waves_are_dots_at_their_own_blocks() -> None:
 
 def test_a_site_tells_the_largest_of_each_trace_in_the_unit_of_its_panel() -> None:
     time = np.array([0.0, 1.0, 2.0])
-    moved = waves.Trace("surface", "#123456", 1.0, time, np.array([0.0, -4e-3, 3e-3]))
-    pushed = waves.Trace("base", "#654321", 1.0, time, np.array([0.0, 2e5, -1e5]))
+    moved = waves.SiteTrace("surface", "#123456", 1.0, time, np.array([0.0, -4e-3, 3e-3]))
+    pushed = waves.SiteTrace("base", "#654321", 1.0, time, np.array([0.0, 2e5, -1e5]))
     first, second = waves.site_figure([("Displacement", "m", [moved]), ("Stress", "Pa", [pushed])]).axes
     assert (first.get_title(loc="left"), second.get_title(loc="left")) == ("Displacement [mm]", "Stress [kPa]")
     assert [text.get_text() for axes in (first, second) for text in axes.texts] == [
@@ -101,7 +101,7 @@ def test_a_site_tells_the_largest_of_each_trace_in_the_unit_of_its_panel() -> No
 def test_a_restitution_has_its_mean_as_a_line_within_its_range_and_its_impacts_as_dots() -> None:
     omega = np.array([0.1, 1.0, 10.0])
     mean, low, high = np.array([0.9, 0.6, 0.5]), np.array([0.8, 0.4, 0.0]), np.array([1.0, 0.8, 1.2])
-    shown = contact.Curve("(1/2, 1)", omega, mean, low, high, ((2.0, 0.3), (50.0, 0.7)))
+    shown = contact.RestitutionCurve("(1/2, 1)", omega, mean, low, high, ((2.0, 0.3), (50.0, 0.7)))
     (axes,) = contact.restitution_figure([shown], {2.0: "2"}).axes
     assert np.allclose(line_in(axes, contact.COLORS[0])[1], mean)
     dots = [(float(x[0]), float(y[0])) for shade, x, y in lines_of(axes) if x.size == 1]
@@ -137,7 +137,7 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
     x = np.array([1.0, 2.0, 3.0])
     run = friction.Trace("dda", x, 2 * x, "#d55e00")
     other = friction.Trace("program", x, 3 * x, "#000000", dotted=True)
-    (axes,) = friction.panels_figure([friction.Panel("Slip", "t [s]", "slip [mm]", (run, other))]).axes
+    (axes,) = friction.panels_figure([friction.TracePanel("Slip", "t [s]", "slip [mm]", (run, other))]).axes
     assert (axes.get_title(loc="left"), axes.get_xlabel(), axes.get_ylabel()) == ("Slip", "t [s]", "slip [mm]")
     assert of_legend(axes) == {"dda": "#d55e00", "program": "#000000"}
     assert [(line.get_linestyle(), line.get_marker()) for line in axes.lines] == [("-", "None"), ("None", "o")]
@@ -147,8 +147,13 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
 
 def test_a_block_that_turns_is_named_at_its_last_value_beside_level_and_instant() -> None:
     x = np.array([0.0, 1.0, 2.0])
-    lines = (turning.Line("run", x, np.array([0.0, 0.5, 0.2])), turning.Line("rigid", x, 0.4 * x, dashed=True))
-    (axes,) = turning.panels([turning.Panel("Tilt", "t [s]", "tilt [rad]", lines, level=0.3, instant=0.36)]).axes
+    lines = (
+        turning.TurningLine("run", x, np.array([0.0, 0.5, 0.2])),
+        turning.TurningLine("rigid", x, 0.4 * x, dashed=True),
+    )
+    (axes,) = turning.turning_figure(
+        [turning.TurningPanel("Tilt", "t [s]", "tilt [rad]", lines, level=0.3, instant=0.36)]
+    ).axes
     assert names_at(axes) == {
         "run": (pytest.approx(0.2), turning.COLORS[0]), "rigid": (pytest.approx(0.8), "#000000")
     }  # fmt: skip

@@ -16,7 +16,7 @@ from validation.report.appendix.alarms import alarm_table
 from validation.report.blocks import FigureBlock, Table
 from validation.report.chapters.paper import claims_table, conclusion
 from validation.report.chapters.registry import chapter_of
-from validation.report.front.found import found_scenes
+from validation.report.front.groups import groups_of_studies
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.studies import Study
@@ -87,7 +87,7 @@ def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     captions = [block.caption for block in blocks if isinstance(block, FigureBlock)]
     assert len(captions) == len(drawn) > 1
     assert any("Damping budget" in caption and "1.052 to 1.102 times" in caption for caption in captions)
-    _, table = alarm_table(found_scenes(kept, ["figures-5-6"]))
+    _, table = alarm_table(groups_of_studies(kept, ["figures-5-6"]))
     assert isinstance(table, Table)
     assert {row[0] for row in table.rows} == {"agreement by damping", "hidden tension", "contact ringing"}
 

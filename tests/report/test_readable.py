@@ -14,7 +14,7 @@ from validation.engine.run import run_study
 from validation.engine.study import Study
 from validation.report.book import build, ordered_studies
 from validation.report.figures import histories
-from validation.report.front.found import found_scenes
+from validation.report.front.groups import groups_of_studies
 from validation.report.front.pages import front_pages
 from validation.report.typesetting import write_document
 from validation.studies.catalogue import get_study, judged_studies
@@ -52,7 +52,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> lis
     directory = tmp_path_factory.mktemp("read")
     results = beside(finished_cases, directory / "results")
     run_study(Study("core", "The paper", "Why.", SCENES, ("dda", "bar", "continuum")), results)
-    found, studies = found_scenes(results, ["core"]), ["core"]
+    found, studies = groups_of_studies(results, ["core"]), ["core"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(histories, "save", blank)
         out = write_document(directory / "r.pdf", lambda root: front_pages(found, results.verdicts(), studies, root))

@@ -35,7 +35,7 @@ from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
-from validation.report.front.found import found_scenes
+from validation.report.front.groups import groups_of_studies
 from validation.report.front.pages import front_pages
 from validation.report.typesetting import typeset
 from validation.runs.history import History
@@ -172,7 +172,7 @@ def small(tmp_path):
 
 
 def group_of(results, name):
-    return next(g for g in chapters_data.groups(results, results.manifest("core")) if g.name == name)
+    return next(g for g in chapters_data.case_groups(results, results.manifest("core")) if g.name == name)
 
 
 def all_text(blocks):
@@ -227,7 +227,7 @@ def test_the_report_imports_no_solver(small, tmp_path):
 
 
 def front_of(results, studies, directory):
-    return front_pages(found_scenes(results, studies), results.verdicts(), studies, directory)
+    return front_pages(groups_of_studies(results, studies), results.verdicts(), studies, directory)
 
 
 def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_band_and_reason(results, tmp_path, drawn):

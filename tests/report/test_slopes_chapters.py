@@ -47,8 +47,8 @@ def test_the_chapter_of_sliding_lays_runs_beside_closed_forms(tmp_path: Path, dr
     ways, starts = [block for block in blocks if isinstance(block, Table)]
     assert [row[6:9] for row in ways.rows] == [("1.21989", "1.21990", "18.64"), ("0.689215", "0.689234", "18.64")]
     assert starts.rows[0][2] == starts.rows[0][3] == "0.0019770"
-    assert sliding_chapter.kept(1e-4) == pytest.approx(1, abs=1e-4)
-    assert sliding_chapter.kept(20.0) == pytest.approx(2 * (20 - 1) / 400, rel=1e-6)
+    assert sliding_chapter.drag_share(1e-4) == pytest.approx(1, abs=1e-4)
+    assert sliding_chapter.drag_share(20.0) == pytest.approx(2 * (20 - 1) / 400, rel=1e-6)
 
 
 @pytest.mark.long

@@ -14,7 +14,7 @@ from oracles.made_cases import between, made_case, made_group, made_row
 from validation.gates import friction
 from validation.report.blocks import Callout, Table
 from validation.report.chapters.block import core, two_codes
-from validation.report.chapters.data import Group
+from validation.report.chapters.data import CaseGroup
 from validation.report.chapters.opened import rebound, turning
 from validation.report.chapters.slopes import creeping, sliding
 from validation.report.chapters.vibrations import response
@@ -34,7 +34,7 @@ def slid(last: float) -> History:
     return History(time, {"slide_m": last * time, "slide_n": last * time})
 
 
-def ways(name: str, of: Any) -> Group:
+def ways(name: str, of: Any) -> CaseGroup:
     """Return the cases of a scene, each with the way [m] that a function of it gives."""
     cases = [made_case(scene, {}, {"dda": slid(way)}) for scene in load_scene(name).expand() if (way := of(scene))]
     return made_group(*cases)
@@ -43,7 +43,7 @@ def ways(name: str, of: Any) -> Group:
 # ---- creep --------------------------------------------------------------------------------------------------------
 
 
-def stepped() -> Group:
+def stepped() -> CaseGroup:
     return ways(creep.STEPS, lambda scene: 0.125e-3 if scene.time.delta == 1 else 8e-3)
 
 
@@ -118,7 +118,7 @@ def test_a_fall_has_its_number_before_the_edges_of_its_band() -> None:
 # ---- rebound ------------------------------------------------------------------------------------------------------
 
 
-def mapped() -> Group:
+def mapped() -> CaseGroup:
     """Return two cases of a map, of which each is the worse in one number."""
     numbers = ((0.5, 3.0, 12.0), (0.125, 7.0, 4.0))  # energy gained, most solves, switches
     cases = []
@@ -135,8 +135,8 @@ def test_a_map_of_contact_is_concluded_by_its_largest_gain_and_its_most_solves()
 
 def test_switches_are_told_over_those_of_the_exact_motion() -> None:
     group = mapped()
-    assert rebound._over(group.cases[0], {rebound.ratio(group.cases[0]): 8.0}) == 1.5
-    assert rebound._over(group.cases[0], {}) is None
+    assert rebound._switches_over_exact(group.cases[0], {rebound.ratio(group.cases[0]): 8.0}) == 1.5
+    assert rebound._switches_over_exact(group.cases[0], {}) is None
 
 
 # ---- the block and its vibration ----------------------------------------------------------------------------------
@@ -153,7 +153,7 @@ def test_the_error_of_a_mesh_is_told_from_the_coarsest_to_the_finest(drawn: dict
 def test_a_code_that_is_not_there_is_named_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     absent = made_row("fenicsx", {}, outcome=Outcome.NOT_RUN, notes=("dolfinx is missing",))
     cases = [made_case(PAPER, {"fenicsx": absent}, label="one") for _ in range(2)]
-    monkeypatch.setattr(two_codes, "groups", lambda *_: [made_group(case) for case in cases])
+    monkeypatch.setattr(two_codes, "case_groups", lambda *_: [made_group(case) for case in cases])
     blocks = two_codes.chapter(Results(tmp_path), {"study": "two-codes"}, tmp_path)
     (said,) = [block.text for block in blocks if isinstance(block, Callout)]
     assert said.startswith("fenicsx at one: not run.") and said.endswith("dolfinx is missing")
@@ -164,5 +164,5 @@ def test_a_code_that_is_not_there_is_named_once(monkeypatch: pytest.MonkeyPatch,
 )
 def test_only_dda_s_answer_that_is_exact_in_time_is_dashed(solver: str, exact: bool, dashed: bool) -> None:
     told = {"name": "n", "solver": solver, "exact": exact, "columns": {"displacement": ([1.0], [2.0])}}
-    curve = response._curve({"frequency": [5.0]}, told)
+    curve = response._response_curve([5.0], told)
     assert (curve.dashed, curve.columns["displacement"]) == (dashed, (1.0, 2.0))

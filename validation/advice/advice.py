@@ -1,4 +1,4 @@
-"""The adviser: which time step, discount or scheme gives the damping that is wanted.
+"""The adviser: which time step, discount or scheme gives a target damping.
 
 The target is the total damping ratio xi (algorithmic and kinetic) of the DDA block's first axial mode by the scheme's
 closed form. Over dt, gg or delta xi is cut at its extrema into monotone pieces, and each piece that brackets the
@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
-from validation.advice.friction import kept_way
-from validation.advice.instead import instead
+from validation.advice.alternatives import alternative
+from validation.advice.friction import distance_share
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -37,7 +37,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
-LARGEST_RATIO = 2.0  # of critical damping; what is asked beyond was meant in per cent
+LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
@@ -69,7 +69,7 @@ class Advice:
 
     scene: str
     solve_for: str
-    target: float  # xi that is wanted [1]
+    target: float  # xi [1]
     reachable: bool
     solutions: tuple[Solution, ...]
     least: float | None  # smallest xi that can be reached [1], None where none is defined
@@ -96,12 +96,13 @@ def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
 
     # below c dt = 1e-6 xi at a fixed rate is c / (2 w) to the digits that gg = exp(-c dt) keeps
     lowest = min(1e-4, 1e-6 * frequency / rate) if rate else 1e-12
+    flat = FLAT if rate is None else FLAT_RATE
     return Search(
         np.linspace(math.log(lowest), math.log(1e8), 4000),
         lambda s: _stable(np.exp(s), t.alpha, t.delta, gg(np.exp(s)), highest / frequency),
         lambda s: math.exp(s) / frequency,
         lambda s: {"time.step": math.exp(s) / frequency},
-        FLAT if rate is None else FLAT_RATE,
+        flat,
     )
 
 
@@ -126,7 +127,8 @@ def _over_gg(scene: Scene, frequency: float, highest: float) -> Search:
 
 def _over_scheme(scene: Scene, frequency: float, highest: float) -> Search:
     """Search over delta on the family alpha = (1/2 + delta)^2 / 4, at the scene's dt and gg."""
-    omega, gg = frequency * scene.time.step, scene.time.discount
+    omega = frequency * scene.time.step
+    gg = scene.time.discount
     grid = np.unique(np.concatenate([[0.5], 0.5 + np.geomspace(1e-14, 1, 2000), np.linspace(0.5, 1.5, 1000)]))
 
     def alpha(delta: Array | float) -> Array | float:
@@ -144,7 +146,7 @@ SEARCHES = {"dt": _over_dt, "gg": _over_gg, "scheme": _over_scheme}
 
 
 def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
-    """Return the values of dt, gg or delta that give the first axial mode the wanted damping ratio.
+    """Return the values of dt, gg or delta that give the first axial mode the target damping ratio.
 
     Parameters
     ----------
@@ -183,24 +185,25 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     search = SEARCHES[solve_for](scene, modes[0].frequency, highest)
     values = search.solutions(damping)
     if not values and _everywhere(search, damping):
-        values = [_own(search, scene, solve_for, modes[0].frequency)]
-    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda found: found.value)
+        values = [_present_coordinate(scene, solve_for, modes[0].frequency)]
+    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
     reach: Reach = (None, None, None, None)
     if ends := search.ends():
-        least, greatest = min(ends, key=search.at), max(ends, key=search.at)
+        least = min(ends, key=search.at)
+        greatest = max(ends, key=search.at)
         reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
     text = _sentence(scene, solve_for, damping, solutions, reach)
     answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    return answer if solutions else _with_another(answer, scene, modes[0].frequency, highest)
+    return answer if solutions else _with_alternative(answer, scene, modes[0].frequency, highest)
 
 
-def _with_another(answer: Advice, scene: Scene, first: float, highest: float) -> Advice:
+def _with_alternative(answer: Advice, scene: Scene, first: float, highest: float) -> Advice:
     """Return an answer of "no" with the nearest that can be had and what to change."""
     makes = {kind: functools.partial(make, frequency=first, highest=highest) for kind, make in SEARCHES.items()}
-    found = instead(scene, answer.solve_for, answer.target, makes, first)
-    settings = None if found.settings is None else dict(found.settings)
-    text = f"{answer.sentence} {found.words}"
-    return replace(answer, sentence=text, nearest=found.nearest, nearest_at=found.nearest_at, instead=settings)
+    other = alternative(scene, answer.solve_for, answer.target, makes, first)
+    settings = None if other.settings is None else dict(other.settings)
+    text = f"{answer.sentence} {other.words}"
+    return replace(answer, sentence=text, nearest=other.nearest, nearest_at=other.nearest_at, instead=settings)
 
 
 def _everywhere(search: Search, target: float) -> bool:
@@ -209,7 +212,8 @@ def _everywhere(search: Search, target: float) -> bool:
     return bool(ends) and all(abs(search.at(s) - target) < 1e-15 for s in ends)
 
 
-def _own(search: Search, scene: Scene, solve_for: str, frequency: float) -> float:
+def _present_coordinate(scene: Scene, solve_for: str, frequency: float) -> float:
+    """Return the coordinate of a search at which the scene is as it stands."""
     t = scene.time
     return {"dt": math.log(frequency * t.step), "gg": -t.discount, "scheme": t.delta}[solve_for]
 
@@ -220,22 +224,27 @@ def _solution(scene: Scene, search: Search, s: float) -> Solution:
     modes = dda_modes(case)
     names = mode_names(modes)
     first = mode_damping(case, names[0], modes[0].frequency)
-    contact = names.index(CONTACT) if CONTACT in names else None
-    steps, source = _settling(case)
+    contact = None
+    if CONTACT in names:
+        contact = mode_damping(case, CONTACT, modes[names.index(CONTACT)].frequency)
     t = case.time
+    steps, source = _settling(case)
+    seconds = None if steps is None else steps * t.step
+    rate = -math.log(t.discount) / t.step + 0.0 if t.discount > 0 else None
+    damping = math.nan if first.damping is None else first.damping
     return Solution(
         value=search.value(s),
-        damping=math.nan if first.damping is None else first.damping,
+        damping=damping,
         settling_steps=steps,
-        settling_seconds=None if steps is None else steps * t.step,
+        settling_seconds=seconds,
         settling_from=source,
         alpha=t.alpha,
         delta=t.delta,
         step=t.step,
         gg=t.discount,
-        gg_rate=-math.log(t.discount) / t.step + 0.0 if t.discount > 0 else None,
+        gg_rate=rate,
         settings=settings,
-        contact=None if contact is None else mode_damping(case, CONTACT, modes[contact].frequency),
+        contact=contact,
     )
 
 
@@ -250,8 +259,10 @@ def _settling(case: Scene) -> tuple[int | None, str]:
     static = dda.static(case)["displacement"]
     steps = max(10, math.ceil(max(last)) + 10)
     run = solve(case.with_values({"time.steps": steps, "load.pressure": 1.0}), dda)
-    found = settling_step(run.displacement, static / case.load.pressure if case.load.pressure else static)
-    return (int(found) if isinstance(found, float) else None), "history"
+    if case.load.pressure:
+        static /= case.load.pressure  # of the unit pressure that is run
+    step = settling_step(run.displacement, static)
+    return (int(step) if isinstance(step, float) else None), "history"
 
 
 def _crossing(radius: float, level: float) -> float:
@@ -271,21 +282,20 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
     steps = max(2, min(longest, round(scene.time.duration / solution.step)))
     columns = ["displacement", "contact_pressure"]
     case = scene.with_values(solution.settings | {"time.steps": steps, "run.columns": columns})
-    own = solve(case, "dda").history
-    found: dict[str, Any] = {"window": steps * case.time.step}
+    dda = solve(case, "dda").history
+    errors: dict[str, Any] = {"window": steps * case.time.step}
     for name in ("fem", "continuum"):
-        reference = get_solver(name)
-        if reason := reference.refusal(case):
-            found[name] = {"not applicable": reason}
+        if reason := get_solver(name).refusal(case):
+            errors[name] = {"not applicable": reason}
             continue
         try:
-            other = solve(case, name).history
+            reference = solve(case, name).history
         except InputError as error:
-            found[name] = {"not applicable": str(error)}
+            errors[name] = {"not applicable": str(error)}
             continue
-        if own is not None and other is not None:
-            found[name] = {q: pair(f"{q}.l2", own, other) for q in ("displacement", "pressure")}
-    return found
+        if dda is not None and reference is not None:
+            errors[name] = {q: pair(f"{q}.l2", dda, reference) for q in ("displacement", "pressure")}
+    return errors
 
 
 # ---- the sentence -------------------------------------------------------------------------------------------------
@@ -307,7 +317,7 @@ def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[S
     if flips:
         at = "" if len(flips) == len(solutions) else f" at {_answer(solve_for, flips[-1])}"
         text += f", but the contact mode {runs(flips[-1].contact)}{at}"  # type: ignore[arg-type]
-    return text + _keeping(scene, solve_for, first) + "."
+    return text + _fixed_settings(scene, solve_for, first) + "."
 
 
 def _answer(solve_for: str, solution: Solution) -> str:
@@ -319,31 +329,31 @@ def _answer(solve_for: str, solution: Solution) -> str:
     return f"delta = {solution.value:.6g}, alpha = {solution.alpha:.6g}"
 
 
-def _keeping(scene: Scene, solve_for: str, solution: Solution) -> str:
-    """Say what is held fixed, where it matters."""
+def _fixed_settings(scene: Scene, solve_for: str, solution: Solution) -> str:
+    """Say which settings are fixed, where it matters."""
     t = scene.time
     if solve_for == "dt" and t.gg_rate is not None:
         return f"; the discount is kept as a rate, c = {t.gg_rate:g} 1/s"
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        left = 100 * kept_way(solution.value, solution.step, 1.0)
-        braked = f"in flight or sliding it leaves {left:.3g} % of the distance covered from rest in a second"
-        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {braked}"
+        share = 100 * distance_share(solution.value, solution.step, 1.0)
+        drag = f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {drag}"
     return ""
 
 
 def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> str:
     least, least_at, greatest, greatest_at = reach
-    wanted = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
+    refusal = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
     if greatest is None or least is None or greatest_at is None or least_at is None:
-        return f"{wanted}: the mode has no damping ratio here, since a root of the step is not positive."
+        return f"{refusal}: the mode has no damping ratio here, since a root of the step is not positive."
     unit = " s" if solve_for == "dt" else ""
     name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
     if greatest - least < FLAT:
-        return f"{wanted}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
+        return f"{refusal}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
     if least < target < greatest:
-        return f"{wanted}: it lies in a gap between attainable values."
+        return f"{refusal}: it lies in a gap between attainable values."
     if target > greatest:
-        return f"{wanted}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
-    return f"{wanted}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."
+        return f"{refusal}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
+    return f"{refusal}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

@@ -31,9 +31,12 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, role
 
-AGREEMENT, TENSION, RINGING, DISCOUNT = "agreement by damping", "hidden tension", "contact ringing", "fixed discount"
+AGREEMENT = "agreement by damping"
+TENSION = "hidden tension"
+RINGING = "contact ringing"
+DISCOUNT = "fixed discount"
 REMOVED = 0.5  # of the first mode's motion over the window
-FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps more than 0.9 of itself
+FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps over 0.9 of its amplitude
 
 
 class Cases(Protocol):
@@ -50,11 +53,11 @@ class Cases(Protocol):
 def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
     """Yield the alarms of finished cases, in the order of the scenes."""
     listed = list(scenes)
-    solvers: dict[str, dict[str, Row]] = {}
+    rows_by_scene: dict[str, dict[str, Row]] = {}
     for (name, solver), row in finished.rows.items():
-        solvers.setdefault(name, {})[solver] = row
+        rows_by_scene.setdefault(name, {})[solver] = row
     for scene in listed:
-        rows = solvers.get(scene.name, {})
+        rows = rows_by_scene.get(scene.name, {})
         yield from _agreement(scene, finished)
         yield from _tension(scene, rows)
         yield from _ringing(scene, rows)
@@ -71,24 +74,26 @@ def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | No
     square over the window of the first mode's amplitude |lambda|^n, without what physical damping would remove: the
     continuum has the kinetic damping -ln(gg) / dt, so that only the algorithmic part counts.
     """
-    judged, own = _first(scene, finished, Role.JUDGED)
+    solver, history = _first(scene, finished, Role.JUDGED)
     _, reference = _first(scene, finished, Role.REFERENCE)
     _, exact = _first(scene, finished, Role.TRUTH)
-    if own is None or exact is None or reference is None:
+    if history is None or exact is None or reference is None:
         return None
-    agreement = pair_metric("displacement.l2", own, reference)
+    agreement = pair_metric("displacement.l2", history, reference)
     error = pair_metric("displacement.l2", reference, exact)
-    radius = finished.rows[scene.name, judged].metrics.get("mode1.spectral_radius")
+    metrics = finished.rows[scene.name, solver].metrics
+    radius = metrics.get("mode1.spectral_radius")
     if not (isinstance(agreement, float) and isinstance(error, float) and isinstance(radius, float)):
         return None
-    frequency = finished.rows[scene.name, judged].metrics.get("mode1.frequency")
-    removed = removed_motion(scene, radius, frequency if isinstance(frequency, float) else 0.0)
-    return {"agreement": agreement, "removed": removed, "time error": error}
+    frequency = metrics.get("mode1.frequency")
+    if not isinstance(frequency, float):
+        frequency = 0.0
+    return {"agreement": agreement, "removed": removed_motion(scene, radius, frequency), "time error": error}
 
 
-def _first(scene: Scene, finished: Cases, wanted: Role) -> tuple[str, History | None]:
+def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, History | None]:
     """Return the solver of the highest rank of a role that has a history of the scene, and that history."""
-    for name in by_role(wanted):
+    for name in by_role(role_of_solver):
         if (history := finished.history(scene.name, name)) is not None:
             return name, history
     return "", None
@@ -101,67 +106,65 @@ def removed_motion(scene: Scene, radius: float, frequency: float = 0.0) -> float
     the discount takes.
     """
     rate = scene.damping.mass + scene.damping.stiffness * frequency**2
-    kept = math.sqrt(scene.time.discount) * math.exp(-rate * scene.time.step / 2)
-    if radius == 0 or kept == 0:
+    physical_radius = math.sqrt(scene.time.discount) * math.exp(-rate * scene.time.step / 2)
+    if radius == 0 or physical_radius == 0:
         return 1.0
-    amplitude = np.minimum(radius / kept, 1.0) ** np.arange(1, scene.time.steps + 1)
+    amplitude = np.minimum(radius / physical_radius, 1.0) ** np.arange(1, scene.time.steps + 1)
     return float(1 - np.sqrt(np.mean(amplitude**2)))
 
 
 def _agreement(scene: Scene, finished: Cases) -> Iterator[Alarm]:
-    found = agreement_by_damping(scene, finished)
-    if found is None or found["removed"] < REMOVED or found["agreement"] >= found["time error"]:
+    values = agreement_by_damping(scene, finished)
+    if values is None or values["removed"] < REMOVED or values["agreement"] >= values["time error"]:
         return
-    said = (
-        f"DDA agrees with the elastic block to {100 * found['agreement']:.2g} % because both are damped: damping "
-        f"removed {100 * found['removed']:.0f} % of the first mode's motion, and the time error is "
-        f"{100 * found['time error']:.2g} %"
+    sentence = (
+        f"DDA agrees with the elastic block to {100 * values['agreement']:.2g} % because both are damped: damping "
+        f"removed {100 * values['removed']:.0f} % of the first mode's motion, and the time error is "
+        f"{100 * values['time error']:.2g} %"
     )
-    yield Alarm(AGREEMENT, scene.name, said, found)
+    yield Alarm(AGREEMENT, scene.name, sentence, values)
 
 
 def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     """Yield one alarm for the solvers whose contact carries tension; runs that repeat another are not listed."""
     values: dict[str, float] = {}
-    said = []
+    parts = []
     for solver, row in solvers.items():
-        found = [row.metrics.get(f"pressure.{part}") for part in ("minimum", "minimum_time", "tension_time")]
-        least, when, duration = (v if isinstance(v, float) else math.nan for v in found)
-        if (
-            ":" in solver
-            or role(solver) is Role.REPEAT
-            or not (least < -1e-6 * abs(scene.load.pressure) and duration > 0)
-        ):
+        metrics = [row.metrics.get(f"pressure.{part}") for part in ("minimum", "minimum_time", "tension_time")]
+        minimum, time, duration = (value if isinstance(value, float) else math.nan for value in metrics)
+        pulls = minimum < -1e-6 * abs(scene.load.pressure) and duration > 0
+        if ":" in solver or role(solver) is Role.REPEAT or not pulls:
             continue
-        values |= {f"{solver}.minimum": least, f"{solver}.time": when, f"{solver}.duration": duration}
-        said.append(f"in {solver} by {-least / 1e6:.3g} MPa at t = {when:.4g} s, for {duration:.3g} s in total")
-    if said:
-        yield Alarm(TENSION, scene.name, f"the locked contact carries tension, {'; '.join(said)}", values)
+        values |= {f"{solver}.minimum": minimum, f"{solver}.time": time, f"{solver}.duration": duration}
+        parts.append(f"in {solver} by {-minimum / 1e6:.3g} MPa at t = {time:.4g} s, for {duration:.3g} s in total")
+    if parts:
+        yield Alarm(TENSION, scene.name, f"the locked contact carries tension, {'; '.join(parts)}", values)
 
 
 def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     row = next((solvers[name] for name in by_role(Role.JUDGED) if name in solvers), None)
-    root, radius = (
-        None if row is None else row.metrics.get(f"contact.{part}") for part in ("least_root", "spectral_radius")
-    )
+    if row is None:
+        return
+    root = row.metrics.get("contact.least_root")
+    radius = row.metrics.get("contact.spectral_radius")
     if not (isinstance(root, float) and isinstance(radius, float)) or root > FLIPPING:
         return
     steps = math.log(100) / -math.log(radius) if 0 < radius < 1 else math.inf
-    decays = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
-    said = f"a root of the contact mode is {root:.4g}: the contact force rings from step to step and {decays}"
-    yield Alarm(RINGING, scene.name, said, {"root": root, "radius": radius})
+    decay = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
+    sentence = f"a root of the contact mode is {root:.4g}: the contact force rings from step to step and {decay}"
+    yield Alarm(RINGING, scene.name, sentence, {"root": root, "radius": radius})
 
 
 def fixed_discount(scenes: Sequence[Scene]) -> Iterator[Alarm]:
     """Yield an alarm for each scene whose cases refine dt at one gg < 1."""
-    groups: dict[tuple[str, float], set[float]] = {}
+    steps_by_discount: dict[tuple[str, float], set[float]] = {}
     for scene in scenes:
         if scene.time.gg_rate is None and 0 < scene.time.discount < 1:
-            groups.setdefault((scene_of(scene.name), scene.time.discount), set()).add(scene.time.step)
-    for (name, gg), steps in groups.items():
+            steps_by_discount.setdefault((scene_of(scene.name), scene.time.discount), set()).add(scene.time.step)
+    for (name, gg), steps in steps_by_discount.items():
         if len(steps) > 1:
-            said = (
+            sentence = (
                 f"dt is varied at a fixed gg = {gg:g}, which acts per step: refining dt does not converge; state "
                 "gg_rate instead, gg = exp(-gg_rate dt)"
             )
-            yield Alarm(DISCOUNT, name, said, {"gg": gg})
+            yield Alarm(DISCOUNT, name, sentence, {"gg": gg})

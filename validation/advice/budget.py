@@ -1,6 +1,6 @@
 """The damping budget of a scene: the damping of its modes over dt, and where the limits lie.
 
-The curves are computed when a study runs and kept in its manifest, so that the report draws them without a solver.
+The curves are computed when a study runs and stored in its manifest, so that the report draws them without a solver.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
 
 POINTS = 161
-LOWEST, HIGHEST = 1e-3, 30.0  # range of w dt of the first axial mode
+LOWEST = 1e-3  # w dt of the first axial mode at which the range of dt begins
+HIGHEST = 30.0  # and at which it ends
 VARIANTS = 10  # panels of a scene, at most
 
 
@@ -56,12 +57,11 @@ def budget(cases: list[Scene]) -> BudgetRecord:
     modes = dda_modes(scene)
     first = modes[0].frequency
     steps = sorted({case.time.step for case in cases})
-    low, high = min(LOWEST / first, steps[0] / 2), max(HIGHEST / first, steps[-1] * 2)
-    dt = np.geomspace(low, high, POINTS)
-    named = {FIRST: first}
+    dt = np.geomspace(min(LOWEST / first, steps[0] / 2), max(HIGHEST / first, steps[-1] * 2), POINTS)
+    frequencies = {FIRST: first}
     if (index := contact_index(modes)) is not None:
-        named[CONTACT] = modes[index].frequency
-    curves = {name: _curves(scene, w, dt) for name, w in named.items()}
+        frequencies[CONTACT] = modes[index].frequency
+    curves = {name: _curves(scene, w, dt) for name, w in frequencies.items()}
     limits = _limits(scene, first, dt)
     return {
         "scene": scene.name,
@@ -84,13 +84,15 @@ def discounts(scene: Scene, dt: Array) -> Array:
 
 def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
     t = scene.time
-    total = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    own = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
-    radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    parts = {"algorithmic": _listed(own), "kinetic": _listed(total - own)}
+    numerical = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
+    algorithmic = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
+    parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(numerical - algorithmic)}
     if scene.damping.present:
-        numerical, total, radius = total, *_viscous(scene, frequency, dt)
+        total, radius = _viscous(scene, frequency, dt)
         parts["viscous"] = _listed(total - numerical)
+    else:
+        total = numerical
+        radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
 
 
@@ -112,14 +114,14 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
     if scene.damping.present:
         fine = dt
-        total = _viscous(scene, first, dt)[0]
-    found = {}
+        total, _ = _viscous(scene, first, dt)
+    limits = {}
     if np.isnan(total).any() and np.isfinite(total[0]):
-        found["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])
+        limits["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])
     if total[0] >= 1 and (total < 1).any():
-        found["overdamped below"] = float(fine[int(np.argmax(total < 1))])
-    found["wave transit"] = transit(scene)
-    return {name: float(f"{value:.4g}") for name, value in found.items()}
+        limits["overdamped below"] = float(fine[int(np.argmax(total < 1))])
+    limits["wave transit"] = transit(scene)
+    return {name: float(f"{value:.4g}") for name, value in limits.items()}
 
 
 def transit(scene: Scene) -> float:

@@ -16,7 +16,8 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.events import rectangle
 
-RAISES, LEAST_RAISE = 8, 1.2  # of p, until the exact block stays above the penetration asked for
+RAISES = 8  # of p, at most, until the exact block stays above the requested penetration
+LEAST_RAISE = 1.2  # factor on p
 NOTABLE = 0.1  # error of the restitution, and its range over the phase, from which on they are an alarm
 
 
@@ -25,7 +26,7 @@ class Needed:
     """Springs and time steps that keep a penetration and a restitution."""
 
     stiffness: float  # p [N/m]
-    depth: float | None  # how deep the exact block goes at that p [m]; None where that was not asked or has no answer
+    depth: float | None  # how deep the exact block goes at that p [m]; None without a probe or where it has no answer
     first_guess: float  # p from the load at rest and one unloaded landing [N/m]
     steps: landing.AllowedSteps | None  # at that p; None where the landing of the scheme is not known
     steps_now: landing.AllowedSteps | None  # at the present p
@@ -49,8 +50,8 @@ def stepping(scene: Scene) -> landing.Stepping | None:
     its step, and only a rectangle lands as one strain.
     """
     scheme = landing.Stepping.of(scene)
-    known = scheme.exists and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
-    return scheme if known else None
+    is_known = scheme.exists and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
+    return scheme if is_known else None
 
 
 def restitution(
@@ -61,7 +62,9 @@ def restitution(
     if scheme is None:
         return None
     ratio = landing.stiffness_ratio(scene, stiffness)
-    return landing.stepped_landing(scheme, ratio, scene.time.step if step is None else step, landing.transit(scene))
+    if step is None:
+        step = scene.time.step
+    return landing.stepped_landing(scheme, ratio, step, landing.transit(scene))
 
 
 def hidden_from(scene: Scene) -> float | None:
@@ -73,11 +76,12 @@ def hidden_from(scene: Scene) -> float | None:
 
     whatever p and gg. None where it does not rise at all, or does not start on its springs at rest.
     """
-    b, q, t = scene.block, scene.load, scene.time
+    t = scene.time
+    load = scene.load
     height = landing.height(scene)
-    weight = b.density * q.gravity * height / q.pressure if q.pressure > 0 else 2.0
+    weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
     from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
-    if not (from_zero and scene.contact.gap == 0 == b.velocity and weight < 2):
+    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
         return None
     free = landing.transit(scene) / math.sqrt(6 * t.alpha)
     return free * math.sqrt((1 - weight / 2) / (1 + weight))
@@ -139,29 +143,31 @@ def needed(
     """
     static = abs(opened.resultant_load(scene)) / (2 * penetration)
     landed = landing.springs_for(scene, speed, penetration) if speed else 0.0
-    p = max(static, landed) or scene.contact.stiffness  # without load and speed any springs do
-    enough, depth = p, probe(p) if probe else None
+    first_guess = max(static, landed) or scene.contact.stiffness  # without load and speed any springs do
+    p = first_guess
+    depth = probe(p) if probe else None
     for _ in range(RAISES):
         if probe is None or depth is None or depth <= penetration:
             break
-        enough *= max(LEAST_RAISE, (depth / penetration) ** 2)
-        depth = probe(enough)
-    steps = allowed_steps(scene, error, enough)
-    returned = None
+        p *= max(LEAST_RAISE, (depth / penetration) ** 2)
+        depth = probe(p)
+    steps = allowed_steps(scene, error, p)
+    at_longest_step = None
     if steps is not None and steps.longest is not None:
-        returned = restitution(scene, steps.longest, enough)
-    return Needed(enough, depth, p, steps, allowed_steps(scene, error), returned)
+        at_longest_step = restitution(scene, steps.longest, p)
+    return Needed(p, depth, first_guess, steps, allowed_steps(scene, error), at_longest_step)
 
 
 def allowed_steps(scene: Scene, error: float, stiffness: float | None = None) -> landing.AllowedSteps | None:
     """Return the steps that keep a restitution on a scene's or other springs; None if unknown or on a rigid stop."""
-    scheme, ratio = stepping(scene), landing.stiffness_ratio(scene, stiffness)
+    scheme = stepping(scene)
+    ratio = landing.stiffness_ratio(scene, stiffness)
     if scheme is None or math.isinf(ratio):
         return None
     return landing.allowed_steps(scheme, ratio, landing.transit(scene), error)
 
 
-def as_dict(found: Needed) -> dict[str, Any]:
-    """Return plain data for JSON, with the longest steps by their own names as well."""
-    longest = {"step": found.steps, "step_now": found.steps_now}
-    return asdict(found) | {name: None if steps is None else steps.longest for name, steps in longest.items()}
+def as_dict(needs: Needed) -> dict[str, Any]:
+    """Return plain data for JSON, with the longest steps by names of their own as well."""
+    longest = {"step": needs.steps, "step_now": needs.steps_now}
+    return asdict(needs) | {name: None if steps is None else steps.longest for name, steps in longest.items()}

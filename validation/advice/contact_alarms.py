@@ -30,13 +30,13 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-LARGE_STEP, GAINED, MAY_GAIN = "step too large for contact", "energy gained by switching", "energy may be gained"
-HIDDEN, PENALTY, DRAG, PULLING = (
-    "hidden opening",
-    "peak force of the penalty",
-    "drag in flight",
-    "tension of a dead band",
-)
+LARGE_STEP = "step too large for contact"
+GAINED = "energy gained by switching"
+MAY_GAIN = "energy may be gained"
+HIDDEN = "hidden opening"
+PENALTY = "peak force of the penalty"
+DRAG = "drag in flight"
+PULLING = "tension of a dead band"
 KINDS = (LARGE_STEP, GAINED, MAY_GAIN, HIDDEN, PENALTY, DRAG, PULLING)
 NOTABLE = 0.01  # of the energy given, or of the load
 BEYOND = 1.5  # times the peak force of the exact bar from which on a peak is the springs'
@@ -55,16 +55,18 @@ def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     name = next((name for name in by_role(Role.JUDGED) if name in rows), None)
     if name is None or features.UNILATERAL not in features.of(scene):
         return
-    seen = Seen(scene, rows[name], next((rows[n] for n in by_role(Role.TRUTH) if n in rows), None))
+    run = ContactRun(scene, rows[name], next((rows[n] for n in by_role(Role.TRUTH) if n in rows), None))
     for alarm in (_large_step, _gained, _may_gain, _hidden, _penalty, _drag, _pulling):
-        yield from alarm(seen)
+        yield from alarm(run)
 
 
-class Seen:
+class ContactRun:
     """A run of the judged method, with the exact one where there is one."""
 
     def __init__(self, scene: Scene, row: Row, truth: Row | None) -> None:
-        self.scene, self.row, self.truth = scene, row, truth
+        self.scene = scene
+        self.row = row
+        self.truth = truth
         self.omega = contact.omega(scene)
         lands = _number(row, "switches.first_closing") is not None or scene.block.velocity < 0
         self.opens = (_number(row, "contact.gap") or 0.0) > 0  # and, of what lands:
@@ -80,22 +82,22 @@ def _number(row: Row | None, metric: str) -> float | None:
     return value if isinstance(value, float) else None
 
 
-def _large_step(seen: Seen) -> Iterator[Alarm]:
-    if not seen.returns:
+def _large_step(run: ContactRun) -> Iterator[Alarm]:
+    if not run.returns:
         return
-    landed = contact.restitution(seen.scene)
+    landed = contact.restitution(run.scene)
     if landed is None or landed.error <= contact.NOTABLE:
         return
     arbitrary = landed.high - landed.low > contact.NOTABLE
     by_phase = ", by where in the step the block lands" if arbitrary else ""
     sentence = (
-        f"w_c dt = {seen.omega:.3g}: an unloaded landing leaves the centre of mass {landed.low:.2g} to "
+        f"w_c dt = {run.omega:.3g}: an unloaded landing leaves the centre of mass {landed.low:.2g} to "
         f"{landed.high:.2g} of its speed{by_phase}; without a time step {landed.own:.3g}"
     )
-    yield seen.alarm(
+    yield run.alarm(
         LARGE_STEP,
         sentence,
-        omega=seen.omega,
+        omega=run.omega,
         low=landed.low,
         mean=landed.mean,
         high=landed.high,
@@ -103,63 +105,64 @@ def _large_step(seen: Seen) -> Iterator[Alarm]:
     )
 
 
-def _gained(seen: Seen) -> Iterator[Alarm]:
-    gain = _number(seen.row, "energy.switching_gain")
+def _gained(run: ContactRun) -> Iterator[Alarm]:
+    gain = _number(run.row, "energy.switching_gain")
     if gain is not None and gain > NOTABLE:
-        said = f"opening and closing have added {100 * gain:.3g} % to the energy that start and loads give"
-        yield seen.alarm(GAINED, said, gain=gain)
+        sentence = f"opening and closing have added {100 * gain:.3g} % to the energy that start and loads give"
+        yield run.alarm(GAINED, sentence, gain=gain)
 
 
-def _may_gain(seen: Seen) -> Iterator[Alarm]:
-    t = seen.scene.time
-    if seen.returns and seen.omega > 1 and not contact.cannot_gain(seen.scene):
+def _may_gain(run: ContactRun) -> Iterator[Alarm]:
+    t = run.scene.time
+    if run.returns and run.omega > 1 and not contact.cannot_gain(run.scene):
         sentence = (
-            f"alpha = {t.alpha:g}, delta = {t.delta:g} with w_c dt = {seen.omega:.3g}: opening and closing can add "
+            f"alpha = {t.alpha:g}, delta = {t.delta:g} with w_c dt = {run.omega:.3g}: opening and closing can add "
             'energy; they cannot with delta >= 1 and 2 alpha >= delta, nor with contact.rule = "implicit" or '
             '"energy-conserving"'
         )
-        yield seen.alarm(MAY_GAIN, sentence, omega=seen.omega, alpha=t.alpha, delta=t.delta)
+        yield run.alarm(MAY_GAIN, sentence, omega=run.omega, alpha=t.alpha, delta=t.delta)
 
 
-def _hidden(seen: Seen) -> Iterator[Alarm]:
-    limit = contact.hidden_from(seen.scene)
-    if limit is not None and seen.scene.time.step > limit:
-        said = (
-            f"dt = {seen.scene.time.step:g} s is beyond {limit:.4g} s, h / (c sqrt(6 alpha)): the block of one strain "
+def _hidden(run: ContactRun) -> Iterator[Alarm]:
+    limit = contact.hidden_from(run.scene)
+    if limit is not None and run.scene.time.step > limit:
+        sentence = (
+            f"dt = {run.scene.time.step:g} s is beyond {limit:.4g} s, h / (c sqrt(6 alpha)): the block of one strain "
             "leaves its springs at t = 0, and no step shows it"
         )
-        yield seen.alarm(HIDDEN, said, step=seen.scene.time.step, limit=limit)
+        yield run.alarm(HIDDEN, sentence, step=run.scene.time.step, limit=limit)
 
 
-def _penalty(seen: Seen) -> Iterator[Alarm]:
-    peak, exact = (_number(row, "contact.peak_force") for row in (seen.row, seen.truth))
-    quarter = contact.quarter_mass_force(seen.scene, 1.0)
-    stiff = quarter > contact.wave_force(seen.scene, 1.0)
+def _penalty(run: ContactRun) -> Iterator[Alarm]:
+    peak, exact = (_number(row, "contact.peak_force") for row in (run.row, run.truth))
+    quarter = contact.quarter_mass_force(run.scene, 1.0)
+    stiff = quarter > contact.wave_force(run.scene, 1.0)
     if peak is not None and exact and stiff and peak > BEYOND * exact:
-        factor = contact.impact_force(seen.scene, 1.0) / quarter
+        factor = contact.impact_force(run.scene, 1.0) / quarter
         landed = f", {factor:.3g} V sqrt(p m / 2) for an unloaded landing at V" if math.isfinite(factor) else ""
         sentence = (
             f"the peak contact force, {peak:.3g} N, is {peak / exact:.2g} times that of the exact bar: it is that of "
             f"the springs{landed}, and grows as sqrt(p)"
         )
-        yield seen.alarm(PENALTY, sentence, peak=peak, bar=exact)
+        yield run.alarm(PENALTY, sentence, peak=peak, bar=exact)
 
 
-def _drag(seen: Seen) -> Iterator[Alarm]:
-    t, share = seen.scene.time, _number(seen.row, "contact.open_share") or 0.0
+def _drag(run: ContactRun) -> Iterator[Alarm]:
+    t = run.scene.time
+    share = _number(run.row, "contact.open_share") or 0.0
     if t.discount < 1 and share > 0:
         constant = -t.step / math.log(t.discount) if t.discount > 0 else 0.0
         sentence = (
             f"gg = {t.discount:g} slows the block in flight as well, {100 * share:.3g} % of the time: speeds fall "
             f"with the time constant {constant:.3g} s, -dt / ln(gg)"
         )
-        yield seen.alarm(DRAG, sentence, gg=t.discount, share=share, constant=constant)
+        yield run.alarm(DRAG, sentence, gg=t.discount, share=share, constant=constant)
 
 
-def _pulling(seen: Seen) -> Iterator[Alarm]:
-    scene = seen.scene
-    pull = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
+def _pulling(run: ContactRun) -> Iterator[Alarm]:
+    scene = run.scene
+    tension = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
     load = abs(opened.resultant_load(scene)) or contact.impact_force(scene, scene.block.velocity)
-    if pull > NOTABLE * load:
-        share = f", {100 * pull / load:.3g} % of the load" if load else ""
-        yield seen.alarm(PULLING, f"the band lets the contact pull with up to {pull:.3g} N{share}", pull=pull)
+    if tension > NOTABLE * load:
+        share = f", {100 * tension / load:.3g} % of the load" if load else ""
+        yield run.alarm(PULLING, f"the band lets the contact pull with up to {tension:.3g} N{share}", pull=tension)

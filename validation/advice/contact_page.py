@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
@@ -17,7 +18,8 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
-DEFAULT_ERROR, DEFAULT_PENETRATION = 0.05, 1e-4  # of the restitution [-], and [m], where none is asked for
+DEFAULT_ERROR = 0.05  # of the restitution, where none is requested [-]
+DEFAULT_PENETRATION = 1e-4  # where none is requested [m]
 ALONG = "horizontal.final"  # displacement along the base at the end [m]
 MEAN_RATE = "contact.restitution_mean"
 APART = 0.01  # of the run-out of a rigid block, from which on that of the exact block is said beside it
@@ -98,13 +100,13 @@ def answer(
     rows
         Its rows by solver, without the solvers that do not apply.
     error, penetration
-        The restitution error [-] and the penetration [m] that are asked for; None where the user asked for none: then
-        those of `DEFAULT_ERROR` and `DEFAULT_PENETRATION`, but no advice on landings to a block that slides.
+        The requested restitution error [-] and penetration [m]; None where the user requests none: then those of
+        `DEFAULT_ERROR` and `DEFAULT_PENETRATION`, but no advice on landings to a block that slides.
     probe
         How deep the exact block goes on springs p [m], None where there is no answer.
     """
     speed = landing_speed(scene, rows)
-    returned = contact.restitution(scene)
+    stepped_landing = contact.restitution(scene)
     slides = friction.sliding(scene)
     stated = {"restitution_error": error, "penetration": penetration}
     requested = any(value is not None for value in stated.values())
@@ -115,18 +117,19 @@ def answer(
     need = None
     if requested or slides is None:
         need = contact.needed(scene, speed, limits["restitution_error"], limits["penetration"], probe)
+    alarms = itertools.chain.from_iterable(alarms_of(scene, rows) for alarms_of in ALARMS)
     return {
         "scene": scene.name,
         "omega": contact.omega(scene),
         "contact_frequency": contact.contact_frequency(scene),
-        "restitution_now": None if returned is None else asdict(returned),
+        "restitution_now": None if stepped_landing is None else asdict(stepped_landing),
         "landing_speed": speed,
         "asked": limits | {"stated": [name for name, value in stated.items() if value is not None]},
         "needed": None if need is None else contact.as_dict(need),
         "hidden_from": contact.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
         "sliding": friction.as_dict(slides),
-        "alarms": [alarm.record() for find in ALARMS for alarm in find(scene, rows)],
+        "alarms": [alarm.record() for alarm in alarms],
     }
 
 
@@ -141,8 +144,8 @@ def plain(value: Any) -> Any:
 
 def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
-    kept = ("switches.", "contact.", "energy.", "horizon.", ALONG)
-    return {name: value for name, value in row.metrics.items() if name.startswith(kept)}
+    prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
+    return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}
 
 
 def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
@@ -155,15 +158,19 @@ def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
     return math.sqrt(scene.block.velocity**2 + max(0.0, fallen))
 
 
-def page(scene: Scene, found: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
+def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
+    t = scene.time
     yield f"{scene.name}: {scene.title or 'contact that opens'}"
-    yield from _head(scene, found)
+    yield (
+        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, "
+        f"gg = {t.discount:.6g}: w_c dt = {data['omega']:.3g}"
+    )
     yield ""
-    yield from _aligned(table(scene, found["runs"]))
+    yield from _aligned(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
-    if any(_number(run, MEAN_RATE) > 1 for run in found["runs"].values()):
+    if any(_number(run, MEAN_RATE) > 1 for run in data["runs"].values()):
         yield (
             "A gap may open faster than it closed without any gain of energy: strain, load and the other corner drive "
             "the base too; gains are the lines of energy."
@@ -172,20 +179,12 @@ def page(scene: Scene, found: Mapping[str, Any], absent: Mapping[str, str]) -> I
     slides = friction.sliding(scene)
     if slides is not None:
         yield from friction.lines(scene, slides)
-        yield from _hops(slides, found["runs"])
+        yield from _hops(slides, data["runs"])
         yield ""
-    if found["needed"] is not None:
-        yield from _needed(scene, found)
-    for alarm in found["alarms"]:
+    if data["needed"] is not None:
+        yield from _needed(scene, data)
+    for alarm in data["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
-
-
-def _head(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
-    t = scene.time
-    yield (
-        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, "
-        f"gg = {t.discount:.6g}: w_c dt = {found['omega']:.3g}"
-    )
 
 
 def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
@@ -237,22 +236,25 @@ def _number(run: Mapping[str, Value], metric: str) -> float:
 def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> Iterator[str]:
     """Say where the exact block moves otherwise than a rigid one that stays on the slope."""
     run = runs.get(exact(), {})
-    moved, share = abs(_number(run, ALONG)), _number(run, "contact.open_share")
-    if slides.stands or not share > 0 or not abs(moved - slides.run_out) > APART * slides.run_out:
+    distance = abs(_number(run, ALONG))
+    share = _number(run, "contact.open_share")
+    if slides.stands or not share > 0 or not abs(distance - slides.run_out) > APART * slides.run_out:
         return
     yield (
-        f"  hops        the exact block is open for {100 * share:.3g} % of the time and moves {moved:.4g} m: the "
+        f"  hops        the exact block is open for {100 * share:.3g} % of the time and moves {distance:.4g} m: the "
         "run-out above is that of a block that stays on the slope and never sticks"
     )
 
 
-def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
-    need, asked = found["needed"], found["asked"]
-    error, depth = asked["restitution_error"], asked["penetration"]
-    why = "Asked for" if asked["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
+def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
+    need = data["needed"]
+    limits = data["asked"]
+    error = limits["restitution_error"]
+    depth = limits["penetration"]
+    why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
         f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
-        f"landing at {found['landing_speed']:.4g} m/s under {abs(opened.resultant_load(scene)):.4g} N."
+        f"landing at {data['landing_speed']:.4g} m/s under {abs(opened.resultant_load(scene)):.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     ratio = need["stiffness"] / scene.block.young
@@ -261,31 +263,31 @@ def _needed(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
             f"              that is {ratio:.4g} E, for the penetration of a landing, p ~ (V / x)^2; at rest springs of "
             f"{MODERATE:g} E give way by {_at_rest(scene, MODERATE * scene.block.young):.2g} m"
         )
-    if found["landing_speed"] > 0:
-        yield from _step_lines(scene, found)
+    if data["landing_speed"] > 0:
+        yield from _step_lines(scene, data)
     if scene.time.gg_rate is None and scene.time.discount < 1:
-        left = 100 * friction.kept_way(scene.time.discount, scene.time.step, 1.0)
+        share = 100 * friction.distance_share(scene.time.discount, scene.time.step, 1.0)
         yield (
             f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
-            f"in flight or sliding it leaves {left:.3g} % of the distance covered from rest in a second"
+            f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
         )
 
 
 def _at_rest(scene: Scene, stiffness: float) -> float:
-    """Return how far springs give way under the load at rest [m]."""
+    """Return how far springs deflect under the load at rest [m]."""
     return abs(opened.resultant_load(scene)) / (2 * stiffness)
 
 
-def _step_lines(scene: Scene, found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what is said of time steps and of the restitution that they leave."""
-    need = found["needed"]
+def _step_lines(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the lines on time steps and on the restitution that they leave."""
+    need = data["needed"]
     for words, steps in (("time step   at that p", need["steps"]), ("            at present", need["steps_now"])):
         yield f"  {words}: {_allowed(steps, scene.time.discount)}"
-    for words, map_ in (("with these", need["restitution"]), ("at present", found["restitution_now"])):
-        if map_ is not None:
+    for words, landing in (("with these", need["restitution"]), ("at present", data["restitution_now"])):
+        if landing is not None:
             yield (
-                f"  {words}  an unloaded landing leaves the centre of mass {map_['mean']:.3g} of its speed, "
-                f"{map_['low']:.3g} to {map_['high']:.3g} by phase; the block's own is {map_['own']:.3g}"
+                f"  {words}  an unloaded landing leaves the centre of mass {landing['mean']:.3g} of its speed, "
+                f"{landing['low']:.3g} to {landing['high']:.3g} by phase; the block's own is {landing['own']:.3g}"
             )
 
 
@@ -301,11 +303,11 @@ def _allowed(steps: Mapping[str, Any] | None, gg: float) -> str:
     return f"dt from {steps['shortest']:.3g} s, below which gg takes more, to {steps['longest']:.3g} s"
 
 
-def _depth(need: Mapping[str, Any], asked: float) -> str:
+def _depth(need: Mapping[str, Any], penetration: float) -> str:
     if need["depth"] is None:
         return ", for the load at rest and one unloaded landing"
-    reached = "" if need["depth"] <= asked else ", and no stiffer ones were tried"
-    return f": the exact block then penetrates {need['depth']:.3g} m{reached}"
+    reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
+    return f": the exact block then penetrates {need['depth']:.3g} m{reservation}"
 
 
 def _aligned(lines: list[Line]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What friction, slope and a discount make of a block's way, and the alarms of blocks that slip.
+"""What friction, slope and a discount make of a block's displacement, and the alarms of blocks that slip.
 
 creep of a stable block
     A block below its threshold slips on, long after it should stand.
@@ -31,18 +31,16 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-CREEPS, LAGS, HIDES, STATELESS, BRAKES = (
-    "creep of a stable block",
-    "lagged friction",
-    "slip hidden by the step",
-    "no contact state",
-    "drag on a sliding block",
-)
+CREEPS = "creep of a stable block"
+LAGS = "lagged friction"
+HIDES = "slip hidden by the step"
+STATELESS = "no contact state"
+BRAKES = "drag on a sliding block"
 KINDS = (CREEPS, LAGS, HIDES, STATELESS, BRAKES)
 SLOW = 0.01  # of g / w_n: a slower creep is not worth an alarm
 STOPPING = 4.0  # times the time in which friction takes the speed g / w_n
 COARSE = 0.3  # w_n dt from which on the ringing is not followed
-NOTABLE = 0.01  # of the way, that a discount takes
+NOTABLE = 0.01  # of the run-out, that a discount takes
 STATES = (Outcome.NO_CONTACT_STATE, Outcome.SEVERAL_CONTACT_STATES)
 
 
@@ -52,9 +50,9 @@ class Sliding:
 
     threshold: float  # slope at which it begins to slide [deg]
     acceleration: float  # g (sin b - tan(phi) cos b) - c a / m [m/s2]; negative where it stands
-    run_out: float  # way of a sliding block over the scene's time [m]; zero where it stands
+    run_out: float  # displacement of a sliding block over the scene's time [m]; zero where it stands
     braked: float  # the same with the scene's scheme and discount [m]
-    offset: float  # by which springs that give put it ahead [m]
+    offset: float  # by which the deflection of the springs puts it ahead [m]
     creep: float  # g / w_n, with which the creep of a stable block on ringing springs scales [m/s]
     rate: float | None  # -ln(gg) / dt [1/s]; None where gg = 0, which takes the whole velocity in every step
     constant: float  # dt / (1 - gg), terminal speed over acceleration [s]
@@ -75,59 +73,62 @@ def sliding(scene: Scene) -> Sliding | None:
     alone = scene.load.pressure == scene.load.traction == 0 and scene.load.base_motion is None
     if features.FRICTION not in features.of(scene) or scene.load.gravity <= 0 or not alone:
         return None
-    rate = friction.sliding_acceleration(scene)
-    braked, _ = friction.free_motion(scene, max(rate, 0.0))
+    acceleration = friction.sliding_acceleration(scene)
+    displacements, _ = friction.free_motion(scene, max(acceleration, 0.0))
+    creep = friction.creep_scale(scene) if math.isfinite(scene.contact.stiffness) else 0.0
+    rate = friction.drag_rate(scene) if scene.time.discount > 0 else None
     return Sliding(
         friction.threshold_angle(scene),
-        rate,
+        acceleration,
         friction.run_out(scene, scene.time.duration),
-        float(braked[-1]),
+        float(displacements[-1]),
         friction.penalty_offset(scene),
-        friction.creep_scale(scene) if math.isfinite(scene.contact.stiffness) else 0.0,
-        friction.drag_rate(scene) if scene.time.discount > 0 else None,
+        creep,
+        rate,
         friction.time_constant(scene),
     )
 
 
-def kept_way(gg: float, step: float, time: float) -> float:
-    """Return the share of its way that a falling or sliding body goes from rest in a time with a discount [-].
+def distance_share(gg: float, step: float, time: float) -> float:
+    """Return the distance of a body that falls or slides from rest with a discount over that without [-].
 
     The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
     """
     n = max(round(time / step), 1)
     if gg >= 1:
         return 1.0
-    gained = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
-    return float((n / 2 + gg * (n - gained) / (1 - gg)) / (n * n / 2))
+    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1.
+    velocity = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
+    return float((n / 2 + gg * (n - velocity) / (1 - gg)) / (n * n / 2))
 
 
-def as_dict(found: Sliding | None) -> dict[str, Any] | None:
+def as_dict(slides: Sliding | None) -> dict[str, Any] | None:
     """Return plain data for JSON."""
-    return None if found is None else asdict(found)
+    return None if slides is None else asdict(slides)
 
 
-def lines(scene: Scene, found: Sliding) -> Iterator[str]:
-    """Yield what is said of a block with friction."""
+def lines(scene: Scene, slides: Sliding) -> Iterator[str]:
+    """Yield the lines on a block with friction."""
     t = scene.time
     slope = abs(scene.load.slope)
-    side = "below" if found.stands else "above"
+    side = "below" if slides.stands else "above"
     both = ", cohesion acting at both corners" if scene.contact.cohesion else ""
-    yield f"Slope {slope:g} deg, {side} the threshold of {found.threshold:.4g} deg{both}:"
-    if found.stands:
+    yield f"Slope {slope:g} deg, {side} the threshold of {slides.threshold:.4g} deg{both}:"
+    if slides.stands:
         yield (
             "  stable      undamped springs ring and let it creep at a speed that scales with g / w_n = "
-            f"{1e3 * found.creep:.3g} mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
+            f"{1e3 * slides.creep:.3g} mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
         )
     else:
         yield (
-            f"  slides      if rigid, at rest and touching at t = 0: by {found.run_out:.5g} m in {t.duration:.4g} s at "
-            f"{found.acceleration:.4g} m/s2; springs put it tan(phi) x settlement = {found.offset:.3g} m ahead"
+            f"  slides      if rigid, at rest and touching at t = 0: by {slides.run_out:.5g} m in {t.duration:.4g} s "
+            f"at {slides.acceleration:.4g} m/s2; springs put it tan(phi) x settlement = {slides.offset:.3g} m ahead"
         )
         if t.discount < 1:
             yield (
-                f"  gg          {t.discount:g} per step of {t.step:g} s {found.drag}: it cuts "
-                f"{found.run_out:.3g} m to {found.braked:.3g} m, in flight as well; no speed beyond "
-                f"{found.acceleration * found.constant:.3g} m/s"
+                f"  gg          {t.discount:g} per step of {t.step:g} s {slides.drag}: it cuts "
+                f"{slides.run_out:.3g} m to {slides.braked:.3g} m, in flight as well; no speed beyond "
+                f"{slides.acceleration * slides.constant:.3g} m/s"
             )
 
 
@@ -137,55 +138,56 @@ def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     if name is None or features.FRICTION not in features.of(scene):
         return
     yield from _stateless(scene, rows[name])
-    found = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
+    slides = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
-        said = (
+        sentence = (
             "friction at a slipping corner is that of the iteration before: a stable block may creep, the faster the "
             'finer the step; contact.rules = "consistent" avoids it'
         )
-        yield Alarm(LAGS, scene.name, said)
-    if found is not None and found.stands:
-        yield from _creeps(scene, rows[name], found)
-        yield from _hides(scene, found)
-    elif found is not None and found.braked < (1 - NOTABLE) * found.run_out and scene.time.discount < 1:
-        said = (
-            f"gg = {scene.time.discount:g} per step {found.drag}: it cuts the run-out from "
-            f"{found.run_out:.3g} m to {found.braked:.3g} m"
+        yield Alarm(LAGS, scene.name, sentence)
+    if slides is not None and slides.stands:
+        yield from _creeps(scene, rows[name], slides)
+        yield from _hides(scene, slides)
+    elif slides is not None and slides.braked < (1 - NOTABLE) * slides.run_out and scene.time.discount < 1:
+        sentence = (
+            f"gg = {scene.time.discount:g} per step {slides.drag}: it cuts the run-out from "
+            f"{slides.run_out:.3g} m to {slides.braked:.3g} m"
         )
-        rate = {} if found.rate is None else {"rate": found.rate}
-        yield Alarm(BRAKES, scene.name, said, {**rate, "run_out": found.run_out, "braked": found.braked})
+        rate = {} if slides.rate is None else {"rate": slides.rate}
+        yield Alarm(BRAKES, scene.name, sentence, {**rate, "run_out": slides.run_out, "braked": slides.braked})
 
 
 def _stateless(scene: Scene, row: Row) -> Iterator[Alarm]:
     if row.outcome in STATES:
-        said = (
+        sentence = (
             f"{row.outcome.value} even after the step was cut: use a smaller time.step, contact.friction or "
             "contact.shear_stiffness"
         )
-        yield Alarm(STATELESS, scene.name, said)
+        yield Alarm(STATELESS, scene.name, sentence)
 
 
-def _creeps(scene: Scene, row: Row, found: Sliding) -> Iterator[Alarm]:
+def _creeps(scene: Scene, row: Row, slides: Sliding) -> Iterator[Alarm]:
     """Alarm where slip goes on after friction has had the time to stop a speed of g / w_n."""
     rate = row.metrics.get("contact.slip_rate")
-    stopped = STOPPING * found.creep / -found.acceleration if found.acceleration < 0 else math.inf
-    if isinstance(rate, float) and rate > SLOW * found.creep > 0 and scene.time.duration / 2 > stopped:
-        share = rate / found.creep
-        said = (
-            f"the block is stable, {abs(scene.load.slope):g} deg below {found.threshold:.4g} deg, and slips on by "
+    stopped = STOPPING * slides.creep / -slides.acceleration if slides.acceleration < 0 else math.inf
+    if isinstance(rate, float) and rate > SLOW * slides.creep > 0 and scene.time.duration / 2 > stopped:
+        share = rate / slides.creep
+        sentence = (
+            f"the block is stable, {abs(scene.load.slope):g} deg below {slides.threshold:.4g} deg, and slips on by "
             f"{1e3 * rate:.3g} mm/s, {share:.2g} times g / w_n"
         )
-        yield Alarm(CREEPS, scene.name, said, {"rate": rate, "scale": found.creep})
+        yield Alarm(CREEPS, scene.name, sentence, {"rate": rate, "scale": slides.creep})
 
 
-def _hides(scene: Scene, found: Sliding) -> Iterator[Alarm]:
+def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
     """Alarm where a slope stands because its ringing is not followed."""
-    t, phase = scene.time, friction.normal_frequency(scene) * scene.time.step
+    t = scene.time
+    phase = friction.normal_frequency(scene) * t.step
     damps = t.delta > 0.5 or t.discount < 1
-    if scene.load.slope and damps and phase > COARSE and found.creep > 0:
-        said = (
+    if scene.load.slope and damps and phase > COARSE and slides.creep > 0:
+        sentence = (
             f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "
             "s, is damped before it can show; the exact block creeps at a speed that scales with g / w_n = "
-            f"{1e3 * found.creep:.3g} mm/s"
+            f"{1e3 * slides.creep:.3g} mm/s"
         )
-        yield Alarm(HIDES, scene.name, said, {"phase": phase, "scale": found.creep})
+        yield Alarm(HIDES, scene.name, sentence, {"phase": phase, "scale": slides.creep})

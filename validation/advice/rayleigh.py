@@ -1,4 +1,4 @@
-r"""The Rayleigh damping that a scheme hides, and the scheme that hides a wanted one.
+r"""The Rayleigh damping that a scheme hides, and the scheme that hides a target one.
 
 A step answers a vibration as the undamped system does at the complex frequency W = sqrt(W2); its damping ratio is
 xi = -Im W / |W|, the *steady ratio* (that of a free vibration is `damping_ratio` of `validation.advice.spectra`). For
@@ -64,9 +64,10 @@ class Rayleigh:
         """
         _check_points(first, second)
         (w1, x1), (w2, x2) = ((2 * math.pi * f, xi) for f, xi in (first, second))
-        apart = (w2 - w1) * (w2 + w1)
-        mass, stiffness = _difference(w2 * x1, w1 * x2), _difference(w2 * x2, w1 * x1)
-        return cls(2 * w1 * w2 * mass / apart, 2 * stiffness / apart)
+        determinant = (w2 - w1) * (w2 + w1)
+        mass = _difference(w2 * x1, w1 * x2)
+        stiffness = _difference(w2 * x2, w1 * x1)
+        return cls(2 * w1 * w2 * mass / determinant, 2 * stiffness / determinant)
 
 
 def _difference(a: float, b: float) -> float:
@@ -106,25 +107,25 @@ def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Poi
         raise InputError("--ratio and --a0, --a1 exclude each other, got both")
     if not both and len(texts) != 2:
         raise InputError(f"--ratio: must be given twice, got {len(texts)} of them")
-    found = []
+    pairs = []
     for text in texts:
         parts = text.split("=")
         try:
             f, xi = map(float, parts)
         except ValueError:
             raise InputError(f"--ratio: must be a frequency and a ratio, as in 5=0.02, got {text!r}") from None
-        found.append((f, xi))
-    return found
+        pairs.append((f, xi))
+    return pairs
 
 
 def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayleigh:
-    """Return the damping that is asked for by two points, or by a0 and a1, zero where one is absent."""
+    """Return the damping that is stated by two points, or by a0 and a1, zero where one is absent."""
     if points:
         return Rayleigh.through(points[0], points[1])
-    found = Rayleigh(a0 or 0.0, a1 or 0.0)
-    if not (math.isfinite(found.a0) and math.isfinite(found.a1)):
-        raise InputError(f"damping: a0 and a1 must be finite, got {found.a0:g} and {found.a1:g}")
-    return found
+    target = Rayleigh(a0 or 0.0, a1 or 0.0)
+    if not (math.isfinite(target.a0) and math.isfinite(target.a1)):
+        raise InputError(f"damping: a0 and a1 must be finite, got {target.a0:g} and {target.a1:g}")
+    return target
 
 
 def check_band(low: float, high: float, step: float) -> None:
@@ -167,16 +168,18 @@ def matched(stepping: Stepping, first: float, second: float) -> Rayleigh:
     return Rayleigh.through((first, float(exact[0])), (second, float(exact[1])))
 
 
-def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Stepping:
-    """Return the scheme that hides a wanted damping, to leading order.
+def settings(target: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Stepping:
+    """Return the scheme that hides a target damping, to leading order.
 
     Parameters
     ----------
-    wanted
+    target
         The damping.
     scheme
-        What is kept: delta, and dt is found; or dt (`keep_step`), and delta is found, with alpha raised to delta / 2
-        where the scheme would be unstable.
+        The scheme to change: its dt for a given delta; or its delta for a given dt (`keep_step`), with alpha raised
+        to delta / 2 where the scheme would be unstable.
+    keep_step
+        Whether dt stays.
 
     Raises
     ------
@@ -184,35 +187,35 @@ def settings(wanted: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
         To leading order no scheme hides it: a part is negative, delta = 1/2 has no algorithmic damping, or the discount
         is not positive.
     """
-    if wanted.a0 < 0 or wanted.a1 < 0:
-        part = "mass" if wanted.a0 < 0 else "stiffness"
+    if target.a0 < 0 or target.a1 < 0:
+        part = "mass" if target.a0 < 0 else "stiffness"
         raise InputError(
-            f"damping: to leading order in w dt no scheme hides a negative {part} part, got a0 = {wanted.a0:g}, "
-            f"a1 = {wanted.a1:g}"
+            f"damping: to leading order in w dt no scheme hides a negative {part} part, got a0 = {target.a0:g}, "
+            f"a1 = {target.a1:g}"
         )
     if keep_step:
-        delta = 0.5 + wanted.a1 / scheme.step
-        found = replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2))
-    elif wanted.a1 == 0 and scheme.delta == 0.5:
-        found = scheme  # any step does
-    elif wanted.a1 == 0 or scheme.delta <= 0.5:
+        delta = 0.5 + target.a1 / scheme.step
+        stepping = replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2))
+    elif target.a1 == 0 and scheme.delta == 0.5:
+        stepping = scheme  # any step does
+    elif target.a1 == 0 or scheme.delta <= 0.5:
         raise InputError(
-            f"delta: {scheme.delta:g} hides, to leading order, no a1 = {wanted.a1:g} s at any step; "
+            f"delta: {scheme.delta:g} hides, to leading order, no a1 = {target.a1:g} s at any step; "
             "keep dt and vary delta"
         )
     else:
-        found = replace(scheme, step=wanted.a1 / (scheme.delta - 0.5))
-    half = wanted.a0 * found.step / 2  # (1 - gg) / (1 + gg)
+        stepping = replace(scheme, step=target.a1 / (scheme.delta - 0.5))
+    half = target.a0 * stepping.step / 2  # (1 - gg) / (1 + gg)
     gg = (1 - half) / (1 + half)
     if gg <= 0:
         raise InputError(
-            f"damping: a0 = {wanted.a0:g} 1/s takes more than the whole velocity in a step of {found.step:g} s"
+            f"damping: a0 = {target.a0:g} 1/s takes more than the whole velocity in a step of {stepping.step:g} s"
         )
-    return replace(found, gg=gg)
+    return replace(stepping, gg=gg)
 
 
 def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: bool = False) -> Stepping:
-    """Return the scheme whose steady ratios at two frequencies in Hz are the wanted ones.
+    """Return the scheme whose steady ratios at two frequencies in Hz are the target ones.
 
     The search begins at `settings`, and where that leads nowhere on a grid of all steps (or all delta) and discounts:
     at w dt of order one a scheme may have ratios that none has to leading order. Of several the one with the smallest
@@ -225,7 +228,7 @@ def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: boo
         No scheme with its step below half a period of the higher frequency has them.
     """
     frequencies = np.array([first[0], second[0]])
-    wanted = np.array([first[1], second[1]])
+    target_ratios = np.array([first[1], second[1]])
     shortest_period = 1 / float(frequencies.max())
     target = Rayleigh.through(first, second)
 
@@ -235,9 +238,9 @@ def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: boo
             return replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2), gg=gg)
         return replace(scheme, step=size, gg=gg)
 
-    def fits(found: Stepping) -> bool:
-        near = np.allclose(ratio(found, frequencies), wanted, rtol=1e-9, atol=1e-15)
-        return near and found.step <= shortest_period / 2 * (1 + 1e-9)
+    def fits(stepping: Stepping) -> bool:
+        has_ratios = np.allclose(ratio(stepping, frequencies), target_ratios, rtol=1e-9, atol=1e-15)
+        return has_ratios and stepping.step <= shortest_period / 2 * (1 + 1e-9)
 
     starts = []
     with contextlib.suppress(InputError):
@@ -245,51 +248,49 @@ def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: boo
         if fits(leading):
             return leading
         starts.append((leading.delta - 0.5 if keep_step else leading.step, leading.gg))
-    solutions = _solutions(candidate, fits, frequencies, wanted, starts)
+    solutions = _solutions(candidate, fits, frequencies, target_ratios, starts)
     if not solutions:
         sizes = np.geomspace(1e-4, 10, 60) if keep_step else shortest_period / 2 * np.geomspace(1e-6, 1, 60)
-        solutions = _solutions(
-            candidate, fits, frequencies, wanted, _grid_starts(candidate, frequencies, wanted, sizes)
-        )
-        edge = None if solutions else _without_discount(candidate, frequencies, wanted, sizes)
-        if edge is not None and misfit(edge, first, second) <= WRITTEN:
-            return edge
+        starts = _grid_starts(candidate, frequencies, target_ratios, sizes)
+        solutions = _solutions(candidate, fits, frequencies, target_ratios, starts)
     if not solutions:
-        kept = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
-        raise InputError(f"damping: no scheme with {kept} has these two ratios; ask for smaller or closer ones")
-    return min(solutions, key=lambda found: (found.delta, found.step))
+        edge = _without_discount(candidate, frequencies, target_ratios, sizes)
+        if misfit(edge, first, second) <= WRITTEN:
+            return edge
+        fixed = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
+        raise InputError(f"damping: no scheme with {fixed} has these two ratios; ask for smaller or closer ones")
+    return min(solutions, key=lambda solution: (solution.delta, solution.step))
 
 
 def misfit(scheme: Stepping, *points: Point) -> float:
-    """Return by how much the steady ratios of a scheme miss wanted ones, the largest as a share of its wanted ratio."""
-    missed = [abs(float(ratio(scheme, f)) - xi) / max(xi, ROUNDING) for f, xi in points]
-    return max(missed)
+    """Return by how much the steady ratios of a scheme miss target ones, the largest as a share of its target."""
+    return max(abs(float(ratio(scheme, f)) - xi) / max(xi, ROUNDING) for f, xi in points)
 
 
 Candidate = Callable[[float, float], Stepping]  # of a step [s] or of delta - 1/2, and of gg
 
 
-def _grid_starts(candidate: Candidate, frequencies: Array, wanted: Array, sizes: Array) -> list[tuple[float, float]]:
-    """Return the points of a grid at which the ratios come nearest to the wanted ones, the nearest first."""
+def _grid_starts(candidate: Candidate, frequencies: Array, target: Array, sizes: Array) -> list[tuple[float, float]]:
+    """Return the points of a grid at which the ratios come nearest to the target ones, the nearest first."""
     discounts = 1 - np.concatenate([[0.0], np.geomspace(1e-6, 0.99, 30)])
-    found = []
+    points = []
     for size in sizes.tolist():
         for gg in discounts.tolist():
             with np.errstate(all="ignore"):  # a root at infinity
-                distance = float(np.abs(ratio(candidate(size, gg), frequencies) - wanted).max())
+                distance = float(np.abs(ratio(candidate(size, gg), frequencies) - target).max())
             if math.isfinite(distance):
-                found.append((distance, size, gg))
-    return [(size, gg) for _, size, gg in sorted(found)[:STARTS]]
+                points.append((distance, size, gg))
+    return [(size, gg) for _, size, gg in sorted(points)[:STARTS]]
 
 
-def _without_discount(candidate: Candidate, frequencies: Array, wanted: Array, sizes: Array) -> Stepping:
-    """Return the scheme at gg = 1 whose ratios come nearest to the wanted ones."""
+def _without_discount(candidate: Candidate, frequencies: Array, target: Array, sizes: Array) -> Stepping:
+    """Return the scheme at gg = 1 whose ratios come nearest to the target ones."""
     from scipy.optimize import minimize_scalar
 
     def distance(log_size: float) -> float:
         with np.errstate(all="ignore"):
-            found = ratio(candidate(math.exp(log_size), 1.0), frequencies)
-        return float(np.nan_to_num(np.abs(found / np.maximum(wanted, ROUNDING) - 1).max(), nan=math.inf))
+            ratios = ratio(candidate(math.exp(log_size), 1.0), frequencies)
+        return float(np.nan_to_num(np.abs(ratios / np.maximum(target, ROUNDING) - 1).max(), nan=math.inf))
 
     logs = np.log(sizes)
     near = int(np.argmin([distance(x) for x in logs.tolist()]))
@@ -302,26 +303,28 @@ def _solutions(
     candidate: Candidate,
     fits: Callable[[Stepping], bool],
     frequencies: Array,
-    wanted: Array,
+    target: Array,
     starts: Sequence[tuple[float, float]],
 ) -> list[Stepping]:
-    """Return the schemes with the wanted ratios that are reached from some starts (step or delta - 1/2, and gg)."""
+    """Return the schemes with the target ratios that are reached from some starts (step or delta - 1/2, and gg)."""
     from scipy.optimize import root
 
-    scale = max(float(wanted.max()), 1e-15)
+    scale = max(float(target.max()), 1e-15)
+
+    def size_of(log_size: float) -> float:
+        return float(np.exp(min(log_size, 10.0)))
 
     def residual(x: Array) -> Array:
         # the formulas hold beyond gg = 1, so that a scheme without discount is no edge of the search
-        return (ratio(candidate(float(np.exp(min(x[0], 10.0))), float(x[1])), frequencies) - wanted) / scale
+        return (ratio(candidate(size_of(x[0]), float(x[1])), frequencies) - target) / scale
 
     solutions = []
     for size, gg in starts:
         with np.errstate(all="ignore"):  # a trial may lie where no step exists
-            found = root(residual, [math.log(size), gg], tol=1e-13).x
-        discount = float(found[1])
+            log_size, discount = root(residual, [math.log(size), gg], tol=1e-13).x
         if not -ROUNDING <= discount <= 1 + ROUNDING:
             continue
-        scheme = candidate(float(np.exp(min(found[0], 10.0))), min(max(discount, 0.0), 1.0))
+        scheme = candidate(size_of(log_size), min(max(float(discount), 0.0), 1.0))
         if fits(scheme):
             solutions.append(scheme)
     return solutions

@@ -47,15 +47,14 @@ class Response:
 
     def table(self) -> Array:
         """Return the columns of `HEADER`: frequency, and amplitude and phase of each column, one row a frequency."""
-        parts = [part for name in (DISPLACEMENT, PRESSURE) for part in polar(self.columns[name])]
-        return np.column_stack([self.frequency, *parts])
+        return np.column_stack([self.frequency, *polar(self.displacement), *polar(self.contact_pressure)])
 
     def peaks(self, column: str) -> list[tuple[float, float]]:
         """Return frequency and amplitude of the local maxima between the ends of the range, the highest first."""
         size = np.abs(self.columns[column])
         inside = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
-        found = [(float(self.frequency[i]), float(size[i])) for i in inside]
-        return sorted(found, key=lambda peak: -peak[1])
+        peaks = [(float(self.frequency[i]), float(size[i])) for i in inside]
+        return sorted(peaks, key=lambda peak: -peak[1])
 
 
 def polar(amplitude: Complex) -> tuple[Array, Array]:
@@ -98,8 +97,8 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     --------
     >>> from validation import load_scene, response
     >>> scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
-    >>> found = response(scene, [20.0, 52.0], "dda")
-    >>> [round(1e3 * abs(complex(v)), 6) for v in found.displacement]
+    >>> steady = response(scene, [20.0, 52.0], "dda")
+    >>> [round(1e3 * abs(complex(v)), 6) for v in steady.displacement]
     [11.545937, 31.441911]
     """
     f = _checked(frequencies)
@@ -112,11 +111,12 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     if reason := chosen.refusal(scene):
         raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
     try:
-        found = chosen.prepare(scene).response(f, exact)
+        amplitudes = chosen.prepare(scene).response(f, exact)
     except NotReported as error:
         raise InputError(f"{scene.name}: solver {chosen.name}: {error}") from None
     base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
-    return Response(scene.name, chosen.name, exact, base, f, {name: found[name] for name in (DISPLACEMENT, PRESSURE)})
+    columns = {name: amplitudes[name] for name in (DISPLACEMENT, PRESSURE)}
+    return Response(scene.name, chosen.name, exact, base, f, columns)
 
 
 def check_scene(scene: Scene) -> None:

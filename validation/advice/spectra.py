@@ -27,7 +27,8 @@ from validation.solvers.contract import NotReported, Role, Solver
 from validation.solvers.registry import by_role, get_solver
 
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
-FIRST, CONTACT = "first axial", "contact"
+FIRST = "first axial"
+CONTACT = "contact"
 
 
 @dataclass(frozen=True)
@@ -84,26 +85,33 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
 
 def _viscous_scheme(scene: Scene) -> Scheme:
     """Return the scheme of a scene with its damping tables."""
-    t, d = scene.time, scene.damping
-    return Scheme(t.alpha, t.delta, t.discount, t.step, mass_damping=d.mass, stiffness_damping=d.stiffness)
+    t = scene.time
+    tables = scene.damping
+    return Scheme(t.alpha, t.delta, t.discount, t.step, mass_damping=tables.mass, stiffness_damping=tables.stiffness)
 
 
 def mode_names(modes: Sequence[Mode]) -> list[str]:
     """Name modes: the first axial one, the contact mode (see `runs.modes.contact_index`), the others by number."""
+    names = [f"mode {i + 1}" for i in range(len(modes))]
     contact = contact_index(modes)
-    return [FIRST if i == 0 else CONTACT if i == contact else f"mode {i + 1}" for i in range(len(modes))]
+    if contact is not None:
+        names[contact] = CONTACT
+    names[0] = FIRST
+    return names
 
 
 def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     """Return the damping of a mode of the given frequency [rad/s] under the scheme of a scene."""
     t = scene.time
-    omega, gg = frequency * t.step, t.discount
+    omega = frequency * t.step
+    gg = t.discount
     total = damping_ratio(scene, frequency)
-    own = float(spectral.damping_ratio(omega, t.alpha, t.delta))
+    algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
     numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
     if scene.damping.present:
         roots = np.array(viscous.eigenvalues(_viscous_scheme(scene), frequency))
-        radius, elongation = float(np.max(np.abs(roots))), _elongation(omega, roots)
+        radius = float(np.max(np.abs(roots)))
+        elongation = _elongation(omega, roots)
     else:
         roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
         radius = float(spectral.spectral_radius(omega, t.alpha, t.delta, gg))
@@ -114,8 +122,8 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
         number(total),
         radius,
         omega,
-        number(own),
-        number(numerical - own),
+        number(algorithmic),
+        number(numerical - algorithmic),
         number(elongation),
         float(np.min(roots.real)),
         number(total - numerical),
@@ -209,18 +217,23 @@ def damping(scene: Scene, references: bool = False) -> Damping:
     Examples
     --------
     >>> from validation import damping, load_scene
-    >>> found = damping(load_scene("figures-3-4").with_values({"time.step": 0.002}))
-    >>> round(found.modes[0].damping, 4)
+    >>> scene_damping = damping(load_scene("figures-3-4").with_values({"time.step": 0.002}))
+    >>> round(scene_damping.modes[0].damping, 4)
     0.1602
     """
-    modes = dda_modes(scene)
-    named = [mode_damping(scene, name, m.frequency) for name, m in zip(mode_names(modes), modes, strict=True)]
+    dda = dda_modes(scene)
+    modes = [mode_damping(scene, name, mode.frequency) for name, mode in zip(mode_names(dda), dda, strict=True)]
     gg = scene.time.discount
     rate = -math.log(gg) / scene.time.step + 0.0 if gg > 0 else None
-    others = {name: first_mode(scene, name) for name in ("fem", "bar")} if references else {}
-    found = {name: values for name, values in others.items() if values}
-    shown = alias(scene) if references else None
-    return Damping(scene.name, scene.time.step, gg, rate, tuple(named), found, sentence(scene, named), shown)
+    reference_modes = {}
+    sampled = None
+    if references:
+        first_modes = {name: first_mode(scene, name) for name in ("fem", "bar")}
+        reference_modes = {name: values for name, values in first_modes.items() if values}
+        sampled = alias(scene)
+    return Damping(
+        scene.name, scene.time.step, gg, rate, tuple(modes), reference_modes, sentence(scene, modes), sampled
+    )
 
 
 def alias(scene: Scene) -> float | None:
@@ -247,9 +260,12 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
 
 def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
     """Return one sentence on the damping that a scene has."""
-    first, rest = modes[0], [mode for mode in modes if mode.name == CONTACT]
+    first = modes[0]
     text = f"At dt = {scene.time.step:g} s the first axial mode ({first.frequency:.4g} rad/s) {runs(first)}"
-    return f"{text}{''.join(f'; the contact mode {runs(mode)}' for mode in rest)}."
+    for mode in modes:
+        if mode.name == CONTACT:
+            text += f"; the contact mode {runs(mode)}"
+    return f"{text}."
 
 
 def runs(mode: ModeDamping) -> str:
@@ -278,8 +294,8 @@ def parts(mode: ModeDamping) -> str:
         return "kinetic and algorithmic"
     if mode.viscous:
         shares = (("algorithmic", mode.algorithmic), ("kinetic", mode.kinetic), ("viscous", mode.viscous))
-        said = [f"{percent(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
-        return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+        texts = [f"{percent(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
+        return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
     small = 1e-9 * mode.damping
     if abs(mode.kinetic) <= small:
         return "all of it algorithmic"

@@ -61,7 +61,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Passage:
-    """What becomes of a wave on its way with some blocks and a step."""
+    """What becomes of a wave over its distance, with some blocks and a step."""
 
     step: float  # dt [s]
     gg: float  # discount of a step
@@ -95,7 +95,7 @@ class WaveAdvice:
 
 
 @dataclass(frozen=True)
-class _Way:
+class _WavePath:
     """Layers and how far the wave runs, over their thickness."""
 
     layers: tuple[Layer, ...]
@@ -112,18 +112,19 @@ class _Way:
 
     def passed(self, w2: Complex) -> tuple[Array, Array]:
         """Return loss and delay in periods at squared frequencies."""
-        exponent, turned = np.zeros(np.shape(w2)), np.zeros(np.shape(w2))
+        decay = np.zeros(np.shape(w2))
+        phase = np.zeros(np.shape(w2))
         for layer in self.layers:
             k = layer.wavenumber(w2)
-            exponent += np.abs(k.imag) * layer.thickness
-            turned += (k.real - self.omega / layer.speed) * layer.thickness
-        return -np.expm1(-self.times * exponent), self.times * turned / (2 * math.pi)
+            decay += np.abs(k.imag) * layer.thickness
+            phase += (k.real - self.omega / layer.speed) * layer.thickness
+        return -np.expm1(-self.times * decay), self.times * phase / (2 * math.pi)
 
     def passage(self, stepping: Stepping) -> Passage:
         loss, delay = self.passed(stepping.squared_frequency([self.omega]))
-        found = loss[0], delay[0], ratio(stepping, self.frequency)
-        kept = (0.0 if abs(value) < ROUNDING else float(value) for value in found)
-        return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *kept)
+        values = (loss[0], delay[0], ratio(stepping, self.frequency))
+        rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
+        return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *rounded)
 
 
 @dataclass(frozen=True)
@@ -150,9 +151,9 @@ def advise_wave(
     frequency
         Of the wave [Hz].
     loss
-        Share of its amplitude that may be lost on the way [1].
+        Share of its amplitude that may be lost [1].
     wavelengths
-        Length of the way; the height of the column where it is not given.
+        Distance that it runs, in wavelengths; the height of the column by default.
     phase_error
         By how many periods the wave may arrive early or late.
 
@@ -167,26 +168,32 @@ def advise_wave(
     check_sampled(frequency, scene.time.step, "--fmax")
     features.refuse_damping(scene, "advise")
     layers = layers_of(scene)
-    way = _Way(layers, frequency, 1.0)
+    path = _WavePath(layers, frequency, 1.0)
     if wavelengths is not None:
-        way = replace(way, times=wavelengths / way.wavelengths)
-    present = way.passage(Stepping.of(scene))
-    cut, limits_height = _cut(way, phase_error / 2)
-    largest = _LargestStep(None, "blocks") if cut is None else _largest_step(scene, cut, loss, phase_error)
-    advised = None if cut is None or largest.step is None else cut.passage(_stepping(scene, largest.step))
+        path = replace(path, times=wavelengths / path.wavelengths)
+    present = path.passage(Stepping.of(scene))
+    largest = _LargestStep(None, "blocks")
+    advised = None
+    blocks: tuple[int, ...] = ()
+    cut, limits_height = _cut(path, phase_error / 2)
+    if cut is not None:
+        largest = _largest_step(scene, cut, loss, phase_error)
+        if largest.step is not None:
+            advised = cut.passage(_stepping(scene, largest.step))
+            blocks = tuple(layer.blocks for layer in cut.layers)
     return WaveAdvice(
         scene.name,
         frequency,
         loss,
         phase_error,
-        way.times * sum(layer.thickness for layer in layers),
-        way.wavelengths,
+        path.times * sum(layer.thickness for layer in layers),
+        path.wavelengths,
         present,
         advised,
-        tuple(layer.blocks for layer in cut.layers) if cut is not None and advised is not None else (),
+        blocks,
         limits_height,
         largest.limit,
-        _sentence(scene, way, present),
+        _sentence(scene, path, present),
         _advised(scene, advised, limits_height, largest),
     )
 
@@ -215,28 +222,31 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
     if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
         raise InputError(f"{scene.name}: block: must be an upright rectangle on its lower edge for a wave, got another")
     width, height = closed_forms.size(scene)
-    modulus, rows = closed_forms.moduli(scene)[0], 1 if b.subdivide is None else b.subdivide[1]
-    glue = None if b.subdivide is None else 2 * b.glue_ratio * b.young * b.subdivide[0] / width
-    return (Layer(height, b.density, modulus, rows, glue),)
+    modulus, _ = closed_forms.moduli(scene)
+    if b.subdivide is None:
+        return (Layer(height, b.density, modulus, 1),)
+    columns, rows = b.subdivide
+    return (Layer(height, b.density, modulus, rows, 2 * b.glue_ratio * b.young * columns / width),)
 
 
 def _stepping(scene: Scene, step: float) -> Stepping:
     """Return the scene's scheme at another step; a rate of the discount stays."""
     rate = scene.time.gg_rate
-    return replace(Stepping.of(scene), step=step, gg=scene.time.discount if rate is None else math.exp(-rate * step))
+    gg = scene.time.discount if rate is None else math.exp(-rate * step)
+    return replace(Stepping.of(scene), step=step, gg=gg)
 
 
-def _cut(way: _Way, allowed: float) -> tuple[_Way | None, str]:
-    """Return the way with the fewest blocks that delay a wave in exact time no more than allowed, and what limits."""
-    total, layers = way.wavelengths, []
-    for layer in way.layers:
-        alone = replace(way, layers=(layer,))
-        blocks = _fewest(alone, allowed * alone.wavelengths / total)
+def _cut(path: _WavePath, allowed: float) -> tuple[_WavePath | None, str]:
+    """Return the path with the fewest blocks that delay a wave in exact time no more than allowed, and what limits."""
+    layers = []
+    for layer in path.layers:
+        alone = replace(path, layers=(layer,))
+        blocks = _fewest(alone, allowed * alone.wavelengths / path.wavelengths)
         if blocks is None:
             return None, "glue"
         layers.append(replace(layer, blocks=_with_joints_between(layer, blocks)))
     single_block = all(layer.blocks == 1 for layer in layers)
-    return replace(way, layers=tuple(layers)), "column" if single_block else "phase error"
+    return replace(path, layers=tuple(layers)), "column" if single_block else "phase error"
 
 
 def _with_joints_between(layer: Layer, blocks: int) -> int:
@@ -253,12 +263,12 @@ def _with_joints_between(layer: Layer, blocks: int) -> int:
     return next(fitting, last)
 
 
-def _fewest(way: _Way, allowed: float) -> int | None:
+def _fewest(path: _WavePath, allowed: float) -> int | None:
     """Return the fewest blocks of a layer that are good enough, or None where the glue lets none be."""
-    w2 = np.array([way.omega**2 + 0j])
+    w2 = np.array([path.omega**2 + 0j])
 
     def good(blocks: int) -> bool:
-        loss, delay = replace(way, layers=(replace(way.layers[0], blocks=blocks),)).passed(w2)
+        loss, delay = replace(path, layers=(replace(path.layers[0], blocks=blocks),)).passed(w2)
         return bool(abs(delay[0]) <= allowed and loss[0] < 1e-9)
 
     blocks = 1
@@ -271,12 +281,12 @@ def _fewest(way: _Way, allowed: float) -> int | None:
     return blocks
 
 
-def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> _LargestStep:
+def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) -> _LargestStep:
     """Return the largest step with which the wave arrives, and what limits it."""
-    is_stable = _stability(scene, way)
+    is_stable = _stability(scene, path)
 
     def passed(step: float) -> tuple[float, float]:
-        lost, delay = way.passed(_stepping(scene, step).squared_frequency([way.omega]))
+        lost, delay = path.passed(_stepping(scene, step).squared_frequency([path.omega]))
         return float(lost[0]), float(abs(delay[0]))
 
     def arrives(step: float) -> bool:
@@ -286,26 +296,27 @@ def _largest_step(scene: Scene, way: _Way, loss: float, allowed: float) -> _Larg
     def good(step: float) -> bool:
         return is_stable(step) and arrives(step)
 
-    steps = np.geomspace(0.5 / way.frequency, 1e-6 / way.frequency, GRID).tolist()
-    found = next((i for i, step in enumerate(steps) if good(step)), None)
-    if found is None:
-        stable = [step for step in steps if is_stable(step)]
+    steps = np.geomspace(0.5 / path.frequency, 1e-6 / path.frequency, GRID).tolist()
+    first_good = next((i for i, step in enumerate(steps) if good(step)), None)
+    if first_good is None:
         if any(arrives(step) for step in steps):  # but not stably
             limit = "stability"
         else:
             limit = _why_none(scene, [passed(step)[0] for step in steps], loss)
+        stable = [step for step in steps if is_stable(step)]
         best = min(stable, key=lambda step: passed(step)[0], default=None)
         return _LargestStep(None, limit) if best is None else _LargestStep(None, limit, passed(best)[0], best)
-    if found == 0:
+    if first_good == 0:
         return _LargestStep(steps[0], "half a period")
-    step = _edge(good, steps[found], steps[found - 1])
+    step = _edge(good, steps[first_good], steps[first_good - 1])
     beyond = step * (1 + 1e-6)
     if not is_stable(beyond):
         return _LargestStep(step, "stability")
-    return _LargestStep(step, "loss" if passed(beyond)[0] > loss else "phase error")
+    limit = "loss" if passed(beyond)[0] > loss else "phase error"
+    return _LargestStep(step, limit)
 
 
-def _stability(scene: Scene, way: _Way) -> Callable[[float], bool]:
+def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     """Return whether a step is stable on the advised blocks, as DDA's solver has them with glue, joints and springs.
 
     A discount that keeps its rate changes with the step, and with it the critical w dt of the scheme.
@@ -313,7 +324,7 @@ def _stability(scene: Scene, way: _Way) -> Callable[[float], bool]:
     t = scene.time
     if 2 * t.alpha >= t.delta >= 0.5:
         return lambda step: True
-    highest = highest_frequency(_advised_scene(scene, way))
+    highest = highest_frequency(_advised_scene(scene, path))
 
     def is_stable(step: float) -> bool:
         stepping = _stepping(scene, step)
@@ -322,9 +333,9 @@ def _stability(scene: Scene, way: _Way) -> Callable[[float], bool]:
     return is_stable
 
 
-def _advised_scene(scene: Scene, way: _Way) -> Scene:
+def _advised_scene(scene: Scene, path: _WavePath) -> Scene:
     """Return the scene with the advised blocks."""
-    counts = [layer.blocks for layer in way.layers]
+    counts = [layer.blocks for layer in path.layers]
     if scene.column is not None:
         layers = [
             layer.model_dump() | {"blocks": blocks} for layer, blocks in zip(scene.column.layer, counts, strict=True)
@@ -337,7 +348,7 @@ def _advised_scene(scene: Scene, way: _Way) -> Scene:
 
 
 def _why_none(scene: Scene, losses: list[float], allowed: float) -> str:
-    """Say what keeps every step from being good enough."""
+    """Return what keeps every step from being good enough."""
     return "gg" if min(losses) > allowed and scene.time.discount < 1 else "scheme"
 
 
@@ -349,17 +360,20 @@ def _edge(good: Callable[[float], bool], inside: float, outside: float) -> float
     return inside
 
 
-def _sentence(scene: Scene, way: _Way, present: Passage) -> str:
+def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:
     """Say what the present blocks and step do to the wave."""
     rayleigh = hidden(Stepping.of(scene))
-    mass, stiffness = rayleigh.a0 / (2 * way.omega), rayleigh.a1 * way.omega / 2
-    kind = "algorithmic" if mass == 0 else "kinetic" if stiffness == 0 else "algorithmic and kinetic"
-    distance = way.times * sum(layer.thickness for layer in way.layers)
+    kind = "algorithmic and kinetic"
+    if rayleigh.a0 == 0:
+        kind = "algorithmic"
+    elif rayleigh.a1 == 0:
+        kind = "kinetic"
+    distance = path.times * sum(layer.thickness for layer in path.layers)
     late = "late" if present.delay >= 0 else "early"
     damping = f"has a steady ratio of {percent(present.damping)}, {kind}," if present.damping else "damps nothing"
     return (
-        f"Your dt = {present.step:g} s {damping} at {way.frequency:g} Hz: "
-        f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {way.wavelengths:.3g} wavelengths, "
+        f"Your dt = {present.step:g} s {damping} at {path.frequency:g} Hz: "
+        f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {path.wavelengths:.3g} wavelengths, "
         f"{abs(present.delay):.3g} periods {late}."
     )
 
@@ -368,9 +382,10 @@ def _advised(scene: Scene, advised: Passage | None, height: str, largest: _Large
     """Say what is advised and what limits it, or why nothing is."""
     if advised is not None:
         heights = ", ".join(f"{h:.4g}" for h in advised.heights)
+        late = "late" if advised.delay >= 0 else "early"
         return (
             f"Blocks of {heights} m and dt = {advised.step:.4g} s lose {percent(advised.loss)} of it and bring it "
-            f"{abs(advised.delay):.3g} periods {'late' if advised.delay >= 0 else 'early'}; "
+            f"{abs(advised.delay):.3g} periods {late}; "
             f"the blocks are limited by the {height}, the step by the {largest.limit}."
         )
     if height == "glue":

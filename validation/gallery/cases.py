@@ -63,8 +63,8 @@ class GalleryStudy:
 
 
 @dataclass
-class _Found:
-    """Records of one scene, as they are met in the manifests."""
+class _SceneRecords:
+    """Records of one scene, in the order of the manifests."""
 
     title: str = ""
     records: dict[str, dict[str, CaseRecord]] = field(default_factory=dict)  # case and solver
@@ -80,15 +80,17 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
         A manifest, a row or a history is lost or damaged.
     """
     manifests = {name: results.whole(name, histories=True) for name in names}
-    found: dict[str, _Found] = {}
+    records: dict[str, _SceneRecords] = {}
     for study, manifest in manifests.items():
         for record in spoken_of(manifest):
-            scene = found.setdefault(scene_of(record["scene"]), _Found())
+            scene = records.setdefault(scene_of(record["scene"]), _SceneRecords())
             scene.title = scene.title or record.get("title") or ""
             scene.studies[study] = None
             scene.records.setdefault(record["scene"], {})[record["solver"]] = record
-    page, rows, verdicts = _pages(), results.rows(), results.readable_verdicts()
-    scenes = {name: _scene(name, scene, page("scene", name), rows, verdicts) for name, scene in found.items()}
+    page = _pages()
+    rows = results.rows()
+    verdicts = results.readable_verdicts()
+    scenes = {name: _scene(name, scene, page("scene", name), rows, verdicts) for name, scene in records.items()}
     studies = [
         GalleryStudy(
             name,
@@ -103,18 +105,22 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
 
 
 def _scene(
-    name: str, found: _Found, page: str, rows: Mapping[str, Row], verdicts: Iterable[VerdictRecord]
+    name: str, of_scene: _SceneRecords, page: str, rows: Mapping[str, Row], verdicts: Iterable[VerdictRecord]
 ) -> GalleryScene:
     """Return a scene; solvers that repeat another one in full are left out."""
-    names = list(found.records)
-    scenes = [parse_scene(next(iter(own.values()))["definition"], case) for case, own in found.records.items()]
+    names = list(of_scene.records)
+    scenes = []
+    for case, records in of_scene.records.items():
+        first_record = next(iter(records.values()))
+        scenes.append(parse_scene(first_record["definition"], case))
     labels = case_labels(names, scenes)
     cases = []
     for case, label, scene in zip(names, labels, scenes, strict=True):
-        own = {s: rows[r["key"]] for s, r in found.records[case].items() if r["key"] in rows and not s.endswith(FULL)}
-        cases.append(GalleryCase(case, label, scene, own))
-    judged = tuple(v for v in verdicts if scene_of(v["scene"]) == name)
-    return GalleryScene(name, found.title or name, page, tuple(cases), tuple(found.studies), judged)
+        keys = {solver: record["key"] for solver, record in of_scene.records[case].items() if not solver.endswith(FULL)}
+        rows_by_solver = {solver: rows[key] for solver, key in keys.items() if key in rows}
+        cases.append(GalleryCase(case, label, scene, rows_by_solver))
+    verdicts_of_scene = tuple(v for v in verdicts if scene_of(v["scene"]) == name)
+    return GalleryScene(name, of_scene.title or name, page, tuple(cases), tuple(of_scene.studies), verdicts_of_scene)
 
 
 def _pages() -> Callable[[str, str], str]:
@@ -123,11 +129,12 @@ def _pages() -> Callable[[str, str], str]:
 
     def page(kind: str, name: str) -> str:
         stem = f"{kind}-{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('-.') or 'unnamed'}"[:100]
-        number, chosen = 1, stem
-        while chosen.casefold() in used:
+        number = 1
+        unique_stem = stem
+        while unique_stem.casefold() in used:
             number += 1
-            chosen = f"{stem}-{number}"
-        used.add(chosen.casefold())
-        return f"{chosen}.html"
+            unique_stem = f"{stem}-{number}"
+        used.add(unique_stem.casefold())
+        return f"{unique_stem}.html"
 
     return page

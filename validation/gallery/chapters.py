@@ -40,26 +40,28 @@ class Chapter:
 
 def chapter_for(results: Results, study: GalleryStudy) -> Chapter:
     """Return the chapter that the report has of a study; in place of what cannot be drawn, why."""
-    known = Readable(results)
+    readable_results = Readable(results)
     with tempfile.TemporaryDirectory() as name:
+        directory = Path(name)
         try:
-            manifest = known.whole(escaped(study.name), histories=True)
-            blocks = chapter_of(study.name)(known, manifest, Path(name))
+            manifest = readable_results.whole(escaped(study.name), histories=True)
+            blocks = chapter_of(study.name)(readable_results, manifest, directory)
         except (InputError, *DAMAGED) as error:
-            said = readable(printable(str(error)))
-            return Chapter((Callout(f"The chapter cannot be drawn from these results ({said}).", "fail"),), {})
-        figures = [block for block in blocks if isinstance(block, FigureBlock)]
-        drawings = {
-            f.file: Drawing(f.file, unescaped(f.caption), (Path(name) / f.file).read_text(encoding="utf-8"))
-            for f in figures
-        }
+            reason = readable(printable(str(error)))
+            return Chapter((Callout(f"The chapter cannot be drawn from these results ({reason}).", "fail"),), {})
+        drawings = {block.file: _drawing(block, directory) for block in blocks if isinstance(block, FigureBlock)}
     return Chapter(tuple(blocks), drawings)
+
+
+def _drawing(block: FigureBlock, directory: Path) -> Drawing:
+    svg = (directory / block.file).read_text(encoding="utf-8")
+    return Drawing(block.file, unescaped(block.caption), svg)
 
 
 def scene_of_figure(file: str, scenes: Sequence[GalleryScene]) -> GalleryScene | None:
     """Return the scene that a figure belongs to by its file name, the one with the longest name."""
-    own = [scene for scene in scenes if file.startswith(f"{slug(scene.name)}-")]
-    return max(own, key=lambda scene: len(scene.name), default=None)
+    candidates = [scene for scene in scenes if file.startswith(f"{slug(scene.name)}-")]
+    return max(candidates, key=lambda scene: len(scene.name), default=None)
 
 
 def slug(name: str) -> str:
@@ -67,27 +69,30 @@ def slug(name: str) -> str:
     return re.sub(r"[^\w.-]+", "-", escaped(name)).strip("-.") or "scene"
 
 
-def shown(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
+def page_blocks(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
     """Return the blocks of a chapter for the template; figures of one scene lead to its page."""
     blocks = chapter.blocks[1:] if isinstance(chapter.blocks[0], Heading) else chapter.blocks
-    found: list[dict[str, Any]] = []
+    template_blocks: list[dict[str, Any]] = []
     for block in blocks:
         if isinstance(block, PageBreak) or (isinstance(block, Table) and _of_verdicts(block)):
             continue
         if isinstance(block, FigureBlock):
-            found.append(_figure(chapter.drawings[block.file], scenes, sheet))
+            template_blocks.append(_figure(chapter.drawings[block.file], scenes, sheet))
         else:
-            found.append(placed(block, Path(), sheet))
-    return _without_empty_headings(found)
+            template_blocks.append(_record(block))
+    return _without_empty_headings(template_blocks)
 
 
 def placed(block: Block, directory: Path, sheet: Sheet) -> dict[str, Any]:
     """Return a block for the template, a figure with its drawing."""
-    if not isinstance(block, FigureBlock):
-        found: dict[str, Any] = {"block": type(block).__name__} | _plain(vars(block))
-        return found
-    svg = (directory / block.file).read_text(encoding="utf-8")
-    return _figure(Drawing(block.file, unescaped(block.caption), svg), (), sheet)
+    if isinstance(block, FigureBlock):
+        return _figure(_drawing(block, directory), (), sheet)
+    return _record(block)
+
+
+def _record(block: Block) -> dict[str, Any]:
+    """Return the name of a block's kind and its data."""
+    return {"block": type(block).__name__, **_plain(vars(block))}
 
 
 def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:
@@ -108,13 +113,16 @@ def _of_verdicts(table: Table) -> bool:
 
 def _without_empty_headings(blocks: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Leave out headings of which nothing follows before the next of the same or a higher level."""
-    kept: list[dict[str, Any]] = []
+    reversed_blocks: list[dict[str, Any]] = []
     for block in reversed(blocks):
-        follows = kept[-1] if kept else None
-        ends = follows is None or (follows["block"] == "Heading" and follows["level"] <= block.get("level", 0))
-        if not (block["block"] == "Heading" and ends):
-            kept.append(block)
-    return kept[::-1]
+        if block["block"] == "Heading":
+            if not reversed_blocks:
+                continue
+            following = reversed_blocks[-1]
+            if following["block"] == "Heading" and following["level"] <= block["level"]:
+                continue
+        reversed_blocks.append(block)
+    return reversed_blocks[::-1]
 
 
 def _plain(value: Any) -> Any:

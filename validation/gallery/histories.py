@@ -20,8 +20,10 @@ import numpy as np
 
 from validation.runs.history import Array, History
 
-MOST, LEAST = 800, 60  # samples of a line
-STEPS, NONE = 65534, 65535  # of two bytes
+MOST = 800  # samples of a line
+LEAST = 60
+STEPS = 65534  # of the range, in two bytes
+NONE = 65535  # stands for no value
 BYTES = 2 * 4 / 3  # of a sample in base64
 
 
@@ -66,17 +68,16 @@ class Sampling:
 
 def _extremes(values: Array) -> Array:
     """Return least and greatest of a part in the order in which they occur."""
-    known = values[np.isfinite(values)]
-    if not known.size:
+    finite = values[np.isfinite(values)]
+    if not finite.size:
         return np.full(2, np.nan)
-    low, high = int(np.argmin(known)), int(np.argmax(known))
-    return known[[low, high]] if low <= high else known[[high, low]]
+    return finite[sorted([int(np.argmin(finite)), int(np.argmax(finite))])]
 
 
 def packed(values: Array) -> list[Any]:
     """Return [low, high, text]: the range of the values, and each of them in two bytes, least one first."""
-    known = values[np.isfinite(values)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
     with np.errstate(all="ignore"):
         share = (values / 2 - low / 2) / (high / 2 - low / 2) if high > low else np.zeros_like(values)
     numbers = np.where(np.isfinite(values), np.rint(STEPS * np.nan_to_num(share)), NONE).astype("<u2")

@@ -16,9 +16,11 @@ from validation.problems.judge import Word
 from validation.report.chapters.judged import Judged, page, per_cent
 from validation.runs.files import atomic_path
 
-PAGE, BADGE = "judged.html", "badge.svg"
+PAGE = "judged.html"
+BADGE = "badge.svg"
 COLORS = {Word.PASS: "#1c6b2f", Word.PARTIAL: "#8a5a00", Word.FAIL: "#a80f0f", Word.NOT_JUDGED: "#5a5a5a"}
-LETTER, MARGIN = 7, 12  # px of a badge's letter, amply, and beside a text
+LETTER = 7  # px, width of a badge's letter, amply
+MARGIN = 12  # px, beside a text
 
 
 def write_judged(judged: Judged, program: str, place: Path) -> list[Path]:
@@ -59,11 +61,13 @@ def html(judged: Judged, program: str) -> str:
 
 def badge(judged: Judged) -> str:
     """Return the badge: the problem, the verdict, the error that decides, and the columns that are withheld."""
-    found, label = judged.judgement, f"DDA field: {judged.problem.name}"
-    decides = found.deciding
-    said = f"{found.word} {per_cent(decides.error)}" if decides else str(found.word)
-    if found.withheld:
-        said += f"; {', '.join(found.withheld)} not reported"
-    left, right = (LETTER * len(text) + MARGIN for text in (label, said))
+    judgement = judged.judgement
+    label = f"DDA field: {judged.problem.name}"
+    verdict = str(judgement.word)
+    if judgement.deciding:
+        verdict += f" {per_cent(judgement.deciding.error)}"
+    if judgement.withheld:
+        verdict += f"; {', '.join(judgement.withheld)} not reported"
+    widths = {name: LETTER * len(text) + MARGIN for name, text in (("left", label), ("right", verdict))}
     template = environment().get_template("badge.svg.j2")
-    return template.render(label=label, said=said, left=left, right=right, color=COLORS[found.word])
+    return template.render(label=label, verdict=verdict, color=COLORS[judgement.word], **widths)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,7 +14,7 @@ from validation.errors import InputError
 from validation.gallery import scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS, Calculator, Choice
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
-from validation.gallery.chapters import Chapter, scene_of_figure, shown
+from validation.gallery.chapters import Chapter, page_blocks, scene_of_figure
 from validation.gallery.histories import LEAST, samples_for
 from validation.gallery.svg import Sheet
 from validation.gallery.work import work_plots
@@ -28,7 +29,7 @@ SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
 
 def environment() -> jinja2.Environment:
     """Return what fills the templates."""
-    found = jinja2.Environment(
+    templates = jinja2.Environment(
         loader=jinja2.PackageLoader("validation.gallery", "templates"),
         autoescape=True,
         finalize=_finalized,
@@ -36,9 +37,9 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    found.filters["data"] = _data
-    found.tests["choice"] = lambda value: isinstance(value, Choice)
-    return found
+    templates.filters["data"] = _data
+    templates.tests["choice"] = lambda value: isinstance(value, Choice)
+    return templates
 
 
 def _visible(value: Any) -> Any:
@@ -70,38 +71,42 @@ class Pages:
 
     def __init__(self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene]) -> None:
         self._environment = environment()
-        self._results, self._studies, self._scenes = results, studies, scenes
+        self._results = results
+        self._studies = studies
+        self._scenes = scenes
         self._most = scene_data.most_lines(scenes)
         self._samples = LEAST
-        self._made = _provenance(studies)
+        self._provenance = _provenance(studies)
 
     def _page(self, template: str, file: str, **values: object) -> str:
         page = self._environment.get_template(template)
-        return page.render(menu=MENU, file=file, made=self._made, **values)
+        return page.render(menu=MENU, file=file, provenance=self._provenance, **values)
 
     def index(self) -> str:
         """Return the first page: studies with their verdicts, what fails, scenes, calculators."""
-        every = [verdict for study in self._studies for verdict in study.verdicts]
+        all_verdicts = list(itertools.chain.from_iterable(study.verdicts for study in self._studies))
         rows = [(study, verdicts.counts(study.verdicts)) for study in self._studies]
-        bad = [verdict for verdict in every if verdict["verdict"] == "FAIL"]
+        failures = [verdict for verdict in all_verdicts if verdict["verdict"] == "FAIL"]
+        failure_table = verdicts.table(failures) if failures else None
         return self._page(
             "index.html.j2",
             "index.html",
             studies=rows,
             scenes=self._scenes,
-            counts=verdicts.counts(every),
-            failed=verdicts.table(bad) if bad else None,
+            counts=verdicts.counts(all_verdicts),
+            failed=failure_table,
             calculators=CALCULATORS,
             scripts=SCRIPTS,
         )
 
     def study(self, study: GalleryStudy, chapter: Chapter) -> str:
         """Return the page of a study: its chapter, its scenes, its verdicts."""
+        blocks = page_blocks(chapter, study.scenes, Sheet()) if chapter.blocks else []
         return self._page(
             "study.html.j2",
             study.page,
             study=study,
-            blocks=shown(chapter, study.scenes, Sheet()) if chapter.blocks else [],
+            blocks=blocks,
             work=work_plots(self._results, study.manifest),
             counts=verdicts.counts(study.verdicts),
             table=verdicts.table(study.verdicts),
@@ -114,13 +119,15 @@ class Pages:
 
     def figures(self, scene: GalleryScene, chapters: Mapping[str, Chapter]) -> list[dict[str, str]]:
         """Return the figures of a scene in the chapters of its studies, each once."""
-        sheet, found = Sheet(), {}
-        for study in (study for study in self._studies if study.name in scene.studies):
+        sheet = Sheet()
+        figures: dict[str, dict[str, str]] = {}
+        for study in self._studies:
+            if study.name not in scene.studies:
+                continue
             for file, drawing in chapters[study.name].drawings.items():
-                own = scene_of_figure(file, study.scenes)
-                if own is scene and file not in found:
-                    found[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
-        return list(found.values())
+                if file not in figures and scene_of_figure(file, study.scenes) is scene:
+                    figures[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
+        return list(figures.values())
 
     def scene(self, scene: GalleryScene, figures: Sequence[Mapping[str, str]]) -> str:
         """Return the page of a scene: its parameters, histories, numbers, figures and verdicts."""
@@ -147,8 +154,8 @@ class Pages:
 
 def _provenance(studies: Sequence[GalleryStudy]) -> dict[str, str]:
     """Return versions, commit and date of the newest study."""
-    known = [study.manifest.get("provenance") or {} for study in studies]
-    newest: dict[str, Any] = max(known, key=lambda p: str(p.get("date", "")), default={})
+    records = [study.manifest.get("provenance") or {} for study in studies]
+    newest: dict[str, Any] = max(records, key=lambda p: str(p.get("date", "")), default={})
     packages = newest.get("packages") or {}
     if not isinstance(packages, Mapping):
         raise InputError(f"{studies[0].name}: provenance: packages must be a table, got {packages!r}")

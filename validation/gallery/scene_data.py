@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -66,58 +67,57 @@ def _chosen(counts: Sequence[int], most: int) -> list[int]:
 
 def most_lines(scenes: Sequence[GalleryScene]) -> int:
     """Return how many curves each scene may have, so that there are `MOST_LINES` in all."""
-    counts = [[count for case in scene.cases if (count := lines(case))] for scene in scenes]
+    counts = []
+    for scene in scenes:
+        counts.append([count for case in scene.cases if (count := lines(case))])
     most = max(map(sum, counts), default=1)
-    while most > 1 and sum(each[i] for each in counts for i in _chosen(each, most)) > MOST_LINES:
+    while most > 1 and sum(sum(each[i] for i in _chosen(each, most)) for each in counts) > MOST_LINES:
         most = int(0.95 * most)
     return most
 
 
 def all_lines(scenes: Sequence[GalleryScene], most: int) -> int:
     """Return the number of curves of all scenes with at most so many of each."""
-    return sum(lines(case) for scene in scenes for case in drawn(scene, most))
+    return sum(sum(map(lines, drawn(scene, most))) for scene in scenes)
 
 
 def data(results: Results, scene: GalleryScene, most: int, samples: int) -> dict[str, Any]:
-    """Return what the page of a scene draws and tells, as plain data."""
-    chosen = drawn(scene, most)
-    cases = [_case(results, case, samples) for case in chosen]
-    used = dict.fromkeys(column for case in cases for column in case["columns"])
-    ordered = sorted(used, key=lambda name: [*COLUMNS, *used].index(name))
-    solvers = dict.fromkeys(solver for case in scene.cases for solver in case.rows)
+    """Return the histories, outcomes and numbers of a scene's page, as plain data."""
+    drawn_cases = drawn(scene, most)
+    cases = [_case(results, case, samples) for case in drawn_cases]
+    names = list(dict.fromkeys(itertools.chain.from_iterable(case["columns"] for case in cases)))
+    ordered = sorted(names, key=[*COLUMNS, *names].index)
+    solvers = dict.fromkeys(itertools.chain.from_iterable(case.rows for case in scene.cases))
+    metrics = _metrics(drawn_cases)
     return {
         "columns": {name: list(COLUMNS.get(name, (name.replace("_", " ").capitalize(), ""))) for name in ordered},
         "solvers": {readable(name): _style(name) for name in solvers},
         "cases": cases,
-        "metrics": [[name, CATALOGUE[name].unit, CATALOGUE[name].says] for name in _metrics(chosen)],
-        "numbers": [_numbers(case, _metrics(chosen)) for case in chosen],
+        "metrics": [[name, CATALOGUE[name].unit, CATALOGUE[name].says] for name in metrics],
+        "numbers": [_numbers(case, metrics) for case in drawn_cases],
     }
 
 
 def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
     """Return label, curves and what went otherwise than hoped for."""
-    found = {readable(solver): history for solver, history in _histories(results, case)}
-    static = case.rows[next(iter(case.rows))].metrics.get("displacement.static") if case.rows else None
-    told = [
-        f"{readable(solver)}: {row.outcome}. {row.outcome.sentence} {readable('; '.join(row.notes))}".strip()
-        for solver, row in case.rows.items()
-        if row.outcome is not Outcome.COMPLETED
-    ]
-    limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
-    dots: dict[str, list[str]] = {}
-    for name, history in found.items():
-        for column, values in history.columns.items():
-            if is_sparse(name, history.time, values):
-                dots.setdefault(column, []).append(name)
-    return {"label": readable(case.label), "limit": limit, "told": told, "dots": dots} | lines_of(found, samples)
-
-
-def _histories(results: Results, case: GalleryCase) -> Iterator[tuple[str, History]]:
-    """Yield the kept histories of a case by solver."""
+    histories: dict[str, History] = {}
+    messages = []
     for solver, row in case.rows.items():
         history = results.history(row.key)
         if history is not None and len(history.time):
-            yield solver, history
+            histories[readable(solver)] = history
+        if row.outcome is not Outcome.COMPLETED:
+            notes = readable("; ".join(row.notes))
+            messages.append(f"{readable(solver)}: {row.outcome}. {row.outcome.sentence} {notes}".strip())
+    static = next(iter(case.rows.values())).metrics.get("displacement.static") if case.rows else None
+    limit = 6 * abs(static) if isinstance(static, float) and math.isfinite(static) and static else None
+    dots: dict[str, list[str]] = {}
+    for name, history in histories.items():
+        for column, values in history.columns.items():
+            if is_sparse(name, history.time, values):
+                dots.setdefault(column, []).append(name)
+    page_data = {"label": readable(case.label), "limit": limit, "told": messages, "dots": dots}
+    return page_data | lines_of(histories, samples)
 
 
 def _style(name: str) -> dict[str, Any]:
@@ -127,23 +127,23 @@ def _style(name: str) -> dict[str, Any]:
 
 def _metrics(cases: Sequence[GalleryCase]) -> list[str]:
     """Return the metrics of which some row has a number."""
-    known: set[str] = set()
+    measured: set[str] = set()
     for case in cases:
         for row in case.rows.values():
-            known.update(name for name in METRICS if isinstance(row.metrics.get(name), int | float))
-    return [name for name in METRICS if name in known and name in CATALOGUE]
+            measured.update(name for name in METRICS if isinstance(row.metrics.get(name), int | float))
+    return [name for name in METRICS if name in measured and name in CATALOGUE]
 
 
 def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
     """Return solver, values of the metrics and steps of each row."""
     return [
-        [readable(solver), *(_told(name, row.metrics.get(name)) for name in metrics), str(row.work.get("steps", "–"))]
+        [readable(solver), *(_text(name, row.metrics.get(name)) for name in metrics), str(row.work.get("steps", "–"))]
         for solver, row in case.rows.items()
     ]
 
 
-def _told(metric: str, value: Value) -> str:
-    """Return a value as a page writes it: counts whole, a ratio at the level of rounding told to be below."""
+def _text(metric: str, value: Value) -> str:
+    """Return a value as a page writes it: counts whole, a ratio at the level of rounding as a bound."""
     if is_count(metric) and isinstance(value, float) and value.is_integer():
         return str(int(value))
     text = cell(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -31,7 +32,7 @@ PAGE_BYTES = 11_000  # of a scene's page without histories and figures
 Progress = Callable[[int, int, str], None]
 
 
-def build(results: Results, out: Path, progress: Progress = lambda done, total, label: None) -> Path:
+def build(results: Results, out: Path, progress: Progress = lambda finished, total, label: None) -> Path:
     """Write the gallery of a results directory and return its first page.
 
     Parameters
@@ -41,7 +42,7 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
     out
         Directory to write: a new or empty one, or an earlier gallery, which is replaced as a whole.
     progress
-        Told after each page: how many are done, of how many, and which is next.
+        Called before each page: how many are finished, of how many, and which is next.
 
     Raises
     ------
@@ -52,11 +53,12 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
     names = ordered_studies(results)
     unread = unread_studies(results, names)
     studies, scenes = studies_and_scenes(results, [name for name in names if name not in unread])
-    steps = iter(range(len(studies) + len(scenes)))
+    total = len(studies) + len(scenes)
     with atomic_directory(out) as place:
-        pages, chapters = Pages(results, studies, scenes), {}
-        for study in studies:
-            progress(next(steps), len(studies) + len(scenes), study.name)
+        pages = Pages(results, studies, scenes)
+        chapters = {}
+        for number, study in enumerate(studies):
+            progress(number, total, study.name)
             chapters[study.name] = chapter_for(results, study)
             _write(place / study.page, pages.study(study, chapters[study.name]))
         for calculator in CALCULATORS:
@@ -65,10 +67,10 @@ def build(results: Results, out: Path, progress: Progress = lambda done, total, 
         for name in (*STATIC, NOTICE):
             _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
         figures = {scene.page: pages.figures(scene, chapters) for scene in scenes}
-        drawn = sum(len(figure["svg"].encode()) for own in figures.values() for figure in own)
-        pages.fit(min(MOST_BYTES - size(place) - drawn - PAGE_BYTES * len(scenes), LINE_BYTES))
-        for scene in scenes:
-            progress(next(steps), len(studies) + len(scenes), scene.name)
+        figure_bytes = sum(len(figure["svg"].encode()) for figure in itertools.chain.from_iterable(figures.values()))
+        pages.fit(min(MOST_BYTES - size(place) - figure_bytes - PAGE_BYTES * len(scenes), LINE_BYTES))
+        for number, scene in enumerate(scenes, start=len(studies)):
+            progress(number, total, scene.name)
             _write(place / scene.page, pages.scene(scene, figures[scene.page]))
     return out / "index.html"
 

@@ -40,9 +40,11 @@ def _rounded(value: float) -> str:
 
 def _path(data: str) -> str:
     """Return the commands of a path without needless letters and blanks."""
-    parts, last = [], ""
+    parts = []
+    last = ""
     for command, numbers in _COMMAND.findall(data):
-        parts.append((" " if command == last and command in REPEATED else command) + " ".join(numbers.split()))
+        letter = " " if command == last and command in REPEATED else command
+        parts.append(letter + " ".join(numbers.split()))
         last = command
     return "".join(parts)
 
@@ -57,8 +59,8 @@ class Sheet:
     def placed(self, svg: str, caption: str) -> str:
         """Return a figure for this page: names of its own, a caption for those who do not see it."""
         self._count += 1
-        text = _NAME.sub(self._own, slim(svg))
-        text = _USED_LETTER.sub(self._used, _LETTER.sub(self._once, text)).replace("<defs></defs>", "")
+        text = _NAME.sub(self._unique_name, slim(svg))
+        text = _USED_LETTER.sub(self._placed_letter, _LETTER.sub(self._letter_once, text)).replace("<defs></defs>", "")
         label = escape(" ".join(caption.split()), quote=True)
         return _ROOT.sub(
             lambda match: (
@@ -69,22 +71,22 @@ class Sheet:
             count=1,
         )
 
-    def _own(self, match: re.Match[str]) -> str:
+    def _unique_name(self, match: re.Match[str]) -> str:
         """Return a name that no other figure of the page has; letters keep theirs, which are the same everywhere."""
         return match[0] if match[2].startswith("DejaVu") else f"{match[1]}f{self._count}-{match[2]}"
 
-    def _once(self, match: re.Match[str]) -> str:
+    def _letter_once(self, match: re.Match[str]) -> str:
         """Return the drawing of a letter where it is the first of the page."""
         if match[1] in self._letters:
             return ""
         self._letters[match[1]] = f"l{len(self._letters)}"
         return match[0].replace(match[1], self._letters[match[1]])
 
-    def _used(self, match: re.Match[str]) -> str:
+    def _placed_letter(self, match: re.Match[str]) -> str:
         """Return a letter at its place, which is stated in units of a hundredth of its size and less."""
-        name, x, y, scale, placed = match.groups()
-        if placed:
-            return f'<use href="#{self._letters[name]}"{placed}/>'
+        name, x, y, scale, attributes = match.groups()
+        if attributes:
+            return f'<use href="#{self._letters[name]}"{attributes}/>'
         if scale:
             return f'<use href="#{self._letters[name]}" transform="translate({x} {y}){scale}"/>'
         place = [f' {axis}="{float(v):.4g}"' for axis, v in (("x", x), ("y", y)) if v and float(v)]

@@ -35,5 +35,5 @@ def table(verdicts: Sequence[VerdictRecord]) -> dict[str, Any]:
 
 def counts(verdicts: Sequence[VerdictRecord]) -> dict[str, int]:
     """Return how many verdicts say PASS, FAIL and NOT RUN."""
-    counted = Counter(v["verdict"] for v in verdicts)
-    return {word: counted[word] for word in ("PASS", "FAIL", "NOT RUN")}
+    count = Counter(v["verdict"] for v in verdicts)
+    return {word: count[word] for word in ("PASS", "FAIL", "NOT RUN")}

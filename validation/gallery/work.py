@@ -21,14 +21,14 @@ def work_plots(results: Results, manifest: Manifest) -> list[dict[str, Any]]:
     plots = []
     for scheme in SCHEMES:
         prefix = f"work-{scheme}"
-        if {"cases", "comparisons"} <= manifest.keys() and (found := points(results, manifest, prefix)):
-            plots.append({"name": prefix, "title": f"{scheme.capitalize()} acceleration"} | _plot(found))
+        if {"cases", "comparisons"} <= manifest.keys() and (runs := points(results, manifest, prefix)):
+            plots.append({"name": prefix, "title": f"{scheme.capitalize()} acceleration"} | _plot(runs))
     return plots
 
 
-def _plot(found: Sequence[Point]) -> dict[str, Any]:
+def _plot(runs: Sequence[Point]) -> dict[str, Any]:
     """Return what is varied and the runs; an error that is zero or absent has no place on a logarithmic axis."""
-    methods = list(dict.fromkeys(point.method for point in found))
+    methods = list(dict.fromkeys(run.method for run in runs))
     return {
         "costs": list(COSTS),
         "quantities": list(QUANTITIES),
@@ -36,19 +36,19 @@ def _plot(found: Sequence[Point]) -> dict[str, Any]:
         "methods": [{"name": name, "color": style_of(name).color} for name in methods],
         "runs": [
             {
-                "method": methods.index(point.method),
-                "label": _label(point),
-                "costs": [_number(cost(point)) for cost in COSTS.values()],
-                "errors": [[_number(point.errors.get((q, r))) for r in REFERENCES] for q in QUANTITIES],
+                "method": methods.index(run.method),
+                "label": _label(run),
+                "costs": [_number(cost(run)) for cost in COSTS.values()],
+                "errors": [[_number(run.errors.get((q, r))) for r in REFERENCES] for q in QUANTITIES],
             }
-            for point in found
+            for run in runs
         ],
     }
 
 
-def _label(point: Point) -> str:
-    mesh = f", {point.scene.fem.per_side} elements a side" if point.method.startswith("fem") else ""
-    return f"dt = {short(1e3 * point.scene.time.step, 3)} ms{mesh}"
+def _label(run: Point) -> str:
+    mesh = f", {run.scene.fem.per_side} elements a side" if run.method.startswith("fem") else ""
+    return f"dt = {short(1e3 * run.scene.time.step, 3)} ms{mesh}"
 
 
 def _number(value: float | None) -> float | None:

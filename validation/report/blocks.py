@@ -102,14 +102,15 @@ class Beside:
     share: float
 
 
-Line = tuple[str, str, str, str]
+GateLine = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
 class Lines:
     """Short lines of four cells in small type, in two columns, under the title and the remark that they share."""
 
-    sections: tuple[tuple[str, str, tuple[Line, ...]], ...]  # title, empty where it is the last one's; remark; lines
+    # title, empty where it is that of the section before; remark; lines
+    sections: tuple[tuple[str, str, tuple[GateLine, ...]], ...]
 
 
 Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters

@@ -73,7 +73,7 @@ def build(results: Results, out: Path) -> Path:
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Part]:
     from validation.report.appendix.pages import appendix
-    from validation.report.front.found import found_scenes
+    from validation.report.front.groups import groups_of_studies
     from validation.report.front.pages import front_pages
 
     unread = unread_studies(results, studies)
@@ -82,42 +82,38 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
         if study in unread:
             chapters += [Heading(study), Callout(f"{unread[study]}.", "fail")]
         else:
-            chapters += _chapter_or_why(results, study, figures)
+            try:
+                chapters += _chapter(results, study, figures)
+            except _NotDrawable as error:  # the chapter says so, and does not cost the others
+                chapters += [Heading(study), Callout(f"{error}.", "fail")]
     readable = [study for study in studies if study not in unread]
-    with _naming_what_fails(results, "the first and the last pages"):
-        found, verdicts = found_scenes(results, readable), results.verdicts()
-        front = front_pages(found, verdicts, readable, figures)
-        return [*front, *chapters, PageBreak(), *appendix(results, found, verdicts, readable)]
+    with _damage_named(results, "the first and the last pages"):
+        groups = groups_of_studies(results, readable)
+        verdicts = results.verdicts()
+        front = front_pages(groups, verdicts, readable, figures)
+        return [*front, *chapters, PageBreak(), *appendix(results, groups, verdicts, readable)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
     manifest = results.whole(study, histories=True)
-    with _naming_what_fails(results, f"the chapter of {unescaped(study)}"):
+    with _damage_named(results, f"the chapter of {unescaped(study)}"):
         return chapter_of(study)(results, manifest, figures)
 
 
-def _chapter_or_why(results: Results, study: str, figures: Path) -> list[Block]:
-    """Return a study's chapter; one that cannot be drawn says so, and does not cost the others."""
-    try:
-        return _chapter(results, study, figures)
-    except _Undrawn as error:
-        return [Heading(study), Callout(f"{error}.", "fail")]
-
-
-class _Undrawn(InputError):
+class _NotDrawable(InputError):
     """A part of the report that its results give no numbers for."""
 
 
 @contextmanager
-def _naming_what_fails(results: Results, what: str) -> Iterator[None]:
-    """Name what cannot be written from results that are damaged in a way of which no check has told."""
+def _damage_named(results: Results, what: str) -> Iterator[None]:
+    """Name the part that cannot be written from results which are damaged in a way that no check detects."""
     try:
         yield
     except InputError:
         raise
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         why = error_text(error)
-        raise _Undrawn(f"{results.directory}: {what} cannot be drawn from these results ({why})") from error
+        raise _NotDrawable(f"{results.directory}: {what} cannot be drawn from these results ({why})") from error
 
 
 def figures(study: str, results: Results, out: Path) -> list[Path]:
@@ -128,10 +124,11 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     InputError
         The directory has no such study, or cannot be made.
     """
-    results, study = Readable(results), escaped(study)
+    results = Readable(results)
+    study = escaped(study)
     if study not in results.studies():
-        known = ", ".join(results.studies()) or "none"
-        raise InputError(f"study: must be one of those in {results.directory} ({known}), got {study!r}")
+        studies = ", ".join(results.studies()) or "none"
+        raise InputError(f"study: must be one of those in {results.directory} ({studies}), got {study!r}")
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -9,7 +9,8 @@ from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.text import shown, visible
 
-DOLLAR, ESCAPED = "$", r"\$"  # between two bare ones a figure sets mathematics
+DOLLAR = "$"  # between two bare ones a figure sets mathematics
+ESCAPED = r"\$"
 NOT_SHOWN = ("definition", "key", "data")  # parts of a manifest that are read, not shown
 
 
@@ -36,16 +37,17 @@ class Readable(Results):
 
     def manifest(self, study: str) -> Manifest:
         """Return a study's manifest."""
-        found: Manifest = _mapped(super().manifest(self._files.get(study, study)))
-        return found
+        manifest: Manifest = _mapped(super().manifest(self._files.get(study, study)))
+        return manifest
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        kept: list[VerdictRecord] = _mapped(super().readable_verdicts())
-        return [v for v in kept if study is None or v["study"] == study]
+        verdicts: list[VerdictRecord] = _mapped(super().readable_verdicts())
+        return [v for v in verdicts if study is None or v["study"] == study]
 
 
 def _mapped(data: Any) -> Any:
+    """Return plain data with every text escaped, but those under the keys that are not shown."""
     if isinstance(data, str):
         return escaped(data)
     if isinstance(data, Mapping):

@@ -56,19 +56,20 @@ def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
 
 def _record(block: Part) -> dict[str, Any]:
     """Return a block as plain data with the name of its kind, those within it as well."""
-    data: dict[str, Any] = {"block": type(block).__name__} | _shown(asdict(block))
+    data: dict[str, Any] = {"block": type(block).__name__} | _unescaped_texts(asdict(block))
     if isinstance(block, Beside):
-        data |= {"left": [_record(part) for part in block.left], "right": [_record(part) for part in block.right]}
+        data["left"] = [_record(part) for part in block.left]
+        data["right"] = [_record(part) for part in block.right]
     return data
 
 
-def _shown(data: Any) -> Any:
+def _unescaped_texts(data: Any) -> Any:
     """Return the data of a block with every text in characters that can be set, dollars without their backslash."""
     if isinstance(data, str):
         return unescaped(data)
     if isinstance(data, Mapping):
-        return {key: _shown(value) for key, value in data.items()}
-    return [_shown(value) for value in data] if isinstance(data, list | tuple) else data
+        return {key: _unescaped_texts(value) for key, value in data.items()}
+    return [_unescaped_texts(value) for value in data] if isinstance(data, list | tuple) else data
 
 
 def png_of(svg: Path) -> Path:

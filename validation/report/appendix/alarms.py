@@ -8,33 +8,34 @@ from collections.abc import Callable, Mapping, Sequence
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.report.blocks import Block, Column, Heading, Table, columns
-from validation.report.chapters.data import Group
+from validation.report.chapters.data import CaseGroup
 from validation.report.chapters.text import percent, plain, short
 from validation.runs.records import AlarmRecord
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 Alarms = Sequence[AlarmRecord]
-MOST_SCENES = 7  # of a kind that are told one by one
+MOST_SCENES = 7  # of a kind that get a row each
 
 
-def alarm_table(found: Mapping[str, Group]) -> list[Block]:
+def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
     """Return the alarms by kind, scenes beyond the first few by name alone; nothing where none was raised."""
-    kinds: dict[str, dict[str, list[AlarmRecord]]] = {}
+    kinds: dict[str, dict[str, list[AlarmRecord]]] = {}  # by kind and scene
     labels: dict[str, str] = {}
-    for group in found.values():
+    for group in groups.values():
         labels |= {case.name: case.label for case in group.cases}
         for alarm in group.alarms:
             kinds.setdefault(alarm["kind"], {}).setdefault(group.name, []).append(alarm)
     rows = []
     for kind, scenes in sorted(kinds.items()):
         most = MOST_SCENES if kind in WORST else 1
-        for name, own in itertools.islice(scenes.items(), most):
-            rows.append((kind, name, f"{len(own)} of {len(found[name].cases)}", WORST.get(kind, remark)(own, labels)))
+        for name, alarms in itertools.islice(scenes.items(), most):
+            worst = WORST.get(kind, remark)(alarms, labels)
+            rows.append((kind, name, f"{len(alarms)} of {len(groups[name].cases)}", worst))
         if len(scenes) > most:
-            others = list(itertools.islice(scenes.items(), most, None))
-            rest = ", ".join(name for name, _ in others)
-            rows.append((kind, f"{len(others)} more", str(sum(len(own) for _, own in others)), f"{rest}."))
+            others = dict(itertools.islice(scenes.items(), most, None))
+            count = sum(map(len, others.values()))
+            rows.append((kind, f"{len(others)} more", str(count), f"{', '.join(others)}."))
     titles = (*columns("text", "Alarm", "Scene", "Cases"), Column("The worst of them", "fill"))
     caption = "Results that look better than they are, as the runs raised them."
     return [Heading("Alarms", 2), Table(titles, tuple(rows), caption)] if rows else []
@@ -42,10 +43,10 @@ def alarm_table(found: Mapping[str, Group]) -> list[Block]:
 
 def remark(alarms: Alarms, labels: Mapping[str, str]) -> str:
     """Return the sentence of the first alarm, with a capital letter unless it begins with a symbol."""
-    said = alarms[0]["sentence"]
-    first, *rest = said.split()
-    symbol = first in ("dt", "gg") or "_" in first or rest[:1] == ["="]  # which stays as it is written
-    return f"{said if symbol else said[:1].upper() + said[1:]}."
+    sentence = alarms[0]["sentence"]
+    first, *remainder = sentence.split()
+    is_symbol = first in ("dt", "gg") or "_" in first or remainder[:1] == ["="]  # which stays as it is written
+    return f"{sentence if is_symbol else sentence[:1].upper() + sentence[1:]}."
 
 
 def agreement(alarms: Alarms, labels: Mapping[str, str]) -> str:
@@ -60,17 +61,18 @@ def agreement(alarms: Alarms, labels: Mapping[str, str]) -> str:
 
 def tension(alarms: Alarms, labels: Mapping[str, str]) -> str:
     """Say how deep, when and for how long a locked contact pulls where it pulls most: under the judged solver if so."""
-    said = []
-    solvers = dict.fromkeys(key.rpartition(".")[0] for alarm in alarms for key in alarm["values"])
-    judged = [solver for solver in solvers if solver in by_role(Role.JUDGED)]
-    for solver in judged or solvers:
-        own = [alarm for alarm in alarms if f"{solver}.minimum" in alarm["values"]]
-        worst = min(own, key=lambda alarm: alarm["values"][f"{solver}.minimum"])
-        least, when, lasts = (worst["values"][f"{solver}.{part}"] for part in ("minimum", "time", "duration"))
-        said.append(
-            f"{solver} {plain(least / 1e6, 3)} MPa at {short(1e3 * when)} ms, tension for {short(1e3 * lasts)} ms"
+    keys = itertools.chain.from_iterable(alarm["values"] for alarm in alarms)
+    solvers = dict.fromkeys(key.rpartition(".")[0] for key in keys)
+    judged_solvers = [solver for solver in solvers if solver in by_role(Role.JUDGED)]
+    parts = []
+    for solver in judged_solvers or solvers:
+        alarms_of_solver = [alarm for alarm in alarms if f"{solver}.minimum" in alarm["values"]]
+        worst = min(alarms_of_solver, key=lambda alarm: alarm["values"][f"{solver}.minimum"])
+        minimum, time, duration = (worst["values"][f"{solver}.{part}"] for part in ("minimum", "time", "duration"))
+        parts.append(
+            f"{solver} {plain(minimum / 1e6, 3)} MPa at {short(1e3 * time)} ms, tension for {short(1e3 * duration)} ms"
         )
-    return f"{'; '.join(said)}."
+    return f"{'; '.join(parts)}."
 
 
 def ringing(alarms: Alarms, labels: Mapping[str, str]) -> str:

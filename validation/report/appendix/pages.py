@@ -9,20 +9,20 @@ from validation.report.appendix.gates import gate_pages
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Heading, Part
-from validation.report.chapters.data import Group
+from validation.report.chapters.data import CaseGroup
 from validation.runs.records import VerdictRecord
 from validation.runs.results import Results
 
 
 def appendix(
-    results: Results, found: Mapping[str, Group], verdicts: Sequence[VerdictRecord], studies: Sequence[str]
+    results: Results, groups: Mapping[str, CaseGroup], verdicts: Sequence[VerdictRecord], studies: Sequence[str]
 ) -> list[Part]:
     """Return words, alarms, parameters, provenance and gates."""
     return [
         Heading("Appendix"),
         *glossary(),
-        *alarm_table(found),
-        *parameter_table(found),
+        *alarm_table(groups),
+        *parameter_table(groups),
         *provenance(results, studies),
-        *gate_pages(verdicts, found),
+        *gate_pages(verdicts, groups),
     ]

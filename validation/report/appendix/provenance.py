@@ -6,24 +6,24 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from validation.report.blocks import Block, Column, Heading, Table, columns
-from validation.report.chapters.data import Group, varied_fields
+from validation.report.chapters.data import CaseGroup, varied_fields
 from validation.report.chapters.text import parameters, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Row
 
 
-def parameter_table(found: Mapping[str, Group]) -> list[Block]:
+def parameter_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
     """Return the data of the scenes: of the first in full, of the others what differs from it."""
     rows: list[tuple[str, str]] = []
-    base: set[str] = set()
-    for group in found.values():
+    first_items: set[str] = set()
+    for group in groups.values():
         varied = varied_fields(group)
         items = parameters(group.cases[0].scene, varied).removesuffix(".").split(", ")
-        own = [item for item in items if item not in base]
-        swept = f"{len(group.cases)} cases" if len(group.cases) > 1 else "one case"
-        rows.append((group.name, ", ".join([*own, swept])))
-        base = base or set(items)
+        differing = [item for item in items if item not in first_items]
+        count = f"{len(group.cases)} cases" if len(group.cases) > 1 else "one case"
+        rows.append((group.name, ", ".join([*differing, count])))
+        first_items = first_items or set(items)
     caption = "Data of the scenes: the first in full, the others where they differ from it."
     return [Heading("Parameters", 2), Table((Column("Scene"), Column("Data", "fill")), tuple(rows), caption)]
 
@@ -31,19 +31,19 @@ def parameter_table(found: Mapping[str, Group]) -> list[Block]:
 def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
     """Return where the numbers come from and what they cost; what all studies share is said once."""
     manifests = [results.manifest(study) for study in studies]
-    said: dict[tuple[str, str], list[str]] = {}
+    studies_by_item: dict[tuple[str, str], list[str]] = {}
     for manifest in manifests:
         for name, value in manifest.get("provenance", {}).items():
-            said.setdefault((name, _said(value)), []).append(manifest["study"])
-    rows = [
-        (name.capitalize(), value if len(own) == len(manifests) else f"{value} ({', '.join(own)})")
-        for (name, value), own in said.items()
-    ]
+            studies_by_item.setdefault((name, _item_text(value)), []).append(manifest["study"])
+    rows = []
+    for (name, text), names in studies_by_item.items():
+        where = "" if len(names) == len(manifests) else f" ({', '.join(names)})"
+        rows.append((name.capitalize(), f"{text}{where}"))
     table = Table((Column("Item"), Column("Value", "fill")), tuple(rows))
     return [Heading("Provenance", 2), table, cost_table(results, manifests)]
 
 
-def _said(value: object) -> str:
+def _item_text(value: object) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {version}" for name, version in value.items())
     if isinstance(value, list | tuple):
@@ -54,19 +54,21 @@ def _said(value: object) -> str:
 def cost_table(results: Results, manifests: Sequence[Manifest]) -> Table:
     """Return runs, work and seconds of each solver over all studies; a run that studies share counts once."""
     rows = results.rows()
-    used: dict[str, dict[str, Row]] = {}
+    rows_by_solver: dict[str, dict[str, Row]] = {}
     for manifest in manifests:
         for entry in manifest.get("cases", []):
             if entry["key"] in rows:
-                used.setdefault(entry["solver"], {})[entry["key"]] = rows[entry["key"]]
+                rows_by_solver.setdefault(entry["solver"], {})[entry["key"]] = rows[entry["key"]]
     lines = []
-    for solver, own in used.items():
+    for solver, rows_by_key in rows_by_solver.items():
         work: Counter[str] = Counter()
-        most, seconds = 0, 0.0
-        for row in own.values():
+        unknowns = 0
+        seconds = 0.0
+        for row in rows_by_key.values():
             work.update(row.work)
-            most, seconds = max(most, row.work.get("unknowns", 0)), seconds + sum(row.seconds.values())
-        counts = (len(own), most, work["factorisations"], work["solves"], work["steps"])
+            unknowns = max(unknowns, row.work.get("unknowns", 0))
+            seconds += sum(row.seconds.values())
+        counts = (len(rows_by_key), unknowns, work["factorisations"], work["solves"], work["steps"])
         lines.append((solver, *map(str, counts), plain(seconds, 3)))
     titles = columns("decimal", "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
     caption = "Cost of the results; cached runs count with their original run time."

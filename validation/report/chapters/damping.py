@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from validation.report.blocks import Block, Column, Table
-from validation.report.chapters.data import Case, Group
+from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import DASH, cell, load_size, word_notes
 from validation.report.figures import histories
 from validation.report.figures.paper import BudgetPanel, budget_figure
@@ -20,15 +21,14 @@ from validation.solvers.registry import is_solver, role
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 
 
-def budget_blocks(group: Group, directory: Path) -> list[Block]:
+def budget_blocks(group: CaseGroup, directory: Path) -> list[Block]:
     """Return the damping budget chart of a scene, or nothing where its results hold none."""
     if not group.budgets:
         return []
     labels = {case.name: case.label for case in group.cases}
-    alone = len(group.budgets) == 1
-    panels = []
-    for budget in group.budgets:
-        panels.append(BudgetPanel("" if alone else _label(labels.get(budget["scene"], "")), budget))
+    panels = [BudgetPanel(_label(labels.get(budget["scene"], "")), budget) for budget in group.budgets]
+    if len(panels) == 1:
+        panels = [BudgetPanel("", group.budgets[0])]
     file = f"{group.slug}-damping-budget.svg"
     return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets))]
 
@@ -39,22 +39,24 @@ def _label(text: str) -> str:
 
 
 def _caption(budgets: Sequence[BudgetRecord]) -> str:
-    said = [
+    sentences = [
         "Damping budget of DDA's first axial and contact mode over the time step (triangles: the cases).",
         "Open circles: the roots of the step turn real and there is no damping ratio beyond; one root returns to −1.",
     ]
     if any("overdamped below" in budget["limits"] for budget in budgets):
-        said.append("Grey: overdamped.")
-    said.append("a/c: travel time of the wave from top to base; a larger dt does not resolve it.")
-    floors = sorted({budget["floor"] for budget in budgets if budget["floor"]})
-    if floors:
-        span = f"{floors[0]:.3f}" + (f" to {floors[-1]:.3f}" if floors[-1] != floors[0] else "")
-        said.append(f"DDA's first natural frequency is {span} times the bar's; a long step lowers both.")
+        sentences.append("Grey: overdamped.")
+    sentences.append("a/c: travel time of the wave from top to base; a larger dt does not resolve it.")
+    ratios = sorted({budget["floor"] for budget in budgets if budget["floor"]})
+    if ratios:
+        span = f"{ratios[0]:.3f}"
+        if ratios[-1] != ratios[0]:
+            span += f" to {ratios[-1]:.3f}"
+        sentences.append(f"DDA's first natural frequency is {span} times the bar's; a long step lowers both.")
     if any(budget["gg_rate"] for budget in budgets):
-        said.append("The discount is held as a rate.")
+        sentences.append("The discount is held as a rate.")
     elif any(budget["gg"] < 1 for budget in budgets):
-        said.append("gg acts per step: towards small dt the kinetic part grows without bound.")
-    return " ".join(said)
+        sentences.append("gg acts per step: towards small dt the kinetic part grows without bound.")
+    return " ".join(sentences)
 
 
 # ---- the table of a scene ------------------------------------------------------------------------------------------
@@ -85,38 +87,44 @@ _MEASURES = (
 LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
 
 
-def damping_table(group: Group) -> Table:
+def damping_table(group: CaseGroup) -> Table:
     """Return frequency and damping of the first axial mode, settling steps and peaks per case and solver.
 
     Solvers whose numbers read alike share a line; what is exact in time has no damping to tell, and no line.
     """
-    long = any(len(case.label) > LONG_LABEL for case in group.cases)
+    has_long_labels = any(len(case.label) > LONG_LABEL for case in group.cases)
     rows: list[tuple[str, ...]] = []
     measured: list[Value] = []
     for case in group.cases:
-        lines: dict[tuple[str, ...], list[str]] = {}
+        solvers_by_cells: dict[tuple[str, ...], list[str]] = {}
         for solver in _finished(case):
-            metrics = case.rows[solver].metrics
-            shown = tuple(_measured(m, metrics.get(m.metric), case.scene) for m in _MEASURES)
-            if set(shown) != {DASH}:
-                lines.setdefault(shown, []).append(solver)
-                measured += [metrics.get(m.metric) for m in _MEASURES]
-        rows += [(case.label,)] if long and lines else []
-        for i, (shown, solvers) in enumerate(lines.items()):
-            rows.append((*(() if long else (case.label if i == 0 else "",)), ", ".join(solvers), *shown))
+            values = [case.rows[solver].metrics.get(measure.metric) for measure in _MEASURES]
+            cells = tuple(_measure_cell(m, value, case.scene) for m, value in zip(_MEASURES, values, strict=True))
+            if set(cells) != {DASH}:
+                solvers_by_cells.setdefault(cells, []).append(solver)
+                measured += values
+        lines = [(", ".join(solvers), *cells) for cells, solvers in solvers_by_cells.items()]
+        if has_long_labels:
+            rows += [(case.label,), *lines] if lines else []
+        else:
+            labels = itertools.chain([case.label], itertools.repeat(""))
+            rows += [(label, *line) for label, line in zip(labels, lines, strict=False)]
     titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
-    return Table(titles if long else (Column("Case"), *titles), tuple(rows), notes=word_notes(measured), ruled=not long)
+    if not has_long_labels:
+        titles = (Column("Case"), *titles)
+    return Table(titles, tuple(rows), notes=word_notes(measured), ruled=not has_long_labels)
 
 
-def _finished(case: Case) -> list[str]:
+def _finished(case: CaseResults) -> list[str]:
     finished = [solver for solver, row in case.rows.items() if row.metrics and not solver.endswith(":full")]
     return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT_IN_TIME] or finished
 
 
-def _measured(measure: Measure, value: Value, scene: Scene) -> str:
+def _measure_cell(measure: Measure, value: Value, scene: Scene) -> str:
     if not isinstance(value, int | float):
         return cell(value)
     if measure.decimals is None:
         noise = NOISE * load_size(scene) if measure.metric == "pressure.minimum" else 0.0
-        return cell(value if abs(value) > noise else 0.0, measure.factor)
+        significant = value if abs(value) > noise else 0.0
+        return cell(significant, measure.factor)
     return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")

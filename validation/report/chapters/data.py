@@ -19,9 +19,11 @@ from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
+DerivedRows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene or case, name) -> metrics
+
 
 @dataclass(frozen=True)
-class Case:
+class CaseResults:
     """One case of a scene: rows and histories by solver."""
 
     name: str
@@ -40,17 +42,17 @@ class Case:
     def reference(self) -> str | None:
         """The solver that pictures take differences from."""
         # The same Newmark scheme first: pictures show model and code.
-        known = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH), *by_role(Role.LIMIT)]
-        return next((name for name in known if name in self.histories), None)
+        candidates = [*by_role(Role.REFERENCE), *by_role(Role.TRUTH), *by_role(Role.LIMIT)]
+        return next((name for name in candidates if name in self.histories), None)
 
 
 @dataclass(frozen=True)
-class Group:
+class CaseGroup:
     """A scene of a study: the cases of one sweep, their comparisons and verdicts."""
 
     name: str
     title: str
-    cases: tuple[Case, ...]
+    cases: tuple[CaseResults, ...]
     comparisons: tuple[ComparisonRecord, ...]
     verdicts: tuple[VerdictRecord, ...]
     alarms: tuple[AlarmRecord, ...] = ()
@@ -66,20 +68,25 @@ class Group:
         """The name as part of a file name."""
         return re.sub(r"[^\w.-]+", "-", self.name).strip("-.") or "scene"
 
-    def compared(self, case: Case, solver: str, reference: str) -> Mapping[str, Any] | None:
+    def numbers(self, solver: str, metric: str) -> list[float]:
+        """Return a metric of a solver for the cases where it is a number."""
+        values = [case.number(solver, metric) for case in self.cases]
+        return [value for value in values if value is not None]
+
+    def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any] | None:
         """Return the metrics of a pair over the longest window, in either order, or None."""
         pair = {solver, reference}
-        own = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
-        longest = max(own, key=lambda c: float(c.get("window") or 0.0), default=None)
+        of_pair = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
+        longest = max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
         return None if longest is None else dict(longest["metrics"])
 
-    def number_of_pair(self, case: Case, solver: str, reference: str, metric: str) -> float | None:
+    def number_of_pair(self, case: CaseResults, solver: str, reference: str, metric: str) -> float | None:
         """Return a metric of a pair where it is a number."""
         value = (self.compared(case, solver, reference) or {}).get(metric)
         return float(value) if isinstance(value, int | float) else None
 
 
-def groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[Group]:
+def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[CaseGroup]:
     """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
     rows = results.rows()
     scenes: dict[str, dict[str, list[CaseRecord]]] = {}
@@ -88,6 +95,16 @@ def groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[Gro
     verdicts = results.verdicts(manifest.get("study"))
     history_of = results.history if drawn else lambda _: None
     return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
+
+
+def groups_by_name(results: Results, manifest: Manifest) -> dict[str, CaseGroup]:
+    """Return the scenes of a study with their histories, by the scenes' names."""
+    return {group.name: group for group in case_groups(results, manifest)}
+
+
+def derived_rows(manifest: Manifest) -> DerivedRows:
+    """Return the metrics of a study's derived rows."""
+    return {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
 
 
 def spoken_of(manifest: Manifest) -> list[CaseRecord]:
@@ -103,9 +120,9 @@ def spoken_of(manifest: Manifest) -> list[CaseRecord]:
     return [entry for entry in cases if entry["scene"] in scenes]
 
 
-def verdicts_of(found: Iterable[Group]) -> list[VerdictRecord]:
+def verdicts_of(groups: Iterable[CaseGroup]) -> list[VerdictRecord]:
     """Return the verdicts of scenes."""
-    return [verdict for group in found for verdict in group.verdicts]
+    return list(itertools.chain.from_iterable(group.verdicts for group in groups))
 
 
 def _group(
@@ -115,11 +132,11 @@ def _group(
     base: str,
     entries: Mapping[str, Sequence[CaseRecord]],
     verdicts: Sequence[VerdictRecord],
-) -> Group:
-    scenes = [parse_scene(own[0]["definition"], name) for name, own in entries.items()]
+) -> CaseGroup:
+    scenes = [parse_scene(of_case[0]["definition"], name) for name, of_case in entries.items()]
     labels = case_labels(list(entries), scenes)
     cases = map(partial(_case, history_of, rows), entries.values(), labels, scenes)
-    return Group(
+    return CaseGroup(
         base,
         next(iter(entries.values()))[0].get("title") or base,
         tuple(cases),
@@ -136,13 +153,16 @@ def _case(
     entries: Sequence[CaseRecord],
     label: str,
     scene: Scene,
-) -> Case:
-    own = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
-    drawn = {solver: row for solver, row in own.items() if not solver.endswith(":full")}  # equal to what they repeat
-    histories = {s: history for s, row in drawn.items() if (history := history_of(row.key)) is not None}
-    return Case(entries[0]["scene"], label, scene, own, histories)
+) -> CaseResults:
+    rows_by_solver = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
+    histories = {}
+    for solver, row in rows_by_solver.items():
+        history = history_of(row.key)
+        if history is not None and not solver.endswith(":full"):  # whose history is that of the model without it
+            histories[solver] = history
+    return CaseResults(entries[0]["scene"], label, scene, rows_by_solver, histories)
 
 
-def varied_fields(group: Group) -> set[str]:
+def varied_fields(group: CaseGroup) -> set[str]:
     """Return the fields that vary between the cases of a scene."""
     return set().union(*(CaseName.parse(case.name).values for case in group.cases))

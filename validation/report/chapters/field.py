@@ -29,7 +29,7 @@ from validation.studies.field.table import Table as Field
 
 NONE = "n. a."
 PLACE = re.compile(r" \([^()]*:\d+, in [^()]*\)$")  # of the code that raised an error
-SAID = (
+METHOD = (
     "Each problem has an exact motion. An answer passes where its relative L2 error is below what one per cent of the "
     "problem's data changes; the row of what is allowed states it. Each program runs with parameters chosen for "
     "accuracy and, below, with its defaults. What it cannot express is not applicable, and is not forced to fit."
@@ -40,7 +40,7 @@ NOTE = (
     "answer; the reasons are given below. Time: of all answers together, with the start of the program, on this "
     "machine."
 )
-SILENT = (
+UNEXPLAINED_NOTE = (
     "In brackets: the time up to which the error of an answer without a certain cause is within what is allowed. What "
     f"would tell the cause: {WOULD_TELL}."
 )
@@ -48,78 +48,77 @@ SILENT = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: the table, the causes of failures, what has no verdict, the programs."""
-    found = read(results)
-    if found is None:
+    field = read(results)
+    if field is None:
         return [*opening(manifest), Paragraph("The study was not run by this version; run it again.")]
     return [
         *opening(manifest, results.verdicts(manifest["study"])),
-        Paragraph(counted(found)),
-        Paragraph(SAID),
-        by_problem(found),
-        *_part("Why answers fail", failures(found)),
-        *_part("What is not applicable or gave no answer", absent(found)),
-        *_part("The programs", programs(found)),
+        Paragraph(counted(field)),
+        Paragraph(METHOD),
+        by_problem(field),
+        *_part("Why answers fail", failures(field)),
+        *_part("What is not applicable or gave no answer", absent(field)),
+        *_part("The programs", programs(field)),
     ]
 
 
-def counted(found: Field) -> str:
+def counted(field: Field) -> str:
     """Return how many answers pass and fail, and how many failures have a cause, in a sentence."""
-    others = [cell for cell in found.cells.values() if _kind(found, cell) != "suite"]
-    words = [cell.verdict for cell in others]
-    failed = [cell for cell in others if cell.verdict == FAIL]
-    named = sum(not cell.cause.startswith(NOT_EXPLAINED) for cell in failed)
-    there = {cell.program.removesuffix("-default") for cell in others if cell.verdict in JUDGED}
-    if not there:
+    suite = {program.name for program in field.programs if program.kind == "suite"}
+    cells = [cell for cell in field.cells.values() if cell.program not in suite]
+    names = {cell.program.removesuffix("-default") for cell in cells if cell.verdict in JUDGED}
+    if not names:
         return "No other program is installed here: README of examples/peers has a recipe for each."
-    passed = words.count(PASS)
-    partial = words.count(PARTIAL)
-    failing = words.count(FAIL)
+    verdicts = [cell.verdict for cell in cells]
+    passed = verdicts.count(PASS)
+    partial = verdicts.count(PARTIAL)
+    failed = verdicts.count(FAIL)
+    explained = sum(cell.verdict == FAIL and not cell.cause.startswith(NOT_EXPLAINED) for cell in cells)
     in_part = f" and {partial} in part (a column is withheld)" if partial else ""
     return (
-        f"Other programs: {len(there)}, with {passed + partial + failing} answers to {len(found.problems)} problems. "
-        f"Of these {passed} pass{in_part} and {failing} fail, {named} of them with a cause that is certain."
+        f"Other programs: {len(names)}, with {passed + partial + failed} answers to {len(field.problems)} problems. "
+        f"Of these {passed} pass{in_part} and {failed} fail, {explained} of them with a cause that is certain."
     )
-
-
-def _kind(found: Field, cell: Cell) -> str:
-    return next(program.kind for program in found.programs if program.name == cell.program)
 
 
 def _part(title: str, table: Table) -> list[Block]:
     return [Heading(title, 3), table] if table.rows else []
 
 
-def by_problem(found: Field) -> Table:
+def by_problem(field: Field) -> Table:
     """Return the table of programs by problems."""
     titles = (
         Column("Program"),
-        *(Column(problem.name, "outcome") for problem in found.problems),
+        *(Column(problem.name, "outcome") for problem in field.problems),
         Column("Time [s]", "decimal"),
     )
-    rows = [("allowed [%]", *(allowed(found, problem.name) for problem in found.problems), "")]
-    rows += [(program.title, *_outcomes(found, program), seconds(found, program)) for program in shown(found)]
-    away = [program.title for program in found.programs if program not in shown(found)]
-    notes = (NOTE, *([f"Not installed: {', '.join(away)}."] if away else []))
-    return Table(titles, tuple(rows), "Programs and problems.", notes)
+    installed = installed_programs(field)
+    rows = [("allowed [%]", *(allowed(field, problem.name) for problem in field.problems), "")]
+    rows += [(program.title, *_outcomes(field, program), seconds(field, program)) for program in installed]
+    notes = [NOTE]
+    missing = [program.title for program in field.programs if program not in installed]
+    if missing:
+        notes.append(f"Not installed: {', '.join(missing)}.")
+    return Table(titles, tuple(rows), "Programs and problems.", tuple(notes))
 
 
-def shown(found: Field) -> list[ProgramLine]:
+def installed_programs(field: Field) -> list[ProgramLine]:
     """Return the programs that are installed; one that gave no answer at all is among them."""
-    return [program for program in found.programs if program.installed and not _is_away(found, program)]
+    return [program for program in field.programs if program.installed and not _is_adapter_alone(field, program)]
 
 
-def _is_away(found: Field, program: ProgramLine) -> bool:
+def _is_adapter_alone(field: Field, program: ProgramLine) -> bool:
     """Whether the adapter of a program is there and the program is not."""
-    cells = _cells(found, program)
+    cells = _cells(field, program)
     return is_absent([(cell.verdict == NOT_APPLICABLE or MISSING in cell.reason, cell.reason) for cell in cells])
 
 
-def _cells(found: Field, program: ProgramLine) -> list[Cell]:
-    return [found.cell(problem.name, program.name) for problem in found.problems]
+def _cells(field: Field, program: ProgramLine) -> list[Cell]:
+    return [field.cell(problem.name, program.name) for problem in field.problems]
 
 
-def _outcomes(found: Field, program: ProgramLine) -> Iterator[str]:
-    for cell in _cells(found, program):
+def _outcomes(field: Field, program: ProgramLine) -> Iterator[str]:
+    for cell in _cells(field, program):
         if cell.verdict == NOT_RUN:
             yield DASH
         elif cell.verdict in JUDGED:
@@ -129,7 +128,7 @@ def _outcomes(found: Field, program: ProgramLine) -> Iterator[str]:
 
 
 def error(cell: Cell) -> str:
-    """Return the error of a cell in per cent, nothing where a run told itself that it is wrong."""
+    """Return the error of a cell in per cent, nothing where a run itself reports that it is wrong."""
     if cell.error is None:
         return ""
     if cell.error > 10:
@@ -137,70 +136,80 @@ def error(cell: Cell) -> str:
     return "< 0.001" if cell.error < 1e-5 else short(100 * cell.error, 2)
 
 
-def allowed(found: Field, problem: str) -> str:
+def allowed(field: Field, problem: str) -> str:
     """Return the band of a problem in per cent: of the column that decides most often."""
-    bands = [cell.band for cell in found.row(problem) if cell.band is not None]
+    bands = [cell.band for cell in field.row(problem) if cell.band is not None]
     return short(100 * max(set(bands), key=bands.count), 2) if bands else DASH
 
 
-def seconds(found: Field, program: ProgramLine) -> str:
+def seconds(field: Field, program: ProgramLine) -> str:
     """Return what the answers of a program took together [s], to two digits."""
-    took = [cell.seconds for cell in _cells(found, program) if cell.seconds is not None]
-    return short(float(f"{sum(took):.2g}"), 2) if took else DASH
+    times = [cell.seconds for cell in _cells(field, program) if cell.seconds is not None]
+    return short(float(f"{sum(times):.2g}"), 2) if times else DASH
 
 
-def failures(found: Field) -> Table:
+def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
     titles = (Column("Program"), Column("Problems"), Column("Cause", "fill"))
     rows = []
-    for program in shown(found):
-        by_cause: dict[str, list[str]] = {}
-        for cell in _cells(found, program):
+    for program in installed_programs(field):
+        problems_by_cause: dict[str, list[str]] = {}
+        for cell in _cells(field, program):
             if cell.verdict == FAIL:
-                by_cause.setdefault(cell.cause, []).append(cell.problem + _so_far(cell))
-        rows += _lines(found, program, by_cause)
-    return Table(titles, tuple(rows), notes=(SILENT,) if any(row[-1] == NOT_EXPLAINED for row in rows) else ())
+                problems_by_cause.setdefault(cell.cause, []).append(cell.problem + _right_until(cell))
+        rows += _lines(field, program, problems_by_cause)
+    is_unexplained = any(row[-1] == NOT_EXPLAINED for row in rows)
+    notes = (UNEXPLAINED_NOTE,) if is_unexplained else ()
+    return Table(titles, tuple(rows), notes=notes)
 
 
-def _so_far(cell: Cell) -> str:
+def _right_until(cell: Cell) -> str:
     """Return in brackets how far an answer is right whose failure is not explained."""
     if cell.cause != NOT_EXPLAINED or cell.within is None:
         return ""
     return f" ({short(float(f'{cell.within:.3g}'))} s)"
 
 
-def absent(found: Field) -> Table:
+def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
     titles = (Column("Program"), Column("Problems"), Column("Reason", "fill"))
     rows = []
-    for program in shown(found):
-        by_reason: dict[str, list[str]] = {}
-        for cell in _cells(found, program):
+    for program in installed_programs(field):
+        problems_by_reason: dict[str, list[str]] = {}
+        for cell in _cells(field, program):
             if cell.verdict in (NOT_APPLICABLE, NOT_RUN):
                 reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
-                told = reason if cell.verdict == NOT_APPLICABLE else f"no answer: {reason}"
-                by_reason.setdefault(told, []).append(cell.problem)
-        rows += _lines(found, program, by_reason)
+                if cell.verdict == NOT_RUN:
+                    reason = f"no answer: {reason}"
+                problems_by_reason.setdefault(reason, []).append(cell.problem)
+        rows += _lines(field, program, problems_by_reason)
     return Table(titles, tuple(rows))
 
 
-def _lines(found: Field, program: ProgramLine, said: dict[str, list[str]]) -> list[tuple[str, ...]]:
-    """Return a line for each text, with the problems that it is said of."""
-    every = len(found.problems)
-    lines = [("all" if len(problems) == every > 1 else ", ".join(problems), words) for words, problems in said.items()]
-    return [(program.title if n == 0 else "", *line) for n, line in enumerate(lines)]
+def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
+    """Return a line for each text, with the problems that it applies to; the first line names the program."""
+    lines: list[tuple[str, ...]] = []
+    title = program.title
+    for text, problems in problems_by_text.items():
+        names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)
+        lines.append((title, names, text))
+        title = ""
+    return lines
 
 
-def programs(found: Field) -> Table:
+def programs(field: Field) -> Table:
     """Return what each program says of itself."""
     titles = (Column("Program"), Column("Version"), Column("Model", "fill"), Column("Settings", "fill"))
     rows: list[tuple[str, str, str, str]] = []
-    before: Mapping[str, str] = {}
-    for program in shown(found):
-        said = program.about
-        alike = said.get("program", "") != "" and said["program"] == before.get("program")
-        version, model = said.get("version", ""), said.get("model", "")
-        told = ("" if alike else version, "the same" if alike and model == before.get("model") else model)
-        rows.append((program.title, *told, said.get("settings", "")))
-        before = said
+    previous: Mapping[str, str] = {}
+    for program in installed_programs(field):
+        about = program.about
+        version = about.get("version", "")
+        model = about.get("model", "")
+        if about.get("program", "") != "" and about["program"] == previous.get("program"):
+            version = ""
+            if model == previous.get("model"):
+                model = "the same"
+        rows.append((program.title, version, model, about.get("settings", "")))
+        previous = about
     return Table(titles, tuple(rows))

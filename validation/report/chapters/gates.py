@@ -24,19 +24,19 @@ def value_cell(value: Value, metric: str = "") -> str:
 def band(v: VerdictRecord) -> str:
     """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
     low, high = v["band"]
-    middle, half, size = (low + high) / 2, (high - low) / 2, max(abs(low), abs(high))
+    size = max(abs(low), abs(high))
     digits = next((d for d in range(4, 16) if high - low > 3 * 10.0**-d * size), 16)
     if low != high and digits > NARROW:
-        return f"{short(middle, digits)} ± {short(half, 2)}"
+        return f"{short((low + high) / 2, digits)} ± {short((high - low) / 2, 2)}"
     return f"{short(low, digits)} … {short(high, digits)}"
 
 
 def reason(v: VerdictRecord) -> str:
     """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
     uncertainty = v.get("reference_uncertainty") or 0.0
-    kind = f" [{v['reference_kind']}" + (f" ± {short(uncertainty, 2)}" if uncertainty else "") + "]"
+    width = f" ± {short(uncertainty, 2)}" if uncertainty else ""
     why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
-    return f"{v['reason']}{kind}{why}"
+    return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
 
 
 def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
@@ -44,14 +44,17 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     bad = sorted((v for v in verdicts if v["verdict"] != "PASS"), key=lambda v: ORDER[v["verdict"]])
     if not bad:
         return []
-    failed = sum(v["verdict"] == "FAIL" for v in bad)
-    said = [Callout(f"{failed} gates fail." if failed > 1 else "One gate fails.", "fail")] if failed else []
+    blocks: list[Block] = [Heading("Gates that did not pass", 2)]
+    failures = sum(v["verdict"] == "FAIL" for v in bad)
+    if failures:
+        text = "One gate fails." if failures == 1 else f"{failures} gates fail."
+        blocks.append(Callout(text, "fail"))
     titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
-    rows: dict[str, list[tuple[str, ...]]] = {}
+    rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
-        line = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
-        rows.setdefault(reason(v), []).append(line)
+        row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
+        rows_by_reason.setdefault(reason(v), []).append(row)
     lines: list[tuple[str, ...]] = []
-    for why, own in rows.items():
-        lines += [*own, (why,)]
-    return [Heading("Gates that did not pass", 2), *said, Table(titles, tuple(lines), ruled=False)]
+    for why, rows in rows_by_reason.items():
+        lines += [*rows, (why,)]
+    return [*blocks, Table(titles, tuple(lines), ruled=False)]

@@ -30,7 +30,7 @@ ALLOWED = (
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """An answer with all that is said of it."""
+    """An answer with its verdict and all that the page holds of it."""
 
     problem: Problem
     history: History
@@ -41,22 +41,25 @@ class Judged:
     warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
-def headline(judged: Judged) -> str:
+def headline(answer: Judged) -> str:
     """Return the verdict and what it rests on, in a sentence."""
-    found = judged.judgement
-    decides = found.deciding
-    if decides is None or decides.band is None:
-        return f"{found.verdict}: no column of it is judged."
-    off = f"{per_cent(decides.error)} off in {united(decides.name)}, where {per_cent(decides.band)} is allowed"
-    within = found.word in (Word.PASS, Word.PARTIAL)
-    return f"{found.verdict}: it is at most {off}." if within else f"{found.verdict}: it is {off}."
+    judgement = answer.judgement
+    column = judgement.deciding
+    if column is None or column.band is None:
+        return f"{judgement.verdict}: no column of it is judged."
+    at_most = "at most " if judgement.word in (Word.PASS, Word.PARTIAL) else ""
+    return (
+        f"{judgement.verdict}: it is {at_most}{per_cent(column.error)} off in {united(column.name)}, where "
+        f"{per_cent(column.band)} is allowed."
+    )
 
 
-def reached(judged: Judged) -> str:
+def reached(answer: Judged) -> str:
     """Return how far an answer that fails is right, in a sentence."""
-    within, until = judged.judgement.within, max(column.until for column in judged.judgement.columns)
+    within = answer.judgement.within
     if not within:
         return "Its error is more than what is allowed from the first step on."
+    until = max(column.until for column in answer.judgement.columns)
     return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
 
 
@@ -67,36 +70,37 @@ def per_cent(share: float | None) -> str:
     return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
-def page(judged: Judged, directory: Path) -> list[Block]:
+def page(answer: Judged, directory: Path) -> list[Block]:
     """Return the blocks of the page; its figures are written to a directory."""
-    found = judged.judgement
-    tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(found.word, "warn")
-    blocks: list[Block] = [Callout(headline(judged), tone)]  # type: ignore[arg-type]
-    blocks += [Callout(sentence, "warn") for sentence in judged.warnings]
-    if judged.cause is not None:
-        blocks.append(Paragraph(f"Cause: {judged.cause.sentence}. {reached(judged)}"))
-        if judged.cause.would_tell:
-            blocks.append(Paragraph(f"What would tell: {judged.cause.would_tell}."))
+    judgement = answer.judgement
+    tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(judgement.word, "warn")
+    blocks: list[Block] = [Callout(headline(answer), tone)]  # type: ignore[arg-type]
+    blocks += [Callout(sentence, "warn") for sentence in answer.warnings]
+    if answer.cause is not None:
+        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
+        if answer.cause.would_tell:
+            blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
     return [
         *blocks,
-        Paragraph(f"The question: {judged.problem.asks} {judged.problem.title}."),
-        _columns(found.columns, judged.held),
-        *figures(judged, directory),
-        *([_told(found.told)] if found.told else []),
-        _about(judged.about),
+        Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
+        _columns(judgement.columns, answer.held),
+        *figures(answer, directory),
+        *([_further_numbers(judgement.told)] if judgement.told else []),
+        Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(answer.about)),
     ]
 
 
-def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
+def figures(answer: Judged, directory: Path) -> Sequence[FigureBlock]:
     """Draw every column that is judged, with the exact one."""
     from validation.report.figures import histories, motion  # which load matplotlib; a verdict alone needs none
 
     drawn = []
-    for name in judged.history.columns:
-        rows = len(judged.held.exact.time)
+    exact = answer.held.exact
+    rows = len(exact.time)
+    for name in answer.history.columns:
         lines = {
-            EXACT: History(judged.held.exact.time, {name: judged.held.exact.columns[name]}),
-            ANSWER: History(judged.history.time[:rows], {name: judged.history.columns[name][:rows]}),
+            EXACT: History(exact.time, {name: exact.columns[name]}),
+            ANSWER: History(answer.history.time[:rows], {name: answer.history.columns[name][:rows]}),
         }
         panel = Panel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
         if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
@@ -110,7 +114,7 @@ def figures(judged: Judged, directory: Path) -> Sequence[FigureBlock]:
     return drawn
 
 
-def _columns(found: Sequence[Column], held: Standard) -> Table:
+def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     titles = (
         TableColumn("Column"),
         TableColumn("Verdict", "outcome"),
@@ -119,30 +123,29 @@ def _columns(found: Sequence[Column], held: Standard) -> Table:
         TableColumn("Until [s]", "decimal"),
     )
     rows = []
-    for one in found:
-        error, band = (DASH if share is None else short(100 * share, 2) for share in (one.error, one.band))
-        rows.append((united(one.name), str(one.word), error, band, datum(one, held) or DASH, plain(one.until)))
-    unjudged = [f"{united(one.name)}: {one.reason}." for one in found if one.band is None]
-    return Table(titles, tuple(rows), "Relative L2 error of each column.", (ALLOWED, *unjudged))
+    notes = [ALLOWED]
+    for column in columns_of_answer:
+        name = united(column.name)
+        error, band = (DASH if share is None else short(100 * share, 2) for share in (column.error, column.band))
+        rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
+        if column.band is None:
+            notes.append(f"{name}: {column.reason}.")
+    return Table(titles, tuple(rows), "Relative L2 error of each column.", tuple(notes))
 
 
-def datum(column: Column, held: Standard) -> str:
+def datum(column: Column, standard: Standard) -> str:
     """Return the datum of which one per cent sets a column's band, nothing where it has none."""
-    band = held.bands.get(column.name)
+    band = standard.bands.get(column.name)
     return band.datum if band else ""
 
 
-def _told(found: Sequence[Told]) -> Table:
+def _further_numbers(numbers: Sequence[Told]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
-    rows = [(one.name, _value(one, one.value), _value(one, one.exact), one.unit) for one in found]
+    rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
     return Table(titles, tuple(rows), "Further numbers, which are not judged.")
 
 
-def _value(told: Told, value: float | None) -> str:
+def _number_cell(number: Told, value: float | None) -> str:
     if value is None:
         return DASH
-    return f"{value:.0f}" if told.name in COUNTED else bounded(value, plain(value))
-
-
-def _about(said: Sequence[tuple[str, str]]) -> Table:
-    return Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(said))
+    return f"{value:.0f}" if number.name in COUNTED else bounded(value, plain(value))

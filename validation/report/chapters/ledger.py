@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from validation.report.blocks import Block, Heading, Paragraph
-from validation.report.chapters.data import Case, Group
+from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import percent, span
 from validation.report.figures import histories
 from validation.report.figures.ledger import LedgerLine, ledger_figure
@@ -30,70 +30,74 @@ Values = tuple[float | None, float | None]  # relative L2 of displacement and co
 NOTHING: Values = (None, None)
 
 
-def parts_of(case: Case) -> Mapping[str, tuple[str, str]]:
+def parts_of(case: CaseResults) -> Mapping[str, tuple[str, str]]:
     """Return the parts of the ledger, each the solver and its reference."""
     return PARTS if features.linear(case.scene) else OPENING_PARTS
 
 
-def entry(group: Group, case: Case, part: str) -> Values:
+def entry(group: CaseGroup, case: CaseResults, part: str) -> Values:
     """Return a part of the ledger for one case: its own pair's numbers, None where the pair was not compared."""
     displacement, pressure = (group.number_of_pair(case, *parts_of(case)[part], name) for name in METRICS)
     return displacement, pressure
 
 
-def with_entries(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]]) -> list[Group]:
+def with_entries(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str]]) -> list[CaseGroup]:
     """Return the groups with the cases of these parts that some of them applies to."""
-    kept = []
+    compared_groups = []
     for group in groups:
         cases = [case for case in group.cases if parts_of(case) is parts]
-        known = tuple(case for case in cases if any(entry(group, case, part) != NOTHING for part in parts))
-        kept += [replace(group, cases=known)] if known else []
-    return kept
+        compared = tuple(case for case in cases if any(entry(group, case, part) != NOTHING for part in parts))
+        if compared:
+            compared_groups.append(replace(group, cases=compared))
+    return compared_groups
 
 
-def ledger_blocks(groups: Sequence[Group], name: str, directory: Path) -> list[Block]:
+def ledger_blocks(groups: Sequence[CaseGroup], name: str, directory: Path) -> list[Block]:
     """Return the ledger of a study's scenes as a figure and a sentence; nothing where fewer than two cases have one."""
     blocks: list[Block] = []
     for parts in (PARTS, OPENING_PARTS):
-        found = with_entries(groups, parts)
-        if sum(len(group.cases) for group in found) > 1:
+        compared = with_entries(groups, parts)
+        if sum(len(group.cases) for group in compared) > 1:
             pairs = ", ".join(f"{part}: {solver} − {reference}" for part, (solver, reference) in parts.items())
             caption = (
                 "Each case on its line; displacement filled, contact pressure open; relative L2 over the history. "
                 f"{pairs}. Grey: below 10⁻¹², which is rounding."
             )
             file = f"{name}-ledger{'-opening' * (parts is OPENING_PARTS)}.svg"
-            figure = histories.saved(ledger_figure(ledger_lines(found, parts)), directory, file, caption)
-            blocks += [Heading("What the differences are made of", 2), Paragraph(headline(found)), figure]
+            figure = histories.saved(ledger_figure(ledger_lines(compared, parts)), directory, file, caption)
+            blocks += [Heading("What the differences are made of", 2), Paragraph(headline(compared)), figure]
     return blocks
 
 
-def headline(found: Sequence[Group]) -> str:
+def headline(groups: Sequence[CaseGroup]) -> str:
     """Return what code, mesh and model form contribute, in plain sentences."""
-    form = [part_values(found, "model form", column) for column in (0, 1)]
-    if not all(form):
+    displacement = part_values(groups, "model form", 0)
+    pressure = part_values(groups, "model form", 1)
+    if not displacement or not pressure:
         return "The model form is not known here: its pair was not compared."
     return (
-        f"The model form is {span(form[0])} in displacement and {span(form[1])} in contact pressure "
-        f"(relative L2){_shares(found, min(form[0]))}."
+        f"The model form is {span(displacement)} in displacement and {span(pressure)} in contact pressure "
+        f"(relative L2){_shares(groups, min(displacement))}."
     )
 
 
-def _shares(found: Sequence[Group], form: float) -> str:
+def _shares(groups: Sequence[CaseGroup], model_form: float) -> str:
     """Say what code and mesh contribute, and that the rest is model form where both are below its least."""
     parts = {
-        "code and rounding are": part_values(found, "code", 0),
-        "the finite-element mesh is": part_values(found, "mesh", 0),
+        "code and rounding are": part_values(groups, "code", 0),
+        "the finite-element mesh is": part_values(groups, "mesh", 0),
     }
-    said = [f"{name} at most {percent(max(values))}" for name, values in parts.items() if values]
-    if not said:
+    largest = {name: max(values) for name, values in parts.items() if values}
+    if not largest:
         return ""
-    small = all(max(values) < form for values in parts.values() if values)
-    rest = ", so that neither explains it: it is one strain in the block in place of a wave" if small else ""
-    return f"; of the displacement's difference {' and '.join(said)}{rest}"
+    sentence = " and ".join(f"{name} at most {percent(value)}" for name, value in largest.items())
+    remainder = ""
+    if max(largest.values()) < model_form:
+        remainder = ", so that neither explains it: it is one strain in the block in place of a wave"
+    return f"; of the displacement's difference {sentence}{remainder}"
 
 
-def ledger_lines(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
+def ledger_lines(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
     """Return the ledger as lines of a figure."""
     lines = []
     for group in groups:
@@ -103,10 +107,9 @@ def ledger_lines(groups: Sequence[Group], parts: Mapping[str, tuple[str, str]]) 
     return lines
 
 
-def part_values(groups: Sequence[Group], part: str, column: int) -> list[float]:
+def part_values(groups: Sequence[CaseGroup], part: str, column: int) -> list[float]:
     """Return all numbers of a part, for displacement (0) or pressure (1)."""
     values = []
     for group in groups:
-        found = [entry(group, case, part)[column] for case in group.cases]
-        values += [value for value in found if value is not None]
-    return values
+        values += [entry(group, case, part)[column] for case in group.cases]
+    return [value for value in values if value is not None]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures import histories
 from validation.report.figures.paper import StepPanel, radius_figure, steps_figure
@@ -62,24 +62,24 @@ COLUMNS = {
 
 def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: conclusion, register of claims, figures."""
-    found = {group.name: group for group in groups(results, manifest)}
+    groups = groups_by_name(results, manifest)
     rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
     claims = manifest.get("data", {}).get("claims", [])
     blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
     for title, letter in (("Statements", "C"), ("Slips of the equations", "S")):
         blocks += [Heading(title, 2), claims_table([c for c in claims if c["id"].startswith(letter)], rows)]
-    blocks += [Heading("The figures", 2), *figure_1(manifest, found, directory)]
+    blocks += [Heading("The figures", 2), *figure_1(manifest, groups, directory)]
     for figure in FIGURES:
-        if figure.scene in found:
-            blocks.append(figure_block(figure, found[figure.scene], directory))
+        if figure.scene in groups:
+            blocks.append(figure_block(figure, groups[figure.scene], directory))
     return blocks
 
 
 def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     """Return one sentence on the register."""
     count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
-    said = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
-    return f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(said)}."
+    parts = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
+    return f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(parts)}."
 
 
 def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
@@ -90,26 +90,23 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         word = WORDS.get(int(metrics.get("verdict", -1)), "not tested")
         condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
         measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
-        says, why = f"{claim['says']} ({claim['place']})", f"{_sentence(claim['why'])}{condition}"
-        lines.append((claim["id"], word, says, why, measured))
+        statement = f"{claim['says']} ({claim['place']})"
+        why = f"{claim['why'][:1].upper()}{claim['why'][1:]}.{condition}"
+        lines.append((claim["id"], word, statement, why, measured))
     titles = (*columns("text", "Id", "Verdict"), *columns("fill", "The paper says", "Why", "Measured"))
     return Table(titles, tuple(lines))
-
-
-def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}."
 
 
 def _number(value: object) -> str:
     return bounded(value, short(value)) if isinstance(value, int | float) else str(value or DASH)
 
 
-def figure_1(manifest: Manifest, found: Mapping[str, Group], directory: Path) -> list[Block]:
+def figure_1(manifest: Manifest, groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
     """Return Figure 1, with the spectral radii of the study's own constant-acceleration operators."""
     data = manifest.get("data", {})
     if "schemes" not in data:
         return []
-    cases = found["damping-map"].cases if "damping-map" in found else ()
+    cases = groups["damping-map"].cases if "damping-map" in groups else ()
     caption = (
         "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
         "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."
@@ -117,7 +114,7 @@ def figure_1(manifest: Manifest, found: Mapping[str, Group], directory: Path) ->
     return [histories.saved(radius_figure(data, _points(cases)), directory, "figure-1.svg", caption)]
 
 
-def _points(cases: Sequence[Case]) -> list[tuple[float, float]]:
+def _points(cases: Sequence[CaseResults]) -> list[tuple[float, float]]:
     points = []
     for case in cases:
         for mode in ("mode1", "contact"):
@@ -128,31 +125,32 @@ def _points(cases: Sequence[Case]) -> list[tuple[float, float]]:
     return points
 
 
-def figure_block(figure: PaperFigure, group: Group, directory: Path) -> FigureBlock:
+def figure_block(figure: PaperFigure, group: CaseGroup, directory: Path) -> FigureBlock:
     """Draw one of the paper's figures and return its block."""
     panels = [_panel(figure, case) for case in group.cases]
     label = "Relative error of displacement [%]" if figure.relative else COLUMNS[figure.quantity][2]
-    drawn = steps_figure(panels, label, figure.last)
-    marked = any(panel.settled is not None for panel in panels)
-    dash = " Dashed: step from which DDA stays within 1 % of static." if marked else ""
-    left_out = False
-    for case, panel in zip(group.cases, panels, strict=True):
-        left_out |= "continuum" in case.histories and "continuum" not in panel.lines
-    less = f" The continuum is left out where its period has fewer than {COARSE} steps." if left_out else ""
-    caption = f"Figure {figure.number}. {figure.caption}. Hairline: static value.{dash}{less}"
-    return histories.saved(drawn, directory, f"figure-{figure.number}.svg", caption)
+    caption = f"Figure {figure.number}. {figure.caption}. Hairline: static value."
+    if any(panel.settled is not None for panel in panels):
+        caption += " Dashed: step from which DDA stays within 1 % of static."
+    pairs = zip(group.cases, panels, strict=True)
+    if any("continuum" in case.histories and "continuum" not in panel.lines for case, panel in pairs):
+        caption += f" The continuum is left out where its period has fewer than {COARSE} steps."
+    chart = steps_figure(panels, label, figure.last)
+    return histories.saved(chart, directory, f"figure-{figure.number}.svg", caption)
 
 
-def _panel(figure: PaperFigure, case: Case) -> StepPanel:
+def _panel(figure: PaperFigure, case: CaseResults) -> StepPanel:
     column, factor, _ = COLUMNS[figure.quantity]
     static = case.number("dda", f"{figure.quantity}.static") or 0.0
-
-    def shown(values: Array) -> Array:
-        return np.asarray(100 * (values / static - 1) if figure.relative and static else factor * values)
-
-    lines = {s: shown(case.histories[s].columns[column]) for s in SOLVERS if s in case.histories}
+    lines: dict[str, Array] = {}
+    for solver in SOLVERS:
+        if solver in case.histories:
+            values = case.histories[solver].columns[column]
+            lines[solver] = 100 * (values / static - 1) if figure.relative and static else factor * values
     w = case.number("bar", "mode1.frequency")
     if w is not None and 2 * np.pi / w < COARSE * case.scene.time.step:
         lines.pop("continuum", None)
-    settled = None if figure.relative else case.number("dda", f"{figure.quantity}.settling_step")
-    return StepPanel(case.label, lines, 0.0 if figure.relative else factor * static, settled)
+    if figure.relative:
+        return StepPanel(case.label, lines, level=0.0)
+    settled = case.number("dda", f"{figure.quantity}.settling_step")
+    return StepPanel(case.label, lines, factor * static, settled)

@@ -13,7 +13,7 @@ import numpy as np
 
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.damping import budget_blocks, damping_table
-from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
     AS_STATED,
@@ -43,88 +43,103 @@ _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study: its question, then a section for each scene."""
-    found = groups(results, manifest)
+    groups = case_groups(results, manifest)
     blocks = opening(manifest)
-    for group in found:
-        shown = _columns(group)[:1] if len(found) > FEW else None
-        blocks += scene_section(group, directory, shown, apart=len(found) == 1)
-    blocks += ledger_blocks(found, manifest["study"], directory) if len(found) > 1 else []
-    return [*blocks, *budget_blocks(found[0], directory)] if len(found) == 1 else blocks
+    for group in groups:
+        columns = _columns(group)[:1] if len(groups) > FEW else None
+        blocks += scene_section(group, directory, columns, apart=len(groups) == 1)
+    if len(groups) == 1:
+        return [*blocks, *budget_blocks(groups[0], directory)]
+    return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def opening(manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", said: str = "") -> list[Block]:
-    """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `said` and what the gates say."""
-    counted = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
-    text = " ".join(filter(None, (manifest.get("purpose"), said, counted)))
+def opening(
+    manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", remark: str = ""
+) -> list[Block]:
+    """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
+    gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
+    text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
     paragraphs = (Paragraph(lead, "lead"), Paragraph(text))
-    return [Heading(manifest.get("title") or manifest["study"]), *(each for each in paragraphs if each.text)]
+    title = manifest.get("title") or manifest["study"]
+    return [Heading(title), *(paragraph for paragraph in paragraphs if paragraph.text)]
 
 
 def scene_section(
-    group: Group,
+    group: CaseGroup,
     directory: Path,
-    shown: Sequence[str] | None = None,
+    columns: Sequence[str] | None = None,
     apart: bool = False,
     without: Sequence[str] = (),
 ) -> list[Block]:
-    """Return the section of one scene: what was found, the figure that shows it, the numbers that matter.
+    """Return the section of one scene: its finding in words, the figure that shows it, the numbers that matter.
 
-    The figure holds the columns that are `shown`, all where none are named, of the solvers but those it is `without`,
-    and where asked for how far they are apart.
+    Parameters
+    ----------
+    group
+        The scene.
+    directory
+        Where the figure is written.
+    columns
+        Columns of histories that the figure holds, all by default.
+    apart
+        Whether the figure holds how far the solvers are apart as well.
+    without
+        Solvers that are left out of the figure.
     """
     blocks: list[Block] = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
-    if columns := [name for name in _columns(group) if shown is None or name in shown]:
-        blocks.append(history_block(group, columns, directory, apart, without))
-    if len(drift := drift_values(group)) > 1:
+    drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
+    if drawn_columns:
+        blocks.append(history_block(group, drawn_columns, directory, apart, without))
+    drift = drift_values(group)
+    if len(drift) > 1:
         blocks += _drift_blocks(group, drift, directory)
-    first = group.cases[0].scene
-    if features.linear(first) and first.column is None and (table := damping_table(group)).rows:
-        blocks.append(table)
+    scene = group.cases[0].scene
+    if features.linear(scene) and scene.column is None:
+        table = damping_table(group)
+        blocks += [table] if table.rows else []
     return blocks
 
 
 # ---- sentences ----------------------------------------------------------------------------------------------------
 
 
-def conclusion(group: Group) -> str:
+def conclusion(group: CaseGroup) -> str:
     """Return one plain sentence on a scene, computed from its comparisons and verdicts."""
-    parts = [_agreement(group), gate_count(group.verdicts)]
-    if tension := _tension(group):
-        parts.append(tension)
-    if trend := _damped_agreement(group):
-        parts.append(trend)
+    parts = (_agreement(group), gate_count(group.verdicts), _tension(group), _damped_agreement(group))
     text = "; ".join(part for part in parts if part)
     return text[:1].upper() + text[1:] + "."
 
 
-def _agreement(group: Group) -> str:
+def _agreement(group: CaseGroup) -> str:
     pairs = [("dda", reference) for reference in (*by_role(Role.REFERENCE), *by_role(Role.LIMIT))]
     others = [(pair["solver"], pair["reference"]) for pair in group.comparisons]  # of users' own solvers
     for solver, reference in dict.fromkeys((*pairs, *parts_of(group.cases[0]).values(), *others)):
-        said = []
+        differences_in_words = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
-            if values := _pair_values(group, solver, reference, metric):
-                said.append(f"{span(values)} in {name}")
-        if said:
-            over = _windows(group, solver, reference)
-            return f"against {reference}, {solver} differs by {' and '.join(said)} (relative L2{over})"
+            values = [group.number_of_pair(case, solver, reference, metric) for case in group.cases]
+            numbers = [value for value in values if value is not None]
+            if numbers:
+                differences_in_words.append(f"{span(numbers)} in {name}")
+        if differences_in_words:
+            text = " and ".join(differences_in_words)
+            window = _windows(group, solver, reference)
+            return f"against {reference}, {solver} differs by {text} (relative L2{window})"
     return "no pair of solvers was compared"
 
 
-def _windows(group: Group, solver: str, reference: str) -> str:
+def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
-    own = [pair for pair in group.comparisons if {pair["solver"], pair["reference"]} == {solver, reference}]
-    longest = [max(float(pair.get("window") or 0.0) for pair in own if pair["scene"] == c.name) for c in group.cases
-               if any(pair["scene"] == c.name for pair in own)]  # fmt: skip
-    if not longest or min(longest) <= 0:
+    longest: dict[str, float] = {case.name: -math.inf for case in group.cases}
+    for pair in group.comparisons:
+        scene = pair["scene"]
+        if {pair["solver"], pair["reference"]} == {solver, reference} and scene in longest:
+            longest[scene] = max(longest[scene], float(pair.get("window") or 0.0))
+    windows = [window for window in longest.values() if window > -math.inf]
+    if not windows or min(windows) <= 0:
         return ""
-    low, high = min(longest), max(longest)
+    low = min(windows)
+    high = max(windows)
     return f" over {short(low)}\u00a0s" if high <= low * 1.001 else f", {short(low)} to {short(high)}\u00a0s"
-
-
-def _pair_values(group: Group, solver: str, reference: str, metric: str) -> list[float]:
-    found = [group.number_of_pair(case, solver, reference, metric) for case in group.cases]
-    return [value for value in found if value is not None]
 
 
 def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
@@ -134,33 +149,38 @@ def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
         return "no gate judges this scene"
     if count["PASS"] == len(verdicts):
         return f"all {len(verdicts)} gates pass" if len(verdicts) > 1 else "its one gate passes"
-    verb = "fails" if count["FAIL"] == 1 else "fail"
     if len(verdicts) == 1:
-        return "its one gate " + ("fails" if count["FAIL"] else "did not run")
-    said = [f"{count['FAIL']} of {len(verdicts)} gates {verb}"] * bool(count["FAIL"])
-    return " and ".join(said + [f"{count['NOT RUN']} did not run"] * bool(count["NOT RUN"]))
+        return "its one gate fails" if count["FAIL"] else "its one gate did not run"
+    parts = []
+    if count["FAIL"]:
+        verb = "fails" if count["FAIL"] == 1 else "fail"
+        parts.append(f"{count['FAIL']} of {len(verdicts)} gates {verb}")
+    if count["NOT RUN"]:
+        parts.append(f"{count['NOT RUN']} did not run")
+    return " and ".join(parts)
 
 
-def _tension(group: Group) -> str:
+def _tension(group: CaseGroup) -> str:
     """Say where a locked contact hides tension."""
-    pulled: dict[str, float] = {}
+    tensions: dict[str, float] = {}
     for solver in group.solvers:
-        values = [case.number(solver, "pressure.minimum") for case in group.cases]
-        least = min((value for value in values if value is not None), default=0.0)
-        if least < -1e-6 * load_size(group.cases[0].scene):
-            pulled[solver] = least
-    if not pulled:
+        minimum = min(group.numbers(solver, "pressure.minimum"), default=0.0)
+        if minimum < -1e-6 * load_size(group.cases[0].scene):
+            tensions[solver] = minimum
+    if not tensions:
         return ""
-    named = [s for s in ("dda", "bar", "fem") if s in pulled][:2] or list(pulled)[:2]
-    deepest = " and ".join(f"{plain(pulled[solver] / 1e6, 3)} MPa in {solver}" for solver in named)
+    preferred: list[str] = [solver for solver in ("dda", "bar", "fem") if solver in tensions]
+    solvers = preferred or list(tensions)
+    deepest = " and ".join(f"{plain(tensions[solver] / 1e6, 3)} MPa in {solver}" for solver in solvers[:2])
     return f"the locked contact hides tension, down to {deepest}"
 
 
-def _damped_agreement(group: Group) -> str:
+def _damped_agreement(group: CaseGroup) -> str:
     """Warn where the agreement grows with the damping, since agreement alone then rewards the worse run."""
     pairs = []
     for case in group.cases:
-        xi, error = case.number("dda", "mode1.damping"), group.number_of_pair(case, "dda", "bar", METRICS[0])
+        xi = case.number("dda", "mode1.damping")
+        error = group.number_of_pair(case, "dda", "bar", METRICS[0])
         if xi is not None and error is not None:
             pairs.append((xi, error))
     pairs.sort()
@@ -172,56 +192,55 @@ def _damped_agreement(group: Group) -> str:
     return f"{trend}: both are damped, which is no sign of accuracy"
 
 
-def outcomes(group: Group) -> list[Block]:
+def outcomes(group: CaseGroup) -> list[Block]:
     """Name every outcome other than completed, with its sentence; cases that share it share a line."""
-    said: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
+    labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
             if row.outcome is not Outcome.COMPLETED:
-                said.setdefault((solver, row.outcome, row.notes), []).append(case.label)
-    return [
-        Callout(f"{solver}{_where(labels)}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn")
-        for (solver, outcome, notes), labels in said.items()
-    ]
-
-
-def _where(labels: Sequence[str]) -> str:
-    return "" if list(labels) == [AS_STATED] else f" at {'; '.join(labels)}"
+                labels_by_outcome.setdefault((solver, row.outcome, row.notes), []).append(case.label)
+    blocks: list[Block] = []
+    for (solver, outcome, notes), labels in labels_by_outcome.items():
+        where = "" if labels == [AS_STATED] else f" at {'; '.join(labels)}"
+        blocks.append(Callout(f"{solver}{where}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn"))
+    return blocks
 
 
 # ---- figures ------------------------------------------------------------------------------------------------------
 
 
-def _columns(group: Group) -> list[str]:
+def _columns(group: CaseGroup) -> list[str]:
     """Return the columns that some solver reports, displacement and contact pressure first."""
-    kept: set[str] = set()
+    names: set[str] = set()
     for case in group.cases:
-        kept.update(*(history.columns for history in case.histories.values()))
-    return sorted(kept, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
+        names.update(*(history.columns for history in case.histories.values()))
+    return sorted(names, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
 
 
 def history_block(
-    group: Group, columns: Sequence[str], directory: Path, apart: bool = False, without: Sequence[str] = ()
+    group: CaseGroup, columns: Sequence[str], directory: Path, apart: bool = False, without: Sequence[str] = ()
 ) -> FigureBlock:
     """Draw columns of a scene's cases over the time that all of them run, and return the figure with its caption."""
-    shown = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_PANELS).round().astype(int))]
-    window = min(_ends(shown), default=0.0)  # cases of one figure are compared over the same time
-    calm = _calm(shown, columns, without)
-    said = []
-    if len(shown) < len(group.cases):
-        said.append(f"{len(shown)} of {len(group.cases)} cases.")
-    if calm < window:
-        window = calm
-        said.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
-    elif max(_ends(shown), default=0.0) > window * 1.001:
-        said.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in shown]
-    said += [sentence for sentence in (_on_one(panels, columns), *_reading(panels, columns, apart)) if sentence]
-    file = f"{group.slug}-history.svg"
-    return histories.saved(motion.history_figure(panels, *columns, apart=apart), directory, file, " ".join(said))
+    evenly_spaced = np.linspace(0, len(group.cases) - 1, MOST_PANELS)
+    cases = [group.cases[i] for i in np.unique(evenly_spaced.round().astype(int))]
+    ends = _ends(cases)
+    window = min(ends, default=0.0)  # cases of one figure are compared over the same time
+    settled = _settling_time(cases, columns, without)
+    sentences = []
+    if len(cases) < len(group.cases):
+        sentences.append(f"{len(cases)} of {len(group.cases)} cases.")
+    if settled < window:
+        window = settled
+        sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
+    elif max(ends, default=0.0) > window * 1.001:
+        sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
+    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
+    sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
+    figure = motion.history_figure(panels, *columns, apart=apart)
+    return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences))
 
 
-def _ends(cases: Sequence[Case]) -> list[float]:
+def _ends(cases: Sequence[CaseResults]) -> list[float]:
     """Return the last instant of every history [s]."""
     ends = []
     for case in cases:
@@ -229,42 +248,48 @@ def _ends(cases: Sequence[Case]) -> list[float]:
     return ends
 
 
-def _calm(cases: Sequence[Case], columns: Sequence[str], without: Sequence[str]) -> float:
+def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without: Sequence[str]) -> float:
     """Return a time [s] by which every drawn line has long settled, and which is worth to end at; else infinity."""
     latest = 0.0
     for case in cases:
         for solver in set(case.histories) - set(without):
             for column in columns:
                 step = case.number(solver, f"{_PREFIX.get(column, column)}.settling_step")
-                latest = max(latest, math.inf if step is None else step * case.scene.time.step)
+                if step is None:
+                    return math.inf
+                latest = max(latest, step * case.scene.time.step)
     return CALM * latest
 
 
-def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> str:
+def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> list[str]:
     """Name the lines that lie on one another, and how far off they are at most."""
-    said = []
+    parts = []
     for name, others in motion.twins(panels, columns).items():
-        said += [f"{other} lies on {name} (within {bounded(off, power(off))})" for other, off in others.items()]
-    return f"{', '.join(said)}." if said else ""
+        parts += [f"{other} lies on {name} (within {bounded(off, power(off))})" for other, off in others.items()]
+    return [f"{', '.join(parts)}."] if parts else []
 
 
 def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
-    said = []
-    if span := motion.start_of(panels, columns[0]):
-        said.append(f"Oscillations too dense to draw are the band that they fill; below, the first {plain(span, 2)} s.")
+    sentences = []
+    if start := motion.start_of(panels, columns[0]):
+        sentences.append(
+            f"Oscillations too dense to draw are the band that they fill; below, the first {plain(start, 2)} s."
+        )
     if any(panel.static for panel in panels):
-        said.append("Hairline: static value.")
-    sparse = {name for panel in panels for name in panel.sparse(columns)}
+        sentences.append("Hairline: static value.")
+    sparse: set[str] = set()
+    for panel in panels:
+        sparse.update(panel.sparse(columns))
     if sparse:
-        said.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
+        sentences.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
     if references and apart:
-        said.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")
-    return said
+        sentences.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")
+    return sentences
 
 
-def _finer(case: Case, cases: Sequence[Case]) -> dict[str, History]:
+def _finer(case: CaseResults, cases: Sequence[CaseResults]) -> dict[str, History]:
     """Return the exact solutions of a case at the most instants that a case of the same motion has.
 
     They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
@@ -272,15 +297,16 @@ def _finer(case: Case, cases: Sequence[Case]) -> dict[str, History]:
     """
     finer: dict[str, History] = {}
     for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
-        own = case.histories.get(solver)
+        if solver not in case.histories:
+            continue
         same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
-        finest = min(same, key=lambda other: other.scene.time.step, default=case)
-        if own is not None and finest.scene.time.step < case.scene.time.step:
+        finest = min(same, key=lambda other: other.scene.time.step)
+        if finest.scene.time.step < case.scene.time.step:
             finer[solver] = finest.histories[solver]
     return finer
 
 
-def _motion_of(case: Case) -> dict[str, Any]:
+def _motion_of(case: CaseResults) -> dict[str, Any]:
     """Return the definition of a case without its steps."""
     definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
     time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
@@ -288,40 +314,39 @@ def _motion_of(case: Case) -> dict[str, Any]:
 
 
 def _panel(
-    case: Case, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
+    case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
 ) -> Panel:
-    some = {s: h for s, h in case.histories.items() if s not in without and set(columns) & set(h.columns)}
-    shown = {s: h.until(window) for s, h in some.items()}
-    reference = case.reference if case.reference in shown else None
+    drawn = {}
+    for solver, history in case.histories.items():
+        if solver not in without and set(columns) & set(history.columns):
+            drawn[solver] = history.until(window)
+    reference = case.reference if case.reference in drawn else None
     static = {}
     for column in columns:
         metric = f"{_PREFIX.get(column, column)}.static"
-        known = [case.number(solver, metric) for solver in (reference or "", "dda", *shown)]
-        if (value := next((v for v in known if v is not None), None)) is not None:
-            static[column] = value
-    more = {solver: history.until(window) for solver, history in finer.items() if solver in shown}
-    return Panel("" if case.label == AS_STATED else case.label, shown, static, reference, finer=more)
+        values = [case.number(solver, metric) for solver in (reference or "", "dda", *drawn)]
+        numbers = [value for value in values if value is not None]
+        if numbers:
+            static[column] = numbers[0]
+    finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
+    title = "" if case.label == AS_STATED else case.label
+    return Panel(title, drawn, static, reference, finer=finer_drawn)
 
 
-def drift_values(group: Group) -> list[tuple[int, float]]:
+def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
     """Return elements a side and static displacement [m] of fem on corner point springs, where meshes vary."""
     cases = [case for case in group.cases if case.scene.fem.foundation == "corner" and case.scene.fem.mesh is None]
-    found = {case.scene.fem.per_side: case.number("fem", "displacement.static") for case in cases}
-    return sorted((n, v) for n, v in found.items() if v is not None)
+    displacements = {case.scene.fem.per_side: case.number("fem", "displacement.static") for case in cases}
+    return sorted((n, v) for n, v in displacements.items() if v is not None)
 
 
-def _drift_blocks(group: Group, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
-    n, v = np.array([float(n) for n, _ in drift]), np.array([v for _, v in drift])
+def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+    n, v = np.array(drift, dtype=float).T
     slope = float(np.polyfit(np.log2(n), v, 1)[0])
     dda = group.cases[0].number("dda", "displacement.static")
-    note = f": {plain(1e3 * slope, 3)} mm per doubling of n"
-    figure = histories.line_figure(
-        [histories.Line("fem", n, 1e3 * v, note)],
-        "Elements a side n",
-        "Static displacement [mm]",
-        {} if dda is None else {"dda": 1e3 * dda},
-        log2_x=True,
-    )
+    levels = {} if dda is None else {"dda": 1e3 * dda}
+    line = histories.Line("fem", n, 1e3 * v, f": {plain(1e3 * slope, 3)} mm per doubling of n")
+    figure = histories.line_figure([line], "Elements a side n", "Static displacement [mm]", levels, log2_x=True)
     caption = "Static displacement on corner point springs over the mesh, with the fitted slope."
     return [
         histories.saved(figure, directory, f"{group.slug}-drift.svg", caption),

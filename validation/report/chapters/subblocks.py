@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
@@ -39,34 +39,43 @@ TURNING = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: conclusions over all scenes."""
-    found = {group.name: group for group in groups(results, manifest)}
-    blocks = opening(manifest)
-    blocks += [Paragraph(PRACTICE, "lead"), Heading("Error against run time", 2)]
-    blocks += _time_figures(found, directory)
-    blocks += [Paragraph(LOCKED), *_tables(found, _patterns, ("subblocks-axial", "subblocks-rocking"))]
-    blocks += [*_growth(found), Heading("Glue", 2), Paragraph(GLUED), *_tables(found, _glue, ("subblocks-best-glue",))]
-    blocks += [Heading("Rocking", 2), Paragraph(TURNING), *_tables(found, _rocking, ("rocking",))]
-    return blocks
+    groups = groups_by_name(results, manifest)
+    return [
+        *opening(manifest),
+        Paragraph(PRACTICE, "lead"),
+        Heading("Error against run time", 2),
+        *_time_figures(groups, directory),
+        Paragraph(LOCKED),
+        *_tables(groups, _patterns, ("subblocks-axial", "subblocks-rocking")),
+        *_growth(groups),
+        Heading("Glue", 2),
+        Paragraph(GLUED),
+        *_tables(groups, _glue, ("subblocks-best-glue",)),
+        Heading("Rocking", 2),
+        Paragraph(TURNING),
+        *_tables(groups, _rocking, ("rocking",)),
+    ]
 
 
-def _tables(found: dict[str, Group], make: Any, names: tuple[str, ...]) -> list[Block]:
-    return [make(found[name]) for name in names if name in found]
+def _tables(groups: dict[str, CaseGroup], make: Any, names: tuple[str, ...]) -> list[Block]:
+    return [make(groups[name]) for name in names if name in groups]
 
 
-def _seconds(case: Case) -> float:
+def _seconds(case: CaseResults) -> float:
     row = case.rows.get("dda")
     return float(sum(row.seconds.values())) if row else 0.0
 
 
-def _count(case: Case) -> int:
+def _count(case: CaseResults) -> int:
     return (case.scene.block.subdivide or (1, 1))[1]
 
 
-def _line(name: str, group: Group, cases: list[Case], reference: str, metric: str) -> Line | None:
-    """Return one way to refine as a line: seconds and error, each point with its count."""
+def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str, metric: str) -> Line | None:
+    """Return one method of refinement as a line: seconds and error, each point with its count."""
     points = []
     for case in cases:
-        seconds, error = _seconds(case), group.number_of_pair(case, "dda", reference, metric)
+        seconds = _seconds(case)
+        error = group.number_of_pair(case, "dda", reference, metric)
         if seconds > 0 and error:
             points.append((seconds, error, str(_count(case))))
     if not points:
@@ -75,39 +84,37 @@ def _line(name: str, group: Group, cases: list[Case], reference: str, metric: st
     return Line(name, np.array(x), np.array(y), " ".join(notes))
 
 
-def _time_figures(found: dict[str, Group], directory: Path) -> list[Block]:
+def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
     """Return error against seconds for both motions; a number at a point counts the sub-blocks upwards."""
     blocks: list[Block] = []
-    wanted = {
+    motions = {
         "axial": ("displacement.l2", "Displacement under pressure"),
         "rocking": ("horizontal.l2", "Horizontal displacement under a sideways traction"),
     }
-    for kind, (metric, title) in wanted.items():
-        group = found.get(f"subblocks-{kind}")
+    for kind, (metric, title) in motions.items():
+        group = groups.get(f"subblocks-{kind}")
         if group is None:
             continue
         lines = [_line(name, group, _of_pattern(group, name), "fem", metric) for name in ("squares", "triangles")]
-        if kind == "axial" and (column := found.get("subblocks-column")) is not None:
+        column = groups.get("subblocks-column")
+        if kind == "axial" and column is not None:
             lines.append(_line("columns, μ = 0", column, list(column.cases), "bar", metric))
-        drawn = [line for line in lines if line is not None]
-        if drawn:
+        lines_with_points = [line for line in lines if line is not None]
+        if lines_with_points:
             caption = f"{title}: error against run time. A number at a point counts the sub-blocks along a side."
-            figure = work_figure(drawn, "Seconds of the run", "Relative L2 error")
+            figure = work_figure(lines_with_points, "Seconds of the run", "Relative L2 error")
             blocks.append(histories.saved(figure, directory, f"subblocks-time-{kind}.svg", caption))
     return blocks
 
 
-def _of_pattern(group: Group, pattern: str) -> list[Case]:
+def _of_pattern(group: CaseGroup, pattern: str) -> list[CaseResults]:
     return [case for case in group.cases if case.scene.block.pattern == pattern]
 
 
-def _ratio(case: Case, metric: str = "mode1.frequency") -> float | None:
-    own, reference = case.number("dda", metric), case.number("fem", metric)
-    return None if own is None or not reference else own / reference - 1
-
-
-def _short(value: float | None) -> str:
-    return DASH if value is None else short(value)
+def _frequency_error(case: CaseResults) -> float | None:
+    """Return the error of DDA's first frequency against the elements' [1]."""
+    dda, fem = (case.number(solver, "mode1.frequency") for solver in ("dda", "fem"))
+    return None if dda is None or not fem else dda / fem - 1
 
 
 def _percent(value: float | None) -> str:
@@ -116,13 +123,13 @@ def _percent(value: float | None) -> str:
     return f"−{percent(-value)}" if value < 0 else percent(value)
 
 
-def _patterns(group: Group) -> Table:
+def _patterns(group: CaseGroup) -> Table:
     """Return errors and cost for each pattern and count."""
     metric = "horizontal.l2" if group.cases[0].scene.load.traction else "displacement.l2"
     rows = []
     for case in group.cases:
         work = case.rows["dda"].work if "dda" in case.rows else {}
-        errors = (_percent(_ratio(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
+        errors = (_percent(_frequency_error(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
         cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
         rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
     titles = (Column("Pattern"), Column("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
@@ -130,11 +137,11 @@ def _patterns(group: Group) -> Table:
     return Table(titles, tuple(rows), f"{group.title}, against quadratic elements")
 
 
-def _growth(found: dict[str, Group]) -> list[Block]:
+def _growth(groups: dict[str, CaseGroup]) -> list[Block]:
     """Return one sentence on how the seconds of a step grow with the number of squares."""
     points = []
     for name in ("subblocks-rocking", "subblocks-locking"):
-        for case in _of_pattern(found[name], "squares") if name in found else ():
+        for case in _of_pattern(groups[name], "squares") if name in groups else ():
             row = case.rows.get("dda")
             if row is not None and row.work.get("unknowns", 0) > 300:
                 points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
@@ -142,31 +149,31 @@ def _growth(found: dict[str, Group]) -> list[Block]:
         return []
     unknowns, seconds = np.array(points).T
     slope = np.polyfit(np.log(unknowns), np.log(seconds), 1)[0]
-    largest = f"{unknowns.max():.0f} unknowns"
-    said = f"Beyond 300 unknowns the time of a step grows as their number to the power {slope:.2f} ({largest})."
-    return [Paragraph(said)]
+    text = "Beyond 300 unknowns the time of a step grows as their number to the power"
+    return [Paragraph(f"{text} {slope:.2f} ({unknowns.max():.0f} unknowns).")]
 
 
-def _glue(group: Group) -> Table:
+def _glue(group: CaseGroup) -> Table:
     """Return the error of the first frequency of squares for each glue, in both motions."""
     errors: dict[float, dict[bool, str]] = {}
     for case in group.cases:
-        glued = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
-        glued[bool(case.scene.load.traction)] = _percent(_ratio(case))
-    rows = tuple((short(ratio), *glued.values()) for ratio, glued in errors.items())
+        errors_by_motion = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
+        errors_by_motion[bool(case.scene.load.traction)] = _percent(_frequency_error(case))
+    rows = tuple((short(ratio), *errors_by_motion.values()) for ratio, errors_by_motion in errors.items())
     titles = (Column("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
     return Table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
 
 
-def _rocking(group: Group) -> Table:
+def _rocking(group: CaseGroup) -> Table:
     """Return the rocking frequencies and damping ratios of block and elements for each patch width."""
     rows = []
     for case in group.cases:
         cells = []
         for metric in ("mode1.frequency", "mode1.damping"):
-            cells += [_short(case.number(solver, metric)) for solver in ("dda", "fem")]
+            values = [case.number(solver, metric) for solver in ("dda", "fem")]
+            cells += [DASH if value is None else short(value) for value in values]
         width = case.scene.fem.patch_width or case.scene.block.base_length
-        rows.append((short(width), *cells, _percent(_ratio(case))))
+        rows.append((short(width), *cells, _percent(_frequency_error(case))))
     titles = columns("decimal", "Patch width [m]")
     for group_title in ("ω₁ [rad/s]", "ξ₁ [1]"):
         titles += columns("decimal", "dda", "fem", group=group_title)

@@ -14,7 +14,7 @@ from validation.scenes.scene import Scene
 
 DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
-OF_POLYGONS = {"block.base", "block.top"}  # edges of a polygon, which is told by its number of vertices
+OF_POLYGONS = {"block.base", "block.top"}  # edges of a polygon, of which only the number of vertices is written
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
@@ -100,7 +100,8 @@ def percent(value: float) -> str:
 
 def span(values: Sequence[float]) -> str:
     """Return the range of fractions, ``0.26 % to 9.0 %``; one value where they read alike."""
-    low, high = percent(min(values)), percent(max(values))
+    low = percent(min(values))
+    high = percent(max(values))
     return low if low == high else f"{low} to {high}"
 
 
@@ -113,8 +114,8 @@ def cell(value: Value, factor: float = 1.0, digits: int = 4) -> str:
 
 def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
     """Return what the short words in a table's cells stand for."""
-    met = set(values)
-    return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in met)
+    words = set(values)
+    return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in words)
 
 
 def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
@@ -132,7 +133,8 @@ def _label(values: Mapping[str, str], scene: Scene) -> str:
     for field, value in values.items():
         symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))
         if field == "contact.stiffness":
-            symbol, value, unit = "p", f"{scene.contact.stiffness / scene.block.young:.4g}E", ""
+            symbol = "p"
+            value = f"{scene.contact.stiffness / scene.block.young:.4g}E"
         elif unit == " Pa":
             value, unit = _pressure(value)
         parts.append((f"{symbol} = {value}{unit}" if symbol else value).replace("-", "−"))
@@ -212,7 +214,7 @@ def _of_contact(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _of_load(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the loads, of which the pressure is told where it is zero as well, and how the outline follows."""
+    """Yield the loads, of which the pressure is given even where it is zero, and how the outline follows."""
     load = scene.load
     yield "load.pressure", f"q = {short(load.pressure, 2)} Pa"
     if load.eccentricity:
@@ -240,16 +242,15 @@ def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "damping.kinetic", "adaptive gg"
 
 
-def _of_others(scene: Scene, told: set[str]) -> Iterator[tuple[str, str]]:
-    """Yield the data of a block without words of their own here, by their keys, where they are not the defaults."""
+def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
+    """Yield the data of a block that are not `written` yet, by their keys, where they are not the defaults."""
     tables = {"block": scene.stated_block, "contact": scene.stated_contact, "load": scene.stated_load}
-    known = told | OF_POLYGONS
     for name, table in (tables | {"damping": scene.damping}).items():
         if table is None:
             continue
         for key, field in type(table).model_fields.items():
             value = getattr(table, key)
-            if f"{name}.{key}" not in known and value != field.default:
+            if f"{name}.{key}" not in written | OF_POLYGONS and value != field.default:
                 yield f"{name}.{key}", f"{key.replace('_', ' ')} = {value}"
 
 
@@ -273,9 +274,10 @@ def _of_mesh(scene: Scene) -> list[tuple[str, str]]:
 
 def _of_column(scene: Scene) -> list[tuple[str, str]]:
     """Return the data of a column and its drive, by their fields."""
-    column, drive = scene.column, scene.input
+    column = scene.column
     if column is None:
         return []
+    drive = scene.input
     blocks = sum(layer.blocks for layer in column.layer)
     joints = f"{len(column.joint)} joint{'s' * (len(column.joint) > 1)}" if column.joint else "no joints"
     glue = "welded" if column.glue is None else f"glued with {short(column.glue, 2)} Pa/m"

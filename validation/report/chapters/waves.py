@@ -10,12 +10,19 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import (
+    CaseGroup,
+    CaseResults,
+    DerivedRows,
+    derived_rows,
+    groups_by_name,
+    verdicts_of,
+)
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.waves import COLORS as BY_SCHEME
-from validation.report.figures.waves import Trace, Travel, site_figure, travel_figure
+from validation.report.figures.waves import SiteTrace, Travel, site_figure, travel_figure
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -23,24 +30,24 @@ from validation.scenes.scene import Scene
 
 SCHEMES = {1.0: "(1/2, 1)", 0.5: "(1/4, 1/2)"}  # by delta
 COLORS = {delta: BY_SCHEME[scheme] for delta, scheme in SCHEMES.items()}
-Rows = dict[tuple[str, str], Mapping[str, Any]]  # (case, name) -> metrics of a derived row
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: waves in blocks, joints and base, the site."""
-    found = {group.name: group for group in groups(results, manifest)}
-    rows: Rows = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
-    measured = travels(found, rows)
-    blocks = opening(manifest, verdicts_of(found.values()), lead(measured))
+    groups = groups_by_name(results, manifest)
+    rows = derived_rows(manifest)
+    measured = travels(groups, rows)
+    blocks = opening(manifest, verdicts_of(groups.values()), lead(measured))
     if measured:
-        drawn = [_curve(data) for data in manifest.get("data", {}).get("curves", [])]
+        curves = [_curve(data) for data in manifest.get("data", {}).get("curves", [])]
         caption = (
             "Waves in welded blocks: closed forms (lines) and what was measured on stepped histories (dots); solid "
             "c dt/h = 1, long dashes 1/2, short dashes 1/4, dots 1/10."
         )
-        blocks.append(histories.saved(travel_figure(drawn, measured), directory, "waves-travel.svg", caption))
-    blocks += [table for table in (_others(found, rows), _joints(found, rows), _base(found, rows)) if table.rows]
-    return [*blocks, *_site(found, directory)]
+        blocks.append(histories.saved(travel_figure(curves, measured), directory, "waves-travel.svg", caption))
+    tables = (_others(groups, rows), _joints(groups, rows), _base(groups, rows))
+    blocks += [table for table in tables if table.rows]
+    return [*blocks, *_site(groups, directory)]
 
 
 def _curve(data: Mapping[str, Any]) -> Travel:
@@ -60,19 +67,20 @@ def _courant(scene: Scene) -> float:
     return round(speed * scene.time.step * layer.blocks / layer.thickness, 6)
 
 
-def _waves(case: Case, rows: Rows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
+def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
     """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
-    found = []
+    waves = []
     for (scene, name), metrics in rows.items():
         words = name.split()
         if scene == case.name and words[0] == "dda" and isinstance(metrics.get(metric), float):
-            found.append((int(words[2]), metrics))
-    return sorted(found, key=lambda wave: wave[0])
+            waves.append((int(words[2]), metrics))
+    return sorted(waves, key=lambda wave: wave[0])
 
 
-def travels(found: Mapping[str, Group], rows: Rows) -> list[Travel]:
+def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[Travel]:
     """Return the waves measured in welded blocks, by case."""
-    group, measured = found.get("waves-blocks"), []
+    group = groups.get("waves-blocks")
+    measured = []
     for case in group.cases if group else ():
         waves = _waves(case, rows, "wave.left")
         if waves and case.scene.time.delta in SCHEMES:
@@ -87,30 +95,30 @@ def lead(measured: Sequence[Travel]) -> str:
     for travel in measured:
         at = np.flatnonzero(travel.blocks == 10)
         if travel.scheme == "(1/2, 1)" and travel.courant == 0.5 and at.size:
-            speed, left = travel.speed[at[0]], travel.left[at[0]]
+            speed_error = percent(travel.speed[at[0]])
+            amplitude = percent(travel.amplitude[at[0]])
             return (
-                f"Ten blocks a wavelength are a rule for the speed only: at c dt/h = 1/2 the wave is {percent(speed)} "
-                f"too fast, but under (1/2, 1) {percent(left)} of its amplitude is left after ten wavelengths."
+                f"Ten blocks a wavelength are a rule for the speed only: at c dt/h = 1/2 the wave is {speed_error} "
+                f"too fast, but under (1/2, 1) {amplitude} of its amplitude is left after ten wavelengths."
             )
     return ""
 
 
-def _others(found: Mapping[str, Group], rows: Rows) -> Table:
+def _others(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
     """Return the waves in glued blocks, under kinetic damping, and in shear."""
     lines = []
     for name in ("waves-glue", "waves-discount", "waves-shear"):
-        for case in found[name].cases if name in found else ():
-            column, time = case.scene.column, case.scene.time
+        for case in groups[name].cases if name in groups else ():
+            column = case.scene.column
             if column is None:
                 continue
             layer = column.layer[0]
-            glue = (
-                DASH
-                if column.glue is None
-                else short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
-            )
+            glue = DASH
+            if column.glue is not None:
+                glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
+            time = case.scene.time
+            scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
             for count, wave in _waves(case, rows, "wave.left"):
-                scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
                 numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
                 lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
     titles = (
@@ -123,11 +131,11 @@ def _others(found: Mapping[str, Group], rows: Rows) -> Table:
 # ---- joints and base ------------------------------------------------------------------------------------------------
 
 
-def _joints(found: Mapping[str, Group], rows: Rows) -> Table:
+def _joints(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
     """Return what a joint of kj = rho c w lets through."""
     lines = []
-    for group in (group for name, group in found.items() if name.startswith("waves-joint")):
-        for case in group.cases:
+    for name, group in groups.items():
+        for case in group.cases if name.startswith("waves-joint") else ():
             for count, wave in _waves(case, rows, "joint.transmitted"):
                 parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
                 scheme = SCHEMES.get(case.scene.time.delta, DASH)
@@ -137,15 +145,16 @@ def _joints(found: Mapping[str, Group], rows: Rows) -> Table:
     return Table(titles, tuple(lines), caption)
 
 
-def _base(found: Mapping[str, Group], rows: Rows) -> Table:
+def _base(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
     """Return what a transmitting base of the column's own impedance sends back."""
-    lines, counts = [], list[int]()
-    for case in found["waves-base"].cases if "waves-base" in found else ():
+    lines = []
+    counts: list[int] = []
+    for case in groups["waves-base"].cases if "waves-base" in groups else ():
         waves = _waves(case, rows, "base.reflected")
         counts = [count for count, _ in waves]
         scheme = SCHEMES.get(case.scene.time.delta, DASH)
-        shown = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
-        lines.append((scheme, f"{_courant(case.scene):g}", *shown))
+        reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
+        lines.append((scheme, f"{_courant(case.scene):g}", *reflected))
     titles = (
         *columns("text", "α, δ"),
         *columns("decimal", "c dt/h"),
@@ -158,40 +167,43 @@ def _base(found: Mapping[str, Group], rows: Rows) -> Table:
 # ---- the site -------------------------------------------------------------------------------------------------------
 
 
-def _site(found: Mapping[str, Group], directory: Path) -> list[Block]:
+def _site(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
     """Return the page of the layered site: surface and base under two schemes and exactly."""
-    groups_of_site = [found[name] for name in ("waves-site", "waves-site-usual") if name in found]
-    traces: dict[str, list[Trace]] = {DISPLACEMENT: [], PRESSURE: []}
+    groups_of_site = [groups[name] for name in ("waves-site", "waves-site-usual") if name in groups]
+    traces: dict[str, list[SiteTrace]] = {DISPLACEMENT: [], PRESSURE: []}
     for group in groups_of_site:
         case = group.cases[0]
         name = f"dda, dt = {case.scene.time.step:g} s,\n{SCHEMES.get(case.scene.time.delta, '')}"
-        shown = [("dda", name, COLORS[case.scene.time.delta], 0.6)]
-        shown = [("layers", "exact layers", "#999999", 1.6)] * (not traces[DISPLACEMENT]) + shown
-        for solver, label, color, width in shown:
+        lines = [("dda", name, COLORS[case.scene.time.delta], 0.6)]
+        if not traces[DISPLACEMENT]:  # once, below the others
+            lines.insert(0, ("layers", "exact layers", "#999999", 1.6))
+        for solver, label, color, width in lines:
             history = case.histories.get(solver)
-            for column, own in traces.items():
+            for column, traces_of_column in traces.items():
                 if history is not None and column in history.columns:
-                    own.append(Trace(label, color, width, history.time, history.columns[column]))
+                    traces_of_column.append(SiteTrace(label, color, width, history.time, history.columns[column]))
     if not all(traces.values()):
         return []
     rows = [("Surface displacement", "m", traces[DISPLACEMENT]), ("Shear stress on the base", "Pa", traces[PRESSURE])]
     caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
     return [
         Heading("A site under a record", 2),
-        Paragraph(_said(groups_of_site)),
+        Paragraph(_site_sentence(groups_of_site)),
         histories.saved(site_figure(rows), directory, "waves-site.svg", caption),
     ]
 
 
-def _said(site: Sequence[Group]) -> str:
+def _site_sentence(site: Sequence[CaseGroup]) -> str:
     """Say how far DDA is from the exact layers, case by case."""
     parts = []
     for group in site:
         case = group.cases[0]
-        errors = [group.number_of_pair(case, "dda", "layers", f"{name}.l2") for name in ("displacement", "pressure")]
-        if all(error is not None for error in errors):
-            surface, base = (percent(float(error or 0.0)) for error in errors)
+        surface = group.number_of_pair(case, "dda", "layers", "displacement.l2")
+        base = group.number_of_pair(case, "dda", "layers", "pressure.l2")
+        if surface is not None and base is not None:
             scheme = f"dt = {case.scene.time.step:g} s and {SCHEMES.get(case.scene.time.delta, '')}"
-            parts.append(f"with {scheme} DDA is {surface} off at the surface and {base} off on the base")
+            parts.append(
+                f"with {scheme} DDA is {percent(surface)} off at the surface and {percent(base)} off on the base"
+            )
     text = f"{'; '.join(parts)} (relative L2 against the exact layers)."
     return text[:1].upper() + text[1:] if parts else ""

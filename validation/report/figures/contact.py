@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from validation.report.figures.histories import WIDTH, Margins, axes_grid, house_style, share_left
+from validation.report.figures.histories import Margins, axes_grid, house_style, map_axes, share_left
 from validation.runs.history import Array
 
 COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7")
-CELL, LEFT, TOP, BOTTOM, GAP = 6.5, 16.0, 6.0, 9.0, 6.0  # mm
+CELL = 6.5  # mm, height of a cell of a map
 
 
 @dataclass(frozen=True)
-class Curve:
+class RestitutionCurve:
     """The restitution of a scheme over Omega, and impacts that were run."""
 
     name: str
@@ -27,7 +27,7 @@ class Curve:
     impacts: tuple[tuple[float, float], ...] = ()  # Omega and e
 
 
-def restitution_figure(curves: Sequence[Curve], marks: Mapping[float, str]) -> Figure:
+def restitution_figure(curves: Sequence[RestitutionCurve], marks: Mapping[float, str]) -> Figure:
     """Draw mean and range of e over Omega, a panel for each scheme; dots are impacts that were run."""
     top = 1.05 * max(float(np.max(curve.high)) for curve in curves)
     with house_style():
@@ -59,26 +59,15 @@ class NumberMap:
 
 def number_maps(maps: Sequence[Sequence[NumberMap]], rows: Sequence[str], columns: Sequence[str]) -> Figure:
     """Draw maps in a grid; shade and number say the same."""
-    across = (WIDTH - LEFT - 2.0 - GAP * (len(maps[0]) - 1)) / len(maps[0])
-    each = TOP + CELL * len(rows)
-    height = each * len(maps) + BOTTOM
     with house_style():
-        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
-        for i, line in enumerate(maps):
-            bottom = height - each * (i + 1)
-            for k, shown in enumerate(line):
-                left = LEFT + k * (across + GAP)
-                axes = figure.add_axes((left / WIDTH, bottom / height, across / WIDTH, CELL * len(rows) / height))
-                axes.imshow(np.nan_to_num(shown.values), cmap="Greys", vmin=0, vmax=1.6, aspect="auto")
-                for (r, c), value in np.ndenumerate(shown.values):
-                    axes.text(
-                        c, r, shown.texts[r][c], ha="center", va="center", color="white" if value > 0.9 else "black"
-                    )
-                axes.set_title(shown.title)
-                last = i == len(maps) - 1
-                axes.set_xticks(range(len(columns)), list(columns) if last else [""] * len(columns))
-                axes.set_yticks(range(len(rows)), list(rows) if k == 0 else [""] * len(rows))
-                axes.tick_params(length=0)
-                if last:
-                    axes.set_xlabel("dt [ms]")
+        figure, grid = map_axes(len(maps), len(maps[0]), rows, columns, CELL)
+        for line, axes_of_line in zip(maps, grid, strict=True):
+            for number_map, axes in zip(line, axes_of_line, strict=True):
+                axes.imshow(np.nan_to_num(number_map.values), cmap="Greys", vmin=0, vmax=1.6, aspect="auto")
+                for (r, c), value in np.ndenumerate(number_map.values):
+                    color = "white" if value > 0.9 else "black"
+                    axes.text(c, r, number_map.texts[r][c], ha="center", va="center", color=color)
+                axes.set_title(number_map.title)
+        for axes in grid[-1]:
+            axes.set_xlabel("dt [ms]")
     return figure

@@ -14,59 +14,62 @@ from validation.report.figures.curves import HAIR, style_of
 from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, one_axes
 from validation.studies.work.points import COSTS, ROUNDING, Point, floor, front
 
-SHOWN = ("displacement", "contact pressure")
+QUANTITIES = ("displacement", "contact pressure")
 NOTHING = 1e-12  # smaller differences are rounding
 REFERENCES = {"bar": "model form and mesh", "continuum": "everything"}
 
 
-def work_figure(found: Sequence[Point]) -> Figure:
-    """Draw error against seconds and against work for each quantity shown, a line for each method as it is refined.
+def work_figure(points: Sequence[Point]) -> Figure:
+    """Draw error against seconds and against work for each quantity that has one, a line for each method.
 
     Grey steps are the front that no run beats in both, the dotted level is DDA's model form, hollow points lie below
     the reference's own uncertainty.
     """
     with house_style():
         margins = Margins(15.0, 4.0, 13.0, 9.5)
-        shown = [name for name in SHOWN if _differs(found, name)]
+        quantities = [name for name in QUANTITIES if _differs(points, name)]
         panels = list(itertools.product(COSTS, REFERENCES))
-        figure, grid = axes_grid([(34.0, 4.0)] * len(shown), len(panels), margins)
-        for row, quantity in zip(grid, shown, strict=True):
+        figure, grid = axes_grid([(34.0, 4.0)] * len(quantities), len(panels), margins)
+        for row, quantity in zip(grid, quantities, strict=True):
             for axes, (cost, reference) in zip(row, panels, strict=True):
-                _panel(axes, found, quantity, cost, reference)
+                _panel(axes, points, quantity, cost, reference)
                 if row is grid[0]:
                     axes.set_title(f"{REFERENCES[reference]}\n(against the {reference})")
                 if row is grid[-1]:
-                    axes.set_xlabel("Seconds" if cost == "seconds" else "Unknowns × steps", labelpad=1.5)
+                    label = "Seconds" if cost == "seconds" else "Unknowns × steps"
+                    axes.set_xlabel(label, labelpad=1.5)
                 else:
                     axes.tick_params(labelbottom=False)
             row[0].set_ylabel(quantity.capitalize())
             _share_limits(row)
-        _legend(figure, found)
+        _legend(figure, points)
     return figure
 
 
-def _differs(found: Sequence[Point], quantity: str) -> bool:
+def _differs(points: Sequence[Point], quantity: str) -> bool:
     """Whether some run has an error in a quantity that is more than rounding."""
-    pairs = itertools.product(found, REFERENCES)
+    pairs = itertools.product(points, REFERENCES)
     return any(point.errors.get((quantity, reference), 0.0) > NOTHING for point, reference in pairs)
 
 
-def _panel(axes: Axes, found: Sequence[Point], quantity: str, cost: str, reference: str) -> None:
+def _panel(axes: Axes, points: Sequence[Point], quantity: str, cost: str, reference: str) -> None:
     axes.set(xscale="log", yscale="log")
-    shown: dict[str, list[tuple[float, float]]] = {}
-    for point in found:
-        x, y = COSTS[cost](point), point.errors.get((quantity, reference), 0.0)
+    pairs_by_method: dict[str, list[tuple[float, float]]] = {}
+    for point in points:
+        x = COSTS[cost](point)
+        y = point.errors.get((quantity, reference), 0.0)
         if x > 0 and y > 0:
-            shown.setdefault(point.method, []).append((x, y))
-    for method, own in shown.items():
+            pairs_by_method.setdefault(point.method, []).append((x, y))
+    for method, pairs in pairs_by_method.items():
         color = style_of(method).color
-        axes.plot(*np.array(own).T, lw=0.8, color=color, zorder=3)
-        for a, b in own:
-            axes.plot(a, b, "o", ms=2.6, mec=color, mew=0.6, mfc="white" if b < ROUNDING else color, zorder=4)
-    best = front(list(itertools.chain(*shown.values())))
+        axes.plot(*np.array(pairs).T, lw=0.8, color=color, zorder=3)
+        for x, y in pairs:
+            face = "white" if y < ROUNDING else color
+            axes.plot(x, y, "o", ms=2.6, mec=color, mew=0.6, mfc=face, zorder=4)
+    best = front(list(itertools.chain(*pairs_by_method.values())))
     if best:
         axes.step(*np.array(best).T, where="post", color="#bbbbbb", lw=2.2, zorder=1)
-    level = floor(found, quantity, reference)
+    level = floor(points, quantity, reference)
     if level:
         axes.axhline(level, color=style_of("dda").color, lw=HAIR, ls=":", zorder=2)
 
@@ -85,10 +88,10 @@ def _share_limits(row: Sequence[Axes]) -> None:
         axes.tick_params(labelleft=i == 0)
 
 
-def _legend(figure: Figure, found: Sequence[Point]) -> None:
+def _legend(figure: Figure, points: Sequence[Point]) -> None:
     """Name the methods in their colours above the panels."""
     x = 0.09
-    for method in dict.fromkeys(p.method for p in found):
+    for method in dict.fromkeys(point.method for point in points):
         figure.text(x, 0.995, method, color=style_of(method).color, va="top")
         x += 0.04 + 0.009 * len(method)
 

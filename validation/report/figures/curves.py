@@ -22,7 +22,8 @@ from validation.solvers.registry import by_role, get_solver, is_solver
 TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
 RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
 MOST_DOTS = 400  # samples; more dots cannot be told apart
-SMALL, HAIR = 7.0, 0.4  # pt
+SMALL = 7.0  # pt, of letters
+HAIR = 0.4  # pt, of lines
 GREY = "#6b6b6b"
 HOUSE_STYLE = {
     "font.family": "sans-serif",
@@ -76,12 +77,17 @@ def style_of(name: str) -> LineStyle:
     """Return the style of a solver; an unknown name gets one that depends on the name alone."""
     if name == EXACT:
         return LineStyle("#444444", (), 0.8, 1)
-    known = get_solver(name).line if is_solver(name) else None
-    if known is not None:
-        return known
+    declared = get_solver(name).line if is_solver(name) else None
+    if declared is not None:
+        return declared
     code = zlib.crc32(name.encode())
     color = _OTHER_COLORS[code % len(_OTHER_COLORS)]
     return LineStyle(color, _OTHER_DASHES[code // len(_OTHER_COLORS) % len(_OTHER_DASHES)], 1.0, 2)
+
+
+def dash_style(dash: tuple[float, ...]) -> str | tuple[float, tuple[float, ...]]:
+    """Return the line style of matplotlib for dashes and gaps [pt], solid where there are none."""
+    return (0, dash) if dash else "-"
 
 
 def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
@@ -89,10 +95,10 @@ def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
     if x.size <= points:
         return x, y
     edges = np.linspace(0, x.size, points // 2 + 1).astype(int)
-    keep = {0, x.size - 1}
+    indices = {0, x.size - 1}
     for start, stop in itertools.pairwise(edges):
-        keep |= {start + int(np.argmin(y[start:stop])), start + int(np.argmax(y[start:stop]))}
-    index = np.array(sorted(keep))
+        indices |= {start + int(np.argmin(y[start:stop])), start + int(np.argmax(y[start:stop]))}
+    index = np.array(sorted(indices))
     return x[index], y[index]
 
 
@@ -102,21 +108,21 @@ def envelope(x: Array, y: Array, bins: int = 40) -> tuple[Array, Array]:
     return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, np.maximum.reduceat(np.abs(y), edges[:-1])
 
 
-def nudge(wanted: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
-    """Return places at least `gap` apart, in the order of and as near as possible to the wanted ones.
+def nudge(places: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
+    """Return places at least `gap` apart, in the order of and as near as possible to the given ones.
 
-    The least-squares answer: isotonic regression of ``wanted - gap * rank``, clipped so that all places
+    The least-squares answer: isotonic regression of ``places - gap * rank``, clipped so that all places
     stay within [low, high] as long as they fit.
     """
     from scipy.optimize import isotonic_regression
 
-    goal = np.asarray(wanted, dtype=float)
-    order = np.argsort(goal, kind="stable")
-    steps = gap * np.arange(goal.size)
-    level = isotonic_regression(goal[order] - steps).x
-    places = np.empty_like(goal)
-    places[order] = np.clip(level, low, max(low, high - gap * (goal.size - 1))) + steps
-    return places
+    targets = np.asarray(places, dtype=float)
+    order = np.argsort(targets, kind="stable")
+    steps = gap * np.arange(targets.size)
+    level = isotonic_regression(targets[order] - steps).x
+    nudged = np.empty_like(targets)
+    nudged[order] = np.clip(level, low, max(low, high - gap * (targets.size - 1))) + steps
+    return nudged
 
 
 def engineering(largest: float, unit: str) -> tuple[float, str]:
@@ -141,23 +147,25 @@ class Panel:
 
     def sparse(self, columns: Sequence[str]) -> list[str]:
         """Return the solvers that are drawn as dots in one of some columns."""
-        found = []
+        solvers = []
         for column in columns:
-            found += [s for s, h in self.drawn(column).items() if is_sparse(s, h.time, h.columns[column])]
-        return found
+            solvers += [s for s, h in self.drawn(column).items() if is_sparse(s, h.time, h.columns[column])]
+        return solvers
 
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
-        own = {name: self.finer.get(name, history) for name, history in self.histories.items()}
-        return {name: history for name, history in own.items() if column in history.columns}
+        finest = {name: self.finer.get(name, history) for name, history in self.histories.items()}
+        return {name: history for name, history in finest.items() if column in history.columns}
 
 
 def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
-    found = [np.zeros(1)]
+    columns = [np.zeros(1)]
     for panel in panels:
-        found += [history.columns[column] for history in panel.drawn(column).values()]
-    values = np.concatenate(found if len(found) > 1 else [np.zeros(1), np.ones(1)])
+        columns += [history.columns[column] for history in panel.drawn(column).values()]
+    if len(columns) == 1:  # no history: a range that is not empty
+        columns.append(np.ones(1))
+    values = np.concatenate(columns)
     values = values[np.isfinite(values)]
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
@@ -169,7 +177,7 @@ def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
     if base is None or column not in base.columns:
         return {}
     scale = abs(panel.static.get(column, 0.0)) or float(np.abs(base.columns[column]).max()) or 1.0
-    found = {}
+    envelopes = {}
     for solver, history in panel.histories.items():
         if (
             solver not in (panel.reference, panel.like_base)
@@ -178,8 +186,8 @@ def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
         ):
             with np.errstate(all="ignore"):  # a run that blew up differs by infinity
                 scaled = (history.columns[column] - base.columns[column]) / scale
-            found[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
-    return found
+            envelopes[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
+    return envelopes
 
 
 def is_sparse(solver: str, x: Array, y: Array) -> bool:

@@ -31,7 +31,7 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Panel:
+class TracePanel:
     """Traces in one pair of axes."""
 
     title: str
@@ -42,7 +42,7 @@ class Panel:
     legend: Place = "best"
 
 
-def panels_figure(panels: Sequence[Panel]) -> Figure:
+def panels_figure(panels: Sequence[TracePanel]) -> Figure:
     """Draw panels side by side, each with axes of its own."""
     with house_style():
         figure, (row,) = axes_grid([(HEIGHT, 0.0)], len(panels), Margins(15.0, 3.0, 6.0, 10.0, 16.0))
@@ -51,7 +51,7 @@ def panels_figure(panels: Sequence[Panel]) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, panel: Panel) -> None:
+def _draw(axes: Axes, panel: TracePanel) -> None:
     if panel.logarithmic:
         axes.set(xscale="log", yscale="log")
     for trace in panel.traces:

@@ -18,6 +18,7 @@ from validation.report.blocks import FigureBlock
 from validation.report.figures.curves import (
     HAIR,
     HOUSE_STYLE,
+    dash_style,
     nudge,
     style_of,
     thin,
@@ -30,7 +31,8 @@ WIDTH = 166.0  # mm, text width of the report
 LABEL_GAP = 3.0  # mm between the names of two lines
 LETTER = 1.5  # mm, width of a letter of a name, amply
 COLUMN_GAP = 4.0  # mm between two panels
-TITLE_LETTER, TITLE_LINE = 1.6, 3.2  # mm, letter and line of a panel's title, amply
+TITLE_LETTER = 1.6  # mm, width of a letter of a panel's title, amply
+TITLE_LINE = 3.2  # mm, height of a line of it, amply
 
 
 @contextmanager
@@ -71,12 +73,43 @@ def axes_grid(
     """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
     height = margins.top + sum(map(sum, rows)) - rows[-1][1] + margins.bottom
     across = (width - margins.left - margins.right - margins.between * (columns - 1)) / columns
-    figure, grid, y = Figure(figsize=(width / 25.4, height / 25.4)), [], height - margins.top
+    left_edges = [margins.left + j * (across + margins.between) for j in range(columns)]
+    figure = Figure(figsize=(width / 25.4, height / 25.4))
+    grid = []
+    y = height - margins.top
     for row, gap in rows:
         y -= row
-        lefts = [margins.left + j * (across + margins.between) for j in range(columns)]
-        grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in lefts])
+        grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in left_edges])
         y -= gap
+    return figure, grid
+
+
+def map_axes(
+    lines: int, across: int, rows: Sequence[str], columns: Sequence[str], cell: float
+) -> tuple[Figure, list[list[Axes]]]:
+    """Return a figure for maps of numbers, `lines` times `across` axes without ticks.
+
+    A map has labelled `rows`, whose height is `cell` mm, and `columns`; rows are labelled at the left, columns below.
+    """
+    gap = 6.0  # mm, also above each line, for its titles
+    left = 16.0  # mm
+    bottom = 9.0  # mm
+    width = (WIDTH - left - 2.0 - gap * (across - 1)) / across
+    pitch = gap + cell * len(rows)
+    height = pitch * lines + bottom
+    figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
+    grid = []
+    for i in reversed(range(lines)):
+        y = (bottom + pitch * i) / height
+        left_edges = [left + k * (width + gap) for k in range(across)]
+        grid.append([figure.add_axes((x / WIDTH, y, width / WIDTH, cell * len(rows) / height)) for x in left_edges])
+    for line in grid:
+        x_labels = columns if line is grid[-1] else [""] * len(columns)
+        for axes in line:
+            y_labels = rows if axes is line[0] else [""] * len(rows)
+            axes.set_xticks(range(len(columns)), list(x_labels))
+            axes.set_yticks(range(len(rows)), list(y_labels))
+            axes.tick_params(length=0)
     return figure, grid
 
 
@@ -115,11 +148,12 @@ def label_ends(
     if not ends:
         return
     width, height = size_of(axes)
-    inverse, right = axes.transAxes.inverted(), axes.get_xlim()[1]
-    points = [inverse.transform(axes.transData.transform((right, y))) for y in ends.values()]
-    own = [float(np.clip(point[1], 0, 1)) for point in points]
-    places = nudge(own, LABEL_GAP / height, -below / height, 1 + 1.0 / height)
-    for name, start, place in zip(ends, own, places, strict=True):
+    right = axes.get_xlim()[1]
+    to_axes = axes.transAxes.inverted()
+    points = [to_axes.transform(axes.transData.transform((right, y))) for y in ends.values()]
+    heights = [float(np.clip(point[1], 0, 1)) for point in points]
+    places = nudge(heights, LABEL_GAP / height, -below / height, 1 + 1.0 / height)
+    for name, start, place in zip(ends, heights, places, strict=True):
         color = style_of(name).color if colors is None else colors[name]
         where: dict[str, Any] = {"transform": axes.transAxes, "color": color}
         axes.plot([1, 1 + 2.5 / width], [start, place], lw=HAIR, clip_on=False, **where)
@@ -129,9 +163,7 @@ def label_ends(
 def draw_line(axes: Axes, name: str, x: Array, y: Array) -> None:
     """Draw a solver's line in its own style."""
     style = style_of(name)
-    axes.plot(
-        x, y, color=style.color, lw=style.width, zorder=2 + style.layer, ls=(0, style.dash) if style.dash else "-"
-    )
+    axes.plot(x, y, color=style.color, lw=style.width, zorder=2 + style.layer, ls=dash_style(style.dash))
 
 
 def small_multiples(
@@ -145,14 +177,14 @@ def small_multiples(
     titles = []
     for panel in panels:
         # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
-        whole = ", ".join(part.replace(" ", "\u00a0") for part in panel.title.split(", "))
-        titles.append(textwrap.fill(whole, max(8, int(across / TITLE_LETTER)), break_long_words=False))
+        title = ", ".join(part.replace(" ", "\u00a0") for part in panel.title.split(", "))
+        titles.append(textwrap.fill(title, max(8, int(across / TITLE_LETTER)), break_long_words=False))
     extra = TITLE_LINE * max((title.count("\n") for title in titles), default=0)
-    shown = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
-    band = [*rows[:-1], (rows[-1][0], rows[-1][1] + extra)]
-    groups = [shown[i : i + columns] for i in range(0, len(shown), columns)]
-    figure, grid = axes_grid(band * len(groups), columns, replace(margins, top=margins.top + extra))
-    return figure, [(some, grid[len(rows) * i : len(rows) * (i + 1)]) for i, some in enumerate(groups)]
+    titled = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
+    row_heights = [*rows[:-1], (rows[-1][0], rows[-1][1] + extra)]
+    bands = [titled[i : i + columns] for i in range(0, len(titled), columns)]
+    figure, grid = axes_grid(row_heights * len(bands), columns, replace(margins, top=margins.top + extra))
+    return figure, [(band, grid[len(rows) * i : len(rows) * (i + 1)]) for i, band in enumerate(bands)]
 
 
 def share_left(row: Sequence[Axes], count: int, label: str) -> None:

@@ -13,8 +13,10 @@ from matplotlib.ticker import NullLocator
 from validation.report.figures.curves import HAIR
 from validation.report.figures.histories import WIDTH, Margins, axes_grid, house_style
 
-DOT, ROUNDED = "#0072b2", "#b0b0b0"
-ROUNDING, EDGE = 1e-12, 1e-13  # smaller differences are rounding, and stand between the two
+DOT_COLOR = "#0072b2"
+ROUNDING_COLOR = "#b0b0b0"
+ROUNDING = 1e-12  # smaller differences are rounding; they stand between the edge and this
+EDGE = 1e-13  # of the axis
 LABELS = 50.0  # mm for the cases' names
 
 
@@ -46,7 +48,8 @@ def ledger_figure(lines: Sequence[LedgerLine]) -> Figure:
             _ledger_axes(axes, [line.parts.get(part, (None, None)) for line in lines], high)
         row[0].set_yticks(range(len(lines)), [line.label for line in lines])
         row[0].tick_params(axis="y", length=0, pad=5.0, labelsize=6)
-        middle, bottom = (LABELS + (WIDTH - LABELS - 4.0) / 2) / WIDTH, 0.5 / (figure.get_figheight() * 25.4)
+        middle = (LABELS + (WIDTH - LABELS - 4.0) / 2) / WIDTH
+        bottom = 0.5 / (figure.get_figheight() * 25.4)
         figure.text(middle, bottom, "Relative L2 difference", ha="center", va="bottom")
     return figure
 
@@ -58,12 +61,17 @@ def _ledger_axes(axes: Axes, pairs: Sequence[tuple[float | None, float | None]],
     for y, pair in enumerate(pairs):
         for value, filled, shift in zip(pair, (True, False), (-0.17, 0.17), strict=True):
             if value is not None:
-                color = ROUNDED if value <= ROUNDING else DOT
-                place = math.sqrt(EDGE * ROUNDING) if value <= ROUNDING else min(value, high)
+                color = DOT_COLOR
+                place = min(value, high)
+                if value <= ROUNDING:
+                    color = ROUNDING_COLOR
+                    place = math.sqrt(EDGE * ROUNDING)
                 face = color if filled else "white"
                 axes.plot(place, y + shift, "o", ms=2.6, mfc=face, mec=color, mew=0.6, clip_on=False)
-    first, last = round(math.log10(ROUNDING)), round(math.log10(high))
-    axes.set_xticks([10.0**power for power in range(first, last, max(1, -(-(last - first) // 3)))])
+    first = round(math.log10(ROUNDING))
+    last = round(math.log10(high))
+    powers = range(first, last, max(1, math.ceil((last - first) / 3)))
+    axes.set_xticks([10.0**power for power in powers])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)

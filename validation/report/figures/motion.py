@@ -6,6 +6,7 @@ the band that it fills, with its start below.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -67,19 +68,19 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
     rows[-1] = (rows[-1][0], 13.0)
     with house_style():
         figure, bands = small_multiples(drawn, _columns(len(panels)), Margins(left=15.0, right=room), rows)
-        for some, lines in bands:
+        for band, lines in bands:
             for row, column in zip(lines, columns, strict=False):
-                _history_row(row, some, column, common_range(drawn, column))
-                _row_labels(row, len(some), _label(drawn, column), _ends(some, drawn, column), names)
-            for axes, panel in zip(lines[0], some, strict=False):
+                _history_row(row, band, column, common_range(drawn, column))
+                _row_labels(row, len(band), _label(drawn, column), _ends(band, drawn, column), names)
+            for axes, panel in zip(lines[0], band, strict=False):
                 axes.set_title(panel.title)
             if span is not None:
-                start = [_until(panel, span) for panel in some]
+                start = [_until(panel, span) for panel in band]
                 _history_row(lines[len(columns)], start, columns[0], common_range(drawn, columns[0]))
-                _row_labels(lines[len(columns)], len(some), "its start", {}, names)
+                _row_labels(lines[len(columns)], len(band), "its start", {}, names)
             if apart:
-                _difference_row(lines[-1], some, columns[0], names)
-            _name_time(lines[-1], len(some), lines)
+                _difference_row(lines[-1], band, columns[0], names)
+            _name_time(lines[-1], len(band), lines)
     return figure
 
 
@@ -88,23 +89,24 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
 
 def twins(panels: Sequence[Panel], columns: Sequence[str]) -> Twins:
     """Return the solvers that are drawn, and with each the later ones that lie on it in every panel."""
-    found: dict[str, dict[str, float]] = {}
-    for name in dict.fromkeys(name for panel in panels for name in panel.histories):
-        for kept, others in found.items():
-            off = _apart(panels, columns, kept, name)
+    lines: dict[str, dict[str, float]] = {}
+    for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
+        for line, others in lines.items():
+            off = _apart(panels, columns, line, name)
             if off is not None and off <= TWIN:
                 others[name] = off
                 break
         else:
-            found[name] = {}
-    return found
+            lines[name] = {}
+    return lines
 
 
 def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str) -> float | None:
     """Return how far a solver is off another at most, over the largest value; None where it is drawn without it."""
     worst = 0.0
     for panel in panels:
-        a, b = panel.histories.get(one), panel.histories.get(other)
+        a = panel.histories.get(one)
+        b = panel.histories.get(other)
         if b is None:
             continue
         if a is None or a.time.size != b.time.size:
@@ -114,19 +116,20 @@ def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str
                 return None
             if column not in a.columns:
                 continue
-            values = a.columns[column], b.columns[column]
-            size = max(float(np.abs(values[0]).max()), abs(panel.static.get(column, 0.0))) or 1.0
-            with np.errstate(all="ignore"):  # a run that blew up is far from everything
-                off = float(np.abs(values[0] - values[1]).max() / size)
-            worst = max(worst, off if math.isfinite(off) else math.inf)
+            size = max(float(np.abs(a.columns[column]).max()), abs(panel.static.get(column, 0.0))) or 1.0
+            with np.errstate(all="ignore"):
+                off = float(np.abs(a.columns[column] - b.columns[column]).max() / size)
+            if not math.isfinite(off):  # a run that blew up is far from everything
+                return math.inf
+            worst = max(worst, off)
     return worst
 
 
 def _with_lines(panel: Panel, on_one: Twins) -> Panel:
     """Return a panel with the histories that are drawn; of the reference, which may lie on another, the base."""
-    own = {name: history for name, history in panel.histories.items() if name in on_one}
-    alike = next((name for name, others in on_one.items() if panel.reference in others), None)
-    return replace(panel, histories=own, base=panel.histories.get(panel.reference or ""), like_base=alike)
+    lines = {name: history for name, history in panel.histories.items() if name in on_one}
+    like_base = next((name for name, others in on_one.items() if panel.reference in others), None)
+    return replace(panel, histories=lines, base=panel.histories.get(panel.reference or ""), like_base=like_base)
 
 
 # ---- long histories -----------------------------------------------------------------------------------------------
@@ -177,14 +180,16 @@ def _scale(panels: Sequence[Panel], column: str) -> tuple[float, str]:
 
 
 def _label(panels: Sequence[Panel], column: str) -> str:
-    name, unit = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))[0], _scale(panels, column)[1]
+    name, _ = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
+    _, unit = _scale(panels, column)
     return f"{name}\n[{unit}]" if unit else name
 
 
-def _ends(some: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[str, float]:
-    """Return where each line ends, in the last panel that has it."""
-    factor, ends = _scale(panels, column)[0], {}
-    for panel in some:
+def _ends(band: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[str, float]:
+    """Return where each line ends, in the last panel of a band that has it."""
+    factor, _ = _scale(panels, column)
+    ends = {}
+    for panel in band:
         for solver, history in panel.drawn(column).items():
             ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
     return ends
@@ -225,8 +230,9 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names
     for lines in curves:
         values = np.concatenate([values, *(y for _, y in lines.values())])
     values = values[(values > FLOOR) & np.isfinite(values)]
-    low, high = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
-    low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** min(2, math.ceil(math.log10(high) + 0.05))
+    least, largest = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
+    low = 10.0 ** math.floor(math.log10(least))
+    high = 10.0 ** min(2, math.ceil(math.log10(largest) + 0.05))
     for axes, panel, lines in zip(row, panels, curves, strict=False):
         axes.set(yscale="log", ylim=(min(low, high / 10), high))
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
@@ -237,8 +243,8 @@ def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names
     ends: dict[str, float] = {}
     for lines in curves:
         ends |= {solver: float(np.clip(y[-1], low, high)) for solver, (_, y) in lines.items()}
-    static = any(panel.static.get(column) for panel in panels)
-    _row_labels(row, len(panels), "|Δ| / static" if static else "|Δ| / largest", ends, names)
+    scale = "static" if any(panel.static.get(column) for panel in panels) else "largest"
+    _row_labels(row, len(panels), f"|Δ| / {scale}", ends, names)
 
 
 def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:
@@ -259,5 +265,6 @@ def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]])
 def _time_axis(axes: Axes, panel: Panel) -> None:
     longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
     axes.set_xlim(0, longest)
-    ticks = MaxNLocator(3 if size_of(axes)[0] < 40 else 5, steps=[1, 2, 5, 10]).tick_values(0, longest)
+    count = 3 if size_of(axes)[0] < 40 else 5
+    ticks = MaxNLocator(count, steps=[1, 2, 5, 10]).tick_values(0, longest)
     outer_ticks(axes, longest, {float(tick): f"{tick:g}" for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)})

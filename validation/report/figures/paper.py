@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-from validation.report.figures.curves import GREY, HAIR, style_of, thin
+from validation.report.figures.curves import GREY, HAIR, dash_style, style_of, thin
 from validation.report.figures.histories import (
     Margins,
     axes_grid,
@@ -62,10 +62,10 @@ def steps_figure(panels: Sequence[StepPanel], label: str, last: int) -> Figure:
 
 
 def _range(panels: Sequence[StepPanel], last: int) -> tuple[float, float]:
-    shown = [np.zeros(1)]
+    lines = [np.zeros(1)]
     for panel in panels:
-        shown += [line[:last] for line in panel.lines.values()]
-    values = np.concatenate(shown)
+        lines += [line[:last] for line in panel.lines.values()]
+    values = np.concatenate(lines)
     values = values[np.isfinite(values)]
     pad = 0.06 * float(np.ptp(values)) or 1.0
     return float(values.min()) - pad, float(values.max()) + pad
@@ -76,24 +76,27 @@ def _mark(axes: Axes, panel: StepPanel) -> None:
         axes.axhline(panel.level, color="#bbbbbb", lw=HAIR, zorder=1)
     if panel.settled is None or panel.settled > axes.get_xlim()[1]:
         return
-    color, right = style_of("dda").color, panel.settled > 0.6 * axes.get_xlim()[1]
+    color = style_of("dda").color
     axes.axvline(panel.settled, color=color, lw=HAIR, zorder=1, ls=(0, (2, 2)))
+    # The words stand on the side of the line where there is more room.
+    side, shift = ("right", -2.0) if panel.settled > 0.6 * axes.get_xlim()[1] else ("left", 2.0)
     axes.annotate(
         f"{panel.settled:.0f} steps",
         (panel.settled, 1.0),
-        (-2.0 if right else 2.0, -1.0),
+        (shift, -1.0),
         xycoords=("data", "axes fraction"),
         textcoords="offset points",
         color=color,
         va="top",
-        ha="right" if right else "left",
+        ha=side,
         fontsize=6,
     )
 
 
 def _step_axis(axes: Axes, last: int) -> None:
-    room = size_of(axes)[0] > (34 if last < 1000 else 60)
-    ticks = MaxNLocator(4 if room else 2, integer=True, steps=[1, 2, 5, 10]).tick_values(0, last)
+    least_width = 34 if last < 1000 else 60  # mm
+    count = 4 if size_of(axes)[0] > least_width else 2
+    ticks = MaxNLocator(count, integer=True, steps=[1, 2, 5, 10]).tick_values(0, last)
     texts = {float(tick): f"{tick:,.0f}".replace(",", "\u202f") for tick in ticks if 0 <= tick <= last}
     outer_ticks(axes, last, texts)
     axes.yaxis.set_major_locator(MaxNLocator(5))
@@ -112,14 +115,17 @@ def radius_figure(data: Mapping[str, Any], points: Sequence[tuple[float, float]]
         ends: dict[str, float] = {}
         colors: dict[str, str] = {}
         for (name, curve), color in zip(data["schemes"].items(), SCHEME_COLORS, strict=True):
-            radius, printed = np.array(curve["radius"]), np.array(curve["printed"])
+            radius = np.array(curve["radius"])
+            printed = np.array(curve["printed"])
             axes.plot(omega, radius, color=color, lw=1.2, zorder=3)
-            ends[name], colors[name] = float(radius[-1]), color
+            ends[name] = float(radius[-1])
+            colors[name] = color
             departs = np.abs(printed - radius) > 1e-6
             if departs.any():
                 axes.plot(omega[departs], printed[departs], color=color, lw=0.9, ls=(0, (4, 2)), zorder=2)
                 name = f"{name.split(' (')[0]}: √(1+h), as printed"
-                ends[name], colors[name] = float(printed[-1]), color
+                ends[name] = float(printed[-1])
+                colors[name] = color
         if points:
             x, y = np.array(points).T
             axes.plot(x, y, "o", ms=2.6, mfc="none", mec=style_of("dda").color, mew=0.6, zorder=5)
@@ -152,28 +158,32 @@ def budget_figure(panels: Sequence[BudgetPanel]) -> Figure:
     margins = Margins(right=24.0, top=8.0, bottom=9.5)
     with house_style():
         figure, bands = small_multiples(panels, min(len(panels), BUDGET_PANELS), margins, [(40.0, 15.0)])
-        for some, (row,) in bands:
-            for axes, panel in zip(row, some, strict=False):
+        for band, (row,) in bands:
+            for axes, panel in zip(row, band, strict=False):
                 _budget_axes(axes, panel)
-            share_left(row, len(some), "Damping ratio ξ [%]")
-            _budget_labels(row[len(some) - 1], some[-1].budget)
+            share_left(row, len(band), "Damping ratio ξ [%]")
+            _budget_labels(row[len(band) - 1], band[-1].budget)
     return figure
 
 
 def _lines(budget: BudgetRecord) -> dict[str, BudgetLine]:
     """Lines of a panel: label -> values, colour, width, dashes; parts only where there is kinetic damping."""
-    found: dict[str, BudgetLine] = {}
     colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
+    lines: dict[str, BudgetLine] = {}
     for name, curves in budget["modes"].items():
-        total, own, kinetic = (np.array(curves[part], dtype=float) for part in ("total", "algorithmic", "kinetic"))
-        found[name] = (total, colors[name], 1.3, "-")
-        if name == "first axial" and min(np.nanmax(part, initial=0.0) for part in (own, kinetic)) > LEAST_RATIO:
-            found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
-            found["kinetic part"] = (kinetic, colors[name], 0.9, (0, (1, 1.5)))
-        if name == "first axial" and "viscous" in curves:
-            found["algorithmic part"] = (own, colors[name], 0.8, (0, (4, 2)))
-            found["viscous part"] = (np.array(curves["viscous"], dtype=float), colors[name], 0.9, (0, (6, 1.5)))
-    return found
+        parts = {part: np.array(values, dtype=float) for part, values in curves.items()}
+        color = colors[name]
+        lines[name] = (parts["total"], color, 1.3, "-")
+        if name != "first axial":
+            continue
+        algorithmic = (parts["algorithmic"], color, 0.8, (0, (4, 2)))
+        if min(np.nanmax(parts[part], initial=0.0) for part in ("algorithmic", "kinetic")) > LEAST_RATIO:
+            lines["algorithmic part"] = algorithmic
+            lines["kinetic part"] = (parts["kinetic"], color, 0.9, (0, (1, 1.5)))
+        if "viscous" in parts:
+            lines["algorithmic part"] = algorithmic
+            lines["viscous part"] = (parts["viscous"], color, 0.9, (0, (6, 1.5)))
+    return lines
 
 
 def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
@@ -192,11 +202,9 @@ def _budget_axes(axes: Axes, panel: BudgetPanel) -> None:
     if all(np.nanmax(values, initial=0.0) < LEAST_RATIO for values, *_ in _lines(panel.budget).values()):
         axes.text(0.5, 0.5, "no damping", transform=axes.transAxes, ha="center", color=GREY)
     if floor := panel.budget["floor"]:
-        clear = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-        said = f"ω₁ = {floor:.3f} × bar"
-        axes.text(
-            0.97, 0.05, said, transform=axes.transAxes, ha="right", color=GREY, fontsize=5.5, bbox=clear, zorder=5
-        )
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        text = f"ω₁ = {floor:.3f} × bar"
+        axes.text(0.97, 0.05, text, transform=axes.transAxes, ha="right", color=GREY, fontsize=5.5, bbox=box, zorder=5)
     _limit_lines(axes, panel.budget)
     for step in panel.budget["steps"]:
         axes.plot(step, 100 * LEAST_RATIO, "^", ms=3.4, color="black", clip_on=False, zorder=8)
@@ -213,7 +221,8 @@ def _limit_lines(axes: Axes, budget: BudgetRecord) -> None:
     names = {"real roots": f"ω₁dt = {budget['real roots at']:.3g}", "wave transit": "a/c"}
     for name, step in budget["limits"].items():
         text = names.get(name, "")
-        axes.axvline(step, color=GREY, lw=HAIR, ls=(0, (2, 2)) if name != "wave transit" else "-", zorder=1)
+        dash = () if name == "wave transit" else (2.0, 2.0)
+        axes.axvline(step, color=GREY, lw=HAIR, ls=dash_style(dash), zorder=1)
         if text:
             side = "left" if name == "real roots" else "right"
             axes.text(
@@ -222,9 +231,11 @@ def _limit_lines(axes: Axes, budget: BudgetRecord) -> None:
 
 
 def _budget_labels(axes: Axes, budget: BudgetRecord) -> None:
-    ends, colors = {}, {}
+    ends: dict[str, float] = {}
+    colors: dict[str, str] = {}
     for name, (values, color, *_) in _lines(budget).items():
-        good = values[np.isfinite(values) & (values > LEAST_RATIO)]
-        if good.size:
-            ends[name], colors[name] = 100 * float(good[-1]), color
+        drawn = values[np.isfinite(values) & (values > LEAST_RATIO)]
+        if drawn.size:
+            ends[name] = 100 * float(drawn[-1])
+            colors[name] = color
     label_ends(axes, ends, colors=colors, below=0.0)

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.report.figures.curves import COLUMNS, engineering, style_of
+from validation.report.figures.curves import COLUMNS, dash_style, engineering, style_of
 from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, one_axes, save
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
@@ -39,11 +39,12 @@ def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metr
     """Draw amplitudes on a logarithmic axis above phases, displacement beside contact pressure."""
     with house_style():
         figure, (sizes, phases) = axes_grid([(46.0, 4.0), (24.0, 0.0)], 2, Margins(14.0, 34.0, 5.0, 9.5, BETWEEN))
+        limits = (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))
+        scale = "log" if logarithmic else "linear"
         for above, below, column in zip(sizes, phases, (DISPLACEMENT, PRESSURE), strict=True):
             ends = _draw(above, below, curves, column, per_metre)
-            ends_at = min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves)
             for axes in (above, below):
-                axes.set(xscale="log" if logarithmic else "linear", xlim=ends_at)
+                axes.set(xscale=scale, xlim=limits)
             above.tick_params(labelbottom=False)
             below.set(xlabel="frequency [Hz]", ylim=(-3.4, 3.4))
             below.set_yticks([-np.pi, 0, np.pi], ["−π", "0", "π"])
@@ -60,7 +61,8 @@ def ratio_figure(frequency: Array, lines: Mapping[str, Array]) -> Figure:
         axes.set(xscale="log", xlim=(frequency[0], frequency[-1]))
         colors = dict(zip(lines, itertools.cycle(COLORS), strict=False))
         for i, (name, values) in enumerate(lines.items()):
-            axes.plot(frequency, 100 * values, color=colors[name], lw=1.0, ls=(0, DASHED) if i else "-")
+            dash = DASHED if i else ()
+            axes.plot(frequency, 100 * values, color=colors[name], lw=1.0, ls=dash_style(dash))
         axes.set_ylim(bottom=0)
         label_ends(axes, {name: 100 * float(values[-1]) for name, values in lines.items()}, colors=colors)
     return figure
@@ -71,9 +73,11 @@ def save_as(figure: Figure, path: Path) -> Path:
     ending = path.suffix.lower()
     if ending == ".svg":
         return save(figure, path)
-    kind, undated = ending[1:], UNDATED[ending]
     with house_style():
-        write_atomically(path, lambda stream: figure.savefig(stream, format=kind, dpi=DOTS, metadata=undated))
+        write_atomically(
+            path,
+            lambda stream: figure.savefig(stream, format=ending[1:], dpi=DOTS, metadata=UNDATED[ending]),
+        )
     return path
 
 
@@ -90,9 +94,9 @@ def _draw(above: Axes, below: Axes, curves: Sequence[ResponseCurve], column: str
         width = 0.6 * style.width if curve.dashed else style.width
         look: dict[str, Any] = {"color": style.color, "zorder": 2 + style.layer, "lw": width}
         size, phase = curve.columns[column]
-        dash = (0, DASHED) if curve.dashed else "-"
+        dash = dash_style(DASHED if curve.dashed else ())
         above.plot(curve.frequency, factor * size, ls=dash, **look)
         below.plot(curve.frequency, phase, ls=dash, **look)
-        shown = factor * size[np.isfinite(size) & (size > 0)]
-        ends[curve.name] = float(shown[-1]) if shown.size else 1.0
+        drawn = factor * size[np.isfinite(size) & (size > 0)]
+        ends[curve.name] = float(drawn[-1]) if drawn.size else 1.0
     return ends

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from validation.report.figures.histories import WIDTH, Margins, house_style, label_ends, one_axes
+from validation.report.figures.histories import Margins, house_style, label_ends, map_axes, one_axes
 from validation.runs.history import Array
 
 COLORS = ("#0072b2", "#d55e00", "#56b4e9", "#8c6d1f")  # of quantities and schemes, which are no solvers
-CELL, LEFT, TOP, BOTTOM, GAP = 4.6, 16.0, 6.0, 9.0, 6.0  # mm
+CELL = 4.6  # mm, height of a cell of a map
 
 
 @dataclass(frozen=True)
@@ -27,34 +27,25 @@ class DigitMap:
 def digits_of(error: Array) -> Array:
     """Return -log10 of the error, cut to 0 .. 16; NaN stays NaN."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        found: Array = np.clip(-np.log10(np.maximum(error, 1e-16)), 0.0, 16.0) + 0.0
-    return found
+        digits: Array = np.clip(-np.log10(np.maximum(error, 1e-16)), 0.0, 16.0) + 0.0
+    return digits
 
 
 def digit_maps(
     maps: Sequence[DigitMap], rows: Sequence[str], columns: Sequence[str], x_label: str, y_label: str
 ) -> Figure:
     """Draw maps of whole correct digits in one row; colour and number say the same, an empty cell has no run."""
-    across = (WIDTH - LEFT - 2.0 - GAP * (len(maps) - 1)) / len(maps)
-    height = TOP + CELL * len(rows) + BOTTOM
     with house_style():
-        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
-        for k, shown in enumerate(maps):
-            left = LEFT + k * (across + GAP)
-            axes = figure.add_axes((left / WIDTH, BOTTOM / height, across / WIDTH, CELL * len(rows) / height))
-            digits = digits_of(shown.error)
+        figure, (row,) = map_axes(1, len(maps), rows, columns, CELL)
+        for digit_map, axes in zip(maps, row, strict=True):
+            digits = digits_of(digit_map.error)
             axes.imshow(digits, cmap="cividis", vmin=0, vmax=16, aspect="auto")
             for (i, j), value in np.ndenumerate(digits):
                 if np.isfinite(value):
                     color = "black" if value > 8 else "white"
                     axes.text(j, i, f"{np.floor(value):.0f}", ha="center", va="center", color=color)
-            axes.set_title(shown.title)
-            axes.set_xticks(range(len(columns)), list(columns))
-            axes.set_yticks(range(len(rows)), list(rows) if k == 0 else [""] * len(rows))
-            axes.tick_params(length=0)
-            axes.set_xlabel(x_label)
-            if k == 0:
-                axes.set_ylabel(y_label)
+            axes.set(title=digit_map.title, xlabel=x_label)
+        row[0].set_ylabel(y_label)
     return figure
 
 
@@ -74,13 +65,15 @@ def settling_figure(lines: Sequence[Settling], longest: float) -> Figure:
             48.0, Margins(16.0, 54.0, 4.0, 10.0), ("p / E", "Steps to settle within $10^{-4}$"), True
         )
         colors = {line.name: color for line, color in zip(lines, itertools.cycle(COLORS), strict=False)}
+        ends = {}
         for line in lines:
-            color, shown = colors[line.name], np.where(np.isfinite(line.steps), line.steps, longest)
-            axes.plot(line.ratios, shown, color=color, lw=1.2)
-            never = ~np.isfinite(line.steps)
-            axes.plot(line.ratios[~never], shown[~never], "o", ms=3, color=color)
-            axes.plot(line.ratios[never], shown[never], "o", ms=4, mfc="white", mec=color)
+            color = colors[line.name]
+            settles = np.isfinite(line.steps)
+            steps = np.where(settles, line.steps, longest)
+            axes.plot(line.ratios, steps, color=color, lw=1.2)
+            axes.plot(line.ratios[settles], steps[settles], "o", ms=3, color=color)
+            axes.plot(line.ratios[~settles], steps[~settles], "o", ms=4, mfc="white", mec=color)
+            ends[line.name] = float(steps[-1])
         axes.set_ylim(10, 1.6 * longest)
-        ends = {line.name: float(line.steps[-1]) if np.isfinite(line.steps[-1]) else longest for line in lines}
         label_ends(axes, ends, colors=colors)
     return figure

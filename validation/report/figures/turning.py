@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from validation.report.figures.curves import thin
+from validation.report.figures.curves import dash_style, thin
 from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends
 from validation.runs.history import Array
 
@@ -15,7 +15,7 @@ COLORS = ("#d55e00", "#0072b2", "#009e73", "#666666")
 
 
 @dataclass(frozen=True)
-class Line:
+class TurningLine:
     """A line and its name."""
 
     name: str
@@ -25,33 +25,35 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Panel:
+class TurningPanel:
     """Lines over one axis, with a level and an instant to compare with."""
 
     title: str
-    across: str
-    up: str
-    lines: tuple[Line, ...]
+    x_label: str
+    y_label: str
+    lines: tuple[TurningLine, ...]
     level: float | None = None
     instant: float | None = None
 
 
-def panels(shown: Sequence[Panel]) -> Figure:
+def turning_figure(panels: Sequence[TurningPanel]) -> Figure:
     """Draw panels side by side."""
     with house_style():
-        figure, (row,) = axes_grid([(42.0, 0.0)], len(shown), Margins(13.0, 20.0, 6.0, 10.0, 33.0))
-        for axes, panel in zip(row, shown, strict=True):
-            ends, colors = {}, {}
+        figure, (row,) = axes_grid([(42.0, 0.0)], len(panels), Margins(13.0, 20.0, 6.0, 10.0, 33.0))
+        for axes, panel in zip(row, panels, strict=True):
+            ends: dict[str, float] = {}
+            colors: dict[str, str] = {}
             for line, solid in zip(panel.lines, COLORS, strict=False):
                 x, y = thin(line.x, line.y)
-                color = "#000000" if line.dashed else solid
-                axes.plot(x, y, color=color, lw=1.0, ls=(0, (3, 2)) if line.dashed else "-")
-                ends[line.name], colors[line.name] = float(line.y[-1]), color
+                color, dash = ("#000000", (3.0, 2.0)) if line.dashed else (solid, ())
+                axes.plot(x, y, color=color, lw=1.0, ls=dash_style(dash))
+                ends[line.name] = float(line.y[-1])
+                colors[line.name] = color
             axes.set_xlim(0.0, max(float(line.x[-1]) for line in panel.lines))
             if panel.level is not None:
                 axes.axhline(panel.level, color="#999999", lw=0.5)
             if panel.instant is not None:
                 axes.axvline(panel.instant, color="#999999", lw=0.5)
-            axes.set(title=panel.title, xlabel=panel.across, ylabel=panel.up)
+            axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
             label_ends(axes, ends, colors=colors)
     return figure

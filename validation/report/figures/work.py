@@ -1,4 +1,4 @@
-"""Figures of error against work, both logarithmic, one line for each way to refine."""
+"""Figures of error against work, both logarithmic, one line for each method of refinement."""
 
 from __future__ import annotations
 

@@ -11,8 +11,10 @@ from validation.gates import closed_forms
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
-LOWEST, HIGHEST, POINTS = 1e-3, 8.0, 400  # w dt between which a ratio is looked for
-NOISE = 1e-9  # of the load; a smaller pull is rounding
+LOWEST = 1e-3  # w dt from which on a ratio is looked for
+HIGHEST = 8.0  # w dt up to which it is
+POINTS = 400
+NOISE = 1e-9  # of the load; a smaller tension is rounding
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
@@ -108,8 +110,8 @@ def contact_radius(scene: Scene) -> float:
     return closed_forms.spectral_radius(scene, closed_forms.contact_frequency(scene))
 
 
-def given_way(scene: Scene) -> float:
-    """Return how far the springs give way at rest over what the block itself shortens by to its centroid [1].
+def spring_share(scene: Scene) -> float:
+    """Return how far the springs deflect at rest over what the block itself shortens by to its centroid [1].
 
     (a q / 2p) / (h q / 2E') = (w / h) E' / p: a rule on p alone holds for one slenderness.
     """
@@ -118,11 +120,14 @@ def given_way(scene: Scene) -> float:
     return width / height * E / scene.contact.stiffness
 
 
-def flips_beyond(scene: Scene) -> float:
-    """Return the step [s] beyond which (1/2, 1) has two negative roots for the contact mode: 4 / w."""
+def sign_change_step(scene: Scene) -> float:
+    """Return the step [s] beyond which (1/2, 1) has two negative roots for the contact mode: 4 / w.
+
+    The contact force then changes its sign in each step.
+    """
     return 4 / closed_forms.contact_frequency(scene)
 
 
 def penetration(scene: Scene) -> float:
-    """Return how far the springs give way at rest [m]: a q / (2 p)."""
+    """Return how far the springs deflect at rest [m]: a q / (2 p)."""
     return closed_forms.size(scene)[0] * scene.load.pressure / (2 * scene.contact.stiffness)

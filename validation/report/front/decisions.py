@@ -9,30 +9,30 @@ import numpy as np
 
 from validation.gates import closed_forms
 from validation.report.blocks import Block, Callout, Column, Heading, PageBreak, Paragraph, Table, columns
-from validation.report.chapters.data import Case
+from validation.report.chapters.data import CaseResults
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
 from validation.report.front import closed
-from validation.report.front.first import peak_excess
-from validation.report.front.found import Found, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
+from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
 
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
-WANTED = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
+TARGET_DAMPING = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
 DISCOUNTS = (1.0, 0.98, 0.95, 0.9)  # of the paper's Figure 9
 STEPS = (1e-2, 2e-3, 1e-3, 1e-4)  # s
 STEP = 2e-3  # s, of the page on springs
-HELD = (1e-3, 2e-3, 1e-2, 2e-2)  # s, at which a discount that is held as a rate is told
+RATE_STEPS = (1e-3, 2e-3, 1e-2, 2e-2)  # s, at which the damping of a discount that is held as a rate is given
 SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
 
-def decisions(found: Found, paper: Scene, directory: Path) -> list[Block]:
+def decisions(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the three pages."""
     blocks: list[Block] = []
     for page in (step_page, spring_page, discount_page):
-        blocks += [PageBreak(), *page(found, paper, directory)]
+        blocks += [PageBreak(), *page(groups, paper, directory)]
     return blocks
 
 
@@ -43,7 +43,7 @@ def _rule(text: str) -> Callout:
 # ---- which time step ----------------------------------------------------------------------------------------------
 
 
-def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the time step."""
     scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
@@ -53,42 +53,42 @@ def step_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     ]
     greatest = max(float(np.nanmax(line.y)) for line in lines)
     turn = closed.most_damped(scenes[0])
-    way = closed.transit(paper)
+    transit = 1e3 * closed.transit(paper)
     chart = Chart(
         "Damping ratio of the first axial mode [%], constant acceleration",
         ("time step dt [ms]", ""),
         lines,
         RANGE,
         (0.05, 60.0),
-        {f"a/c = {1e3 * way:.3g} ms": 1e3 * way},
-        {f"{100 * xi:g} %": 100 * xi for xi in WANTED},
+        {f"a/c = {transit:.3g} ms": transit},
+        {f"{100 * xi:g} %": 100 * xi for xi in TARGET_DAMPING},
     )
     caption = (
         f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % at ω₁ dt = {turn:.3g}, and falls "
         "beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
         "vertical: the time a wave takes from top to base; a longer step cannot resolve it."
     )
-    five = closed.step_for(scenes[0], 0.05)
+    step = closed.step_for(scenes[0], 0.05)
+    example = f": for 5\u00a0% at p = 1E, dt = {1e3 * step:.3g}\u00a0ms" if step else ""
     return [
         Heading("Decision 1: which time step?", 2),
         _rule(
-            "Choose the damping ratio ξ, then dt ≈ 4 ξ / ω₁ (up to ξ = 10\u00a0% within 3\u00a0%)"
-            + (f": for 5\u00a0% at p = 1E, dt = {1e3 * five:.3g}\u00a0ms" if five else "")
-            + ". Small damping and the wave both need a short step, and no step repairs the model: what is left "
+            f"Choose the damping ratio ξ, then dt ≈ 4 ξ / ω₁ (up to ξ = 10\u00a0% within 3\u00a0%){example}. "
+            "Small damping and the wave both need a short step, and no step repairs the model: what is left "
             "when the damping is gone is one strain in place of a wave."
         ),
         histories.saved(charts_figure([chart], 62.0), directory, "decision-step.svg", caption),
         step_table(scenes),
-        *_as_run(found),
+        *_as_run(groups),
     ]
 
 
 def step_table(scenes: Sequence[Scene]) -> Table:
     """Return the time step for a damping ratio, a column for each stiffness."""
     rows = []
-    for xi in WANTED:
-        found = [closed.step_for(scene, xi) for scene in scenes]
-        rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in found)))
+    for xi in TARGET_DAMPING:
+        steps = [closed.step_for(scene, xi) for scene in scenes]
+        rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [closed_forms.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
     titles = (
@@ -98,23 +98,26 @@ def step_table(scenes: Sequence[Scene]) -> Table:
     return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
 
 
-def _as_run(found: Found) -> list[Block]:
+def _as_run(groups: Groups) -> list[Block]:
     """Return what the runs over one fixed time had: damping, errors, hidden tension."""
-    group, rows = found.get("model-form"), []
+    group = groups.get("model-form")
+    if group is None:
+        return []
+    rows = []
     for case in by_step(group):
-        if group is None:
-            continue
-        pairs = (("dda", "bar"), ("bar", "continuum"))
-        errors = [
-            group.number_of_pair(case, *pair, f"{name}.l2") for pair in pairs for name in ("displacement", "pressure")
-        ]
-        xi, pulled = case.number("dda", "mode1.damping"), case.number("dda", "pressure.minimum")
-        small = -closed.NOISE * case.scene.load.pressure
-        pull = DASH if pulled is None else plain(pulled / 1e6, 3) if pulled < small else "none"
+        errors = []
+        for pair in (("dda", "bar"), ("bar", "continuum")):
+            errors += [group.number_of_pair(case, *pair, f"{name}.l2") for name in ("displacement", "pressure")]
+        minimum = case.number("dda", "pressure.minimum")
+        tension = DASH
+        if minimum is not None:
+            hidden = minimum < -closed.NOISE * case.scene.load.pressure
+            tension = plain(minimum / 1e6, 3) if hidden else "none"
         excess = peak_excess(case)
-        peak = DASH if excess is None else f"{'+' if excess >= 0 else '−'}{percent(abs(excess))}"
-        damping, *shown = [DASH if value is None else percent(value) for value in (xi, *errors)]
-        rows.append((f"{1e3 * case.scene.time.step:g}", damping, peak, *shown, pull))
+        peak = DASH if excess is None else signed_percent(excess)
+        shares = (case.number("dda", "mode1.damping"), *errors)
+        damping, *error_cells = [DASH if value is None else percent(value) for value in shares]
+        rows.append((f"{1e3 * case.scene.time.step:g}", damping, peak, *error_cells, tension))
     if not rows:
         return []
     titles = (
@@ -140,7 +143,7 @@ def _as_run(found: Found) -> list[Block]:
 # ---- which springs ------------------------------------------------------------------------------------------------
 
 
-def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the stiffness of the springs."""
     base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
@@ -148,7 +151,7 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     share = np.array([100 * closed.penetration(s) / abs(closed_forms.static_displacement(s)) for s in scenes])
     high = np.array([100 * (closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1) for s in scenes])
     marks = {f"{r:g}E": r for r in RATIOS}
-    give = Chart(
+    deflection = Chart(
         "What the springs add [%]",
         ("p / E", ""),
         (
@@ -157,13 +160,13 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         ),
         (0.1, 1e5), (0.0, 100.0), marks, logarithmic=(True, False),
     )  # fmt: skip
-    rings = []
+    radii = []
     for (name, (alpha, delta)), color in zip(SCHEMES.items(), CHOICES[1:], strict=False):
-        changed = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
-        rings.append(Stroke(name, grid, np.array([closed.contact_radius(s) for s in changed]), color))
-    ring = Chart(
+        stepped = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
+        radii.append(Stroke(name, grid, np.array([closed.contact_radius(s) for s in stepped]), color))
+    ringing = Chart(
         f"|λ| of the contact at dt = {milliseconds(STEP)}",
-        ("p / E", ""), rings, (0.1, 1e5), (0.0, 1.05), marks, logarithmic=(True, False),
+        ("p / E", ""), radii, (0.1, 1e5), (0.0, 1.05), marks, logarithmic=(True, False),
     )  # fmt: skip
     caption = (
         "Left: the springs' share of v at rest; the stiffer they are, the more the first natural frequency exceeds the "
@@ -173,9 +176,9 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),
-        _rule(spring_rule(found, base)),
-        histories.saved(charts_figure([give, ring], 52.0), directory, "decision-springs.svg", caption),
-        spring_table(found, base),
+        _rule(spring_rule(groups, base)),
+        histories.saved(charts_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
+        spring_table(groups, base),
         Paragraph(
             "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
             "are read, or that open the contact, show the scheme and not the block."
@@ -183,52 +186,50 @@ def spring_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     ]
 
 
-def spring_rule(found: Found, base: Scene) -> str:
+def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
-    ten, hundred = (closed.penetration(closed.stiffer(base, r)) for r in RATIOS[1:])
-    radius = closed.contact_radius(closed.stiffer(base, 100.0))
-    case = case_where(found.get("figures-5-6"), at_ratio(100.0))
-    waits = [
-        case.number("dda", f"{name}.fine_settling_step") if case else None for name in ("pressure", "displacement")
-    ]
-    run = ""
-    if None not in waits:
-        pressure, displacement = (f"{float(wait or 0):.0f}" for wait in waits)
-        run = (
+    usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
+    case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
+    pressure = _steps(case, "pressure.fine_settling_step")
+    displacement = _steps(case, "displacement.fine_settling_step")
+    as_run = ""
+    if DASH not in (pressure, displacement):
+        as_run = (
             f" (as run: {pressure} steps until the pressure is within 0.01\u00a0%, {displacement} for the displacement)"
         )
-    usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
     return (
-        f"For a locked square block take p = 10E: the springs then deflect by {1e3 * ten:.3g}\u00a0mm at rest, "
-        f"{percent(closed.given_way(usual))} of what the block shortens by; for another shape it is (w/h) E/p. "
-        f"At p = 100E they deflect by {1e3 * hundred:.3g}\u00a0mm. Beyond dt = 4/ω of the contact, "
-        f"{milliseconds(closed.flips_beyond(usual))} at 10E and {milliseconds(closed.flips_beyond(stiff))} at 100E, "
-        f"the contact force flips sign each step: at dt = {milliseconds(STEP)} it keeps "
-        f"{percent(closed.contact_radius(usual))} of its amplitude at 10E and {percent(radius)} at 100E{run}. "
+        f"For a locked square block take p = 10E: the springs then deflect by {1e3 * closed.penetration(usual):.3g}"
+        f"\u00a0mm at rest, {percent(closed.spring_share(usual))} of what the block shortens by; for another shape it "
+        f"is (w/h) E/p. At p = 100E they deflect by {1e3 * closed.penetration(stiff):.3g}\u00a0mm. Beyond dt = 4/ω of "
+        f"the contact, {milliseconds(closed.sign_change_step(usual))} at 10E and "
+        f"{milliseconds(closed.sign_change_step(stiff))} at 100E, the contact force flips sign each step: at "
+        f"dt = {milliseconds(STEP)} it keeps {percent(closed.contact_radius(usual))} of its amplitude at 10E and "
+        f"{percent(closed.contact_radius(stiff))} at 100E{as_run}. "
         "If stiff springs are a must, take a step below 4/ω, or δ > 1/2 with α = (1/2 + δ)²/4, as (9/16, 1). Where the "
         "contact opens, the peak force of a landing in DDA grows as √p: this is no rule there."
     )
 
 
-def spring_table(found: Found, base: Scene) -> Table:
+def spring_table(groups: Groups, base: Scene) -> Table:
     """Return what a stiffness makes of the answer: closed forms, and steps to settle as run."""
     rows = []
     for ratio in RATIOS:
         scene = closed.stiffer(base, ratio)
-        case, fine = (case_where(found.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
-        closed_parts = (
+        case, fine = (case_where(groups.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
+        closed_form_cells = (
             f"{1e3 * closed_forms.static_displacement(scene):.3f}".replace("-", "−"),
             f"{1e3 * closed.penetration(scene):.3g}",
             percent(closed.first_damping(scene)),
             f"{closed.contact_radius(scene):.4f}",
             f"{1e3 * 4 / closed_forms.contact_frequency(scene):.3g}",
         )
-        settled = (_steps(case, "displacement.settling_step"), _steps(case, "pressure.settling_step"))
-        waits = (
+        settling_cells = (
+            _steps(case, "displacement.settling_step"),
+            _steps(case, "pressure.settling_step"),
             _steps(fine or case, "displacement.fine_settling_step"),
             _steps(fine or case, "pressure.fine_settling_step"),
         )
-        rows.append((f"{ratio:g}E", *closed_parts, *settled, *waits))
+        rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
     titles = (
         Column("p"),
         *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
@@ -241,7 +242,7 @@ def spring_table(found: Found, base: Scene) -> Table:
     )
 
 
-def _steps(case: Case | None, metric: str) -> str:
+def _steps(case: CaseResults | None, metric: str) -> str:
     value = None if case is None else case.number("dda", metric)
     return DASH if value is None else f"{value:.0f}"
 
@@ -249,7 +250,7 @@ def _steps(case: Case | None, metric: str) -> str:
 # ---- which discount -----------------------------------------------------------------------------------------------
 
 
-def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
+def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the discount."""
     base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
@@ -258,14 +259,11 @@ def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
         scene = closed.timed(base, gg=gg)
         lines.append(Stroke(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
     rate = closed.rate_for(base, 0.05)
-    held = closed.timed(base, gg_rate=rate, gg=1.0)
+    at_rate = closed.timed(base, gg_rate=rate, gg=1.0)
     lines.append(
-        Stroke(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(held, grid), CHOICES[3], DASHED)
+        Stroke(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), CHOICES[3], DASHED)
     )
-    held_at = ", ".join(
-        f"{percent(closed.first_damping(closed.timed(held, step=step)))} at {milliseconds(step)}" for step in HELD
-    )
-    turns = ", ".join(short(closed_forms.dda_frequency(held) * step, 2) for step in HELD)
+    turns = ", ".join(short(closed_forms.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
     chart = Chart(
         "Damping ratio of the first axial mode [%], average acceleration",
         ("time step dt [ms]", ""), lines, RANGE, (0.1, 1000.0), {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
@@ -273,22 +271,21 @@ def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
     )  # fmt: skip
     caption = (
         "The shorter the step, the more a discount per step damps, without bound; held as a rate (dashed), it damps "
-        f"the block alike while ω₁ dt is small: asked for 5 %, it is {held_at} (ω₁ dt = {turns})."
+        f"the block alike while ω₁ dt is small: asked for 5 %, it is {damping_at_steps(at_rate, RATE_STEPS)} "
+        f"(ω₁ dt = {turns})."
     )
-    light = closed.timed(base, gg=0.98)
-    below = closed.overdamped_below(light)
-    at = [closed.first_damping(closed.timed(light, step=step)) for step in (2e-3, 1e-3, 1e-4)]
-    spoken = ", ".join(
-        f"{percent(xi)} at {milliseconds(step)}" for xi, step in zip(at, (2e-3, 1e-3, 1e-4), strict=True)
-    )
+    per_step = closed.timed(base, gg=0.98)
+    overdamped_below = closed.overdamped_below(per_step)
+    creep = ""
+    if overdamped_below:
+        creep = f", and below dt = {1e3 * overdamped_below:.3g}\u00a0ms the block creeps instead of oscillating"
     return [
         Heading("Decision 3: which discount?", 2),
         _rule(
             f"Leave gg at 1, or hold it as a rate: gg = exp(−c dt) with c = 2 ω₁ ξ, for 5\u00a0% c = {rate:.3g} 1/s, "
             "at steps with ω₁ dt below 1. "
-            f"gg = 0.98 per step is {spoken} of critical"
-            + (f", and below dt = {1e3 * below:.3g}\u00a0ms the block creeps instead of oscillating" if below else "")
-            + "; a refined step never converges."
+            f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
+            "step never converges."
         ),
         histories.saved(charts_figure([chart], 60.0), directory, "decision-discount.svg", caption),
         discount_table(base),
@@ -297,7 +294,7 @@ def discount_page(found: Found, paper: Scene, directory: Path) -> list[Block]:
             "acts on the velocity at the start of a step, so that the first step from rest does not feel it; with "
             "constant acceleration it comes on top of what the step damps."
         ),
-        *_measured(found),
+        *_measured(groups),
     ]
 
 
@@ -307,9 +304,11 @@ def discount_table(base: Scene) -> Table:
     for gg in DISCOUNTS:
         scene = closed.timed(base, gg=gg)
         ratios = [closed.first_damping(closed.timed(scene, step=step)) for step in STEPS[1:]]
-        rate, below = -np.log(gg) / 1e-3 + 0.0, closed.overdamped_below(scene)
-        shown = [percent(max(0.0, xi)) if xi > 1e-12 else "0\u00a0%" for xi in ratios]
-        rows.append((f"{gg:.2f}", *shown, DASH if below is None else f"{1e3 * below:.3g}", f"{rate:.3g}"))
+        damping_cells = [percent(xi) if xi > 1e-12 else "0\u00a0%" for xi in ratios]
+        overdamped_below = closed.overdamped_below(scene)
+        step = DASH if overdamped_below is None else f"{1e3 * overdamped_below:.3g}"
+        rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
+        rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))
     titles = (
         *columns("decimal", "gg"),
         *columns("text", *(f"dt = {milliseconds(step)}" for step in STEPS[1:]), group="ξ₁, average acceleration"),
@@ -318,14 +317,18 @@ def discount_table(base: Scene) -> Table:
     return Table(titles, tuple(rows), "What a discount per step damps at p = 1E, in closed form.")
 
 
-def _measured(found: Found) -> list[Block]:
+def _measured(groups: Groups) -> list[Block]:
     """Return how the runs of Figure 9 were damped, as measured on their histories."""
-    group, said = found.get("figure-9"), []
-    for case in group.cases if group else ():
+    group = groups.get("figure-9")
+    if group is None:
+        return []
+    parts = []
+    for case in group.cases:
         xi = case.number("dda", "mode1.measured_damping")
         if xi is not None:
-            said.append(f"{percent(xi) if xi > 1e-9 else '0 %'} for gg = {case.scene.time.discount:g}")
-    if group is None or not said:
+            ratio = percent(xi) if xi > 1e-9 else "0 %"
+            parts.append(f"{ratio} for gg = {case.scene.time.discount:g}")
+    if not parts:
         return []
     step = milliseconds(group.cases[0].scene.time.step)
-    return [Paragraph(f"Measured on the histories of the paper's Figure 9, at dt = {step}: {', '.join(said)}.")]
+    return [Paragraph(f"Measured on the histories of the paper's Figure 9, at dt = {step}: {', '.join(parts)}.")]

@@ -4,47 +4,44 @@ from __future__ import annotations
 
 import cmath
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from validation.gates import closed_forms
 from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
-from validation.report.chapters.data import Case
+from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.curves import style_of
 from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
 from validation.report.figures.front.model import model_figure
 from validation.report.front import closed
-from validation.report.front.found import Found, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
 
-WANTED = 0.05  # damping ratio that the answer names a time step for
+TARGET_DAMPING = 0.05  # damping ratio that the answer names a time step for
 STIFF = 100.0  # p/E of the answer on stiff springs
-STIFFNESSES = (1.0, 10.0, 100.0)  # p/E of which the first frequency is told
-STEPPED = (2e-3, 5e-3)  # s, steps of which it is told as stepped
+STIFFNESSES = (1.0, 10.0, 100.0)  # p/E for which the first frequency is given
+STEPS = (2e-3, 5e-3)  # s, steps for which it is given as stepped
 DISCOUNT = 0.98
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
 
 
-def first_page(found: Found, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Part]:
+def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Part]:
     """Return the blocks of the first page."""
-    words = f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa"
-    drawing = histories.saved(model_figure(*words), directory, "model.svg", "")
-    said = [
-        point for point in (force(found), steps(found, paper), springs(found), discount(paper), beware(found)) if point
-    ]
+    model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
+    drawing = histories.saved(model, directory, "model.svg", "")
+    answers = (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups))
+    charts = charts_figure(damping_and_error(groups, paper), 37.0)
     return [
         Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
         Heading("The answer in five sentences", 3),
-        Points(tuple(said)),
-        histories.saved(
-            charts_figure(carrying(found, paper), 37.0), directory, "first.svg", carrying_caption(found, paper)
-        ),
+        Points(tuple(answer for answer in answers if answer)),
+        histories.saved(charts, directory, "first.svg", damping_and_error_caption(groups, paper)),
         verdict_line(verdicts),
     ]
 
@@ -70,65 +67,75 @@ def tested(paper: Scene) -> list[Block]:
 # ---- five sentences -----------------------------------------------------------------------------------------------
 
 
-def _model_form(found: Found) -> list[tuple[Case, float, float]]:
-    """Return the cases over one fixed time with the pressure's model form and the displacement's."""
-    group, kept = found.get("model-form"), list[tuple[Case, float, float]]()
+def _model_form(groups: Groups) -> list[tuple[CaseResults, float, float]]:
+    """Return the cases over one fixed time with the displacement's model form and the pressure's."""
+    group = groups.get("model-form")
     if group is None:
-        return kept
+        return []
+    rows = []
     for case in by_step(group):
         v, p = (group.number_of_pair(case, "dda", "bar", f"{name}.l2") for name in ("displacement", "pressure"))
-        kept += [] if v is None or p is None else [(case, v, p)]
-    return kept
+        if v is not None and p is not None:
+            rows.append((case, v, p))
+    return rows
 
 
-def force(found: Found) -> tuple[str, str] | None:
+def force(groups: Groups) -> tuple[str, str] | None:
     """Say whether DDA's contact force is right: at rest, and on the way there.
 
     The first peak leads, which no window changes. A relative L2 difference is mostly one of phase where little is
     damped, and grows with the time over which it is taken.
     """
-    rows = _model_form(found)
+    rows = _model_form(groups)
     if not rows:
         return None
     scene = rows[0][0].scene
-    rests = [case.number("dda", "pressure.static") for case, _, _ in rows]
-    right = all(value is not None and abs(value / scene.load.pressure - 1) < SETTLED for value in rests)
-    at_rest = f"every run tends to {scene.load.pressure / 1e6:g} MPa" if right else "not every run tends to the load"
+    static_pressures = [case.number("dda", "pressure.static") for case, _, _ in rows]
+    at_rest = "At rest no: not every run tends to the load"
+    if all(value is not None and abs(value / scene.load.pressure - 1) < SETTLED for value in static_pressures):
+        at_rest = f"At rest yes: every run tends to {scene.load.pressure / 1e6:g} MPa"
     peaks = []
     for case, _, _ in rows:
-        if (excess := peak_excess(case)) is not None:
-            sign = "+" if excess >= 0 else "−"
-            peaks.append(f"{sign}{percent(abs(excess))} at {milliseconds(case.scene.time.step)}")
-    during = f"during the motion no: against the bar under the same steps its first peak is off by {', '.join(peaks)}"
+        excess = peak_excess(case)
+        if excess is not None:
+            peaks.append(f"{signed_percent(excess)} at {milliseconds(case.scene.time.step)}")
+    moving = "during the motion no"
+    if peaks:
+        moving += f": against the bar under the same steps its first peak is off by {', '.join(peaks)}"
     return (
         "Is DDA's force right?",
-        f"At rest {'yes' if right else 'no'}: {at_rest}; {during if peaks else 'during the motion no'} "
+        f"{at_rest}; {moving} "
         f"(p = {closed.ratio_of(scene):g}E): one strain in place of a wave, which the damping of a long step hides."
-        f"{_windows(found, rows[-1])}",
+        f"{_windows(groups, rows[-1])}",
     )
 
 
-def peak_excess(case: Case) -> float | None:
+def peak_excess(case: CaseResults) -> float | None:
     """Return by how much DDA's first peak of the contact pressure is above the bar's, under the same steps [1]."""
-    own, bar = (case.number(solver, "pressure.peak") for solver in ("dda", "bar"))
-    return None if own is None or not bar else own / bar - 1
+    dda, bar = (case.number(solver, "pressure.peak") for solver in ("dda", "bar"))
+    return None if dda is None or not bar else dda / bar - 1
 
 
-def _windows(found: Found, shortest: tuple[Case, float, float]) -> str:
+def signed_percent(share: float) -> str:
+    """Return a share in per cent with its sign, also where it is positive."""
+    return f"{'+' if share >= 0 else '−'}{percent(abs(share))}"
+
+
+def _windows(groups: Groups, shortest: tuple[CaseResults, float, float]) -> str:
     """Say how a relative L2 difference of the pressure grows with its window, at the shortest step."""
-    case, _, whole = shortest
-    over: list[tuple[float, float]] = []
-    for verdict in found["model-form"].verdicts:
-        gated = (verdict["scene"], tuple(verdict["pair"]), verdict["metric"])
+    case, _, pressure_error = shortest
+    errors: list[tuple[float, float]] = []  # window [s] and relative L2
+    for verdict in groups["model-form"].verdicts:
+        subject = (verdict["scene"], tuple(verdict["pair"]), verdict["metric"])
         value = verdict["value"]
-        if gated == (case.name, ("dda", "bar"), "pressure.l2") and isinstance(value, int | float):
-            over.append((_window_of(verdict["id"]) or _length(case.scene), float(value)))
-    spoken = [f"{percent(value)} over {short(seconds)} s" for seconds, value in sorted(over)]
-    if len(spoken) < 2:
-        spoken = [f"{percent(whole)} over {short(_length(case.scene))} s"]
+        if subject == (case.name, ("dda", "bar"), "pressure.l2") and isinstance(value, int | float):
+            errors.append((_window_of(verdict["id"]) or case.scene.time.duration, float(value)))
+    if len(errors) < 2:
+        errors = [(case.scene.time.duration, pressure_error)]
+    texts = [f"{percent(value)} over {short(window)} s" for window, value in sorted(errors)]
     return (
         f" A relative L2 difference is mostly phase and grows with its window: at "
-        f"{milliseconds(case.scene.time.step)} {', '.join(spoken)}."
+        f"{milliseconds(case.scene.time.step)} {', '.join(texts)}."
     )
 
 
@@ -138,48 +145,50 @@ def _window_of(gate: str) -> float | None:
     return float(seconds.removesuffix("s")) if "@" in gate else None
 
 
-def _length(scene: Scene) -> float:
-    return scene.time.step * scene.time.steps
-
-
-def steps(found: Found, paper: Scene) -> tuple[str, str]:
+def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
     """Say that the time step is the damping, and which one gives 5 %."""
     measured = []
-    for case in by_step(found.get(paper.name.partition("[")[0])):
+    for case in by_step(groups.get(paper.name.partition("[")[0])):
         if (xi := case.number("dda", "mode1.damping")) is not None:
             measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
-    wanted = closed.step_for(paper, WANTED)
-    take = (
-        f"for {100 * WANTED:g}\u00a0% take dt = {1e3 * wanted:.3g}\u00a0ms (decision 1)" if wanted else "see decision 1"
-    )
+    step = closed.step_for(paper, TARGET_DAMPING)
+    advice = "see decision 1"
+    if step:
+        advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {1e3 * step:.3g}\u00a0ms (decision 1)"
     return (
         "Which time step?",
         f"The step is the damping: constant acceleration, in DDA's usage (1/2, 1) (texts on finite elements mean "
         f"(1/4, 1/2)), damps the first mode by {', '.join(measured)} of "
-        f"critical at p = {closed.ratio_of(paper):g}E; {take}.",
+        f"critical at p = {closed.ratio_of(paper):g}E; {advice}.",
     )
 
 
-def springs(found: Found) -> tuple[str, str] | None:
+def springs(groups: Groups) -> tuple[str, str] | None:
     """Say what happens at p = 100E."""
-    usual, stiff = (case_where(found.get("figures-5-6"), at_ratio(ratio)) for ratio in (STIFF / 10, STIFF))
+    usual, stiff = (case_where(groups.get("figures-5-6"), at_ratio(ratio)) for ratio in (STIFF / 10, STIFF))
     if usual is None or stiff is None:
         return None
-    fine = [stiff.number("dda", f"{name}.fine_settling_step") for name in ("displacement", "pressure")]
-    settled = [case.number("dda", "displacement.settling_step") for case in (usual, stiff)]
-    if None in (*fine, *settled):
+    settling_steps = (
+        usual.number("dda", "displacement.settling_step"),
+        stiff.number("dda", "displacement.settling_step"),
+        stiff.number("dda", "displacement.fine_settling_step"),
+        stiff.number("dda", "pressure.fine_settling_step"),
+    )
+    texts = [f"{step:.0f}" for step in settling_steps if step is not None]
+    if len(texts) < len(settling_steps):
         return None
-    numbers = [float(value or 0) for value in (*settled, *fine)]
+    usual_steps, stiff_steps, fine_displacement, fine_pressure = texts
     radius = closed.contact_radius(stiff.scene)
-    soft = closed.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
+    constant = closed.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
+    share = percent(closed.spring_share(constant))
     return (
         "Which springs?",
-        f"About p = {STIFF / 10:g}E for a locked square block: the springs then add {percent(closed.given_way(soft))} "
+        f"About p = {STIFF / 10:g}E for a locked square block: the springs then add {share} "
         "to what it shortens by itself; their force flips sign each step only beyond "
-        f"dt = {milliseconds(closed.flips_beyond(soft))}. At p = {STIFF:g}E the displacement hardly changes (settled "
-        f"within 1\u00a0% after {numbers[1]:.0f} steps instead of {numbers[0]:.0f}), but the contact rings: it flips "
-        f"sign each step and keeps {percent(radius)} of its swing, so that the pressure needs {numbers[3]:.0f} steps "
-        f"to come within 0.01\u00a0% of rest and the displacement {numbers[2]:.0f}, at "
+        f"dt = {milliseconds(closed.sign_change_step(constant))}. At p = {STIFF:g}E the displacement hardly changes "
+        f"(settled within 1\u00a0% after {stiff_steps} steps instead of {usual_steps}), but the contact rings: it "
+        f"flips sign each step and keeps {percent(radius)} of its swing, so that the pressure needs {fine_pressure} "
+        f"steps to come within 0.01\u00a0% of rest and the displacement {fine_displacement}, at "
         f"dt = {milliseconds(stiff.scene.time.step)} (decision 2).",
     )
 
@@ -187,46 +196,50 @@ def springs(found: Found) -> tuple[str, str] | None:
 def discount(paper: Scene) -> tuple[str, str]:
     """Say what gg = 0.98 does."""
     kinetic = closed.timed(paper, alpha=0.25, delta=0.5, gg=DISCOUNT)
-    spoken = []
-    for step in (2e-3, 1e-3, 1e-4):
-        xi = closed.first_damping(closed.timed(kinetic, step=step))
-        spoken.append(f"{percent(xi)} at {milliseconds(step)}")
+    ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
     return (
         f"What does gg = {DISCOUNT:g} do?",
         f"It removes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity in each step, not in each second: alone, under "
-        f"average acceleration, it damps the first mode by {', '.join(spoken)} of critical; hold "
+        f"average acceleration, it damps the first mode by {ratios} of critical; hold "
         "the rate instead, gg = exp(−c dt) (decision 3).",
     )
 
 
-def beware(found: Found) -> tuple[str, str] | None:
+def damping_at_steps(scene: Scene, steps: Iterable[float]) -> str:
+    """Return the damping ratio of the first axial mode at some steps [s], ``1.2 % at 2 ms, 2.5 % at 1 ms``."""
+    ratios = {step: closed.first_damping(closed.timed(scene, step=step)) for step in steps}
+    return ", ".join(f"{percent(xi)} at {milliseconds(step)}" for step, xi in ratios.items())
+
+
+def beware(groups: Groups) -> tuple[str, str] | None:
     """Say what must not be believed: agreement at a long step, a contact that is always closed, the frequency."""
-    rows = _model_form(found)
+    rows = _model_form(groups)
     if not rows:
         return None
-    (longest, agreed, _), group = rows[0], found["model-form"]
-    time = group.number_of_pair(longest, "bar", "continuum", "displacement.l2")
-    pulls = [value for case, _, _ in rows if (value := case.number("dda", "pressure.minimum")) is not None]
-    high = [closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1 for s in _stiffnesses(longest.scene)]
-    late = "" if time is None else f", while both are {percent(time)} off the continuum"
+    longest, agreement, _ = rows[0]
+    time_error = groups["model-form"].number_of_pair(longest, "bar", "continuum", "displacement.l2")
+    both_off = "" if time_error is None else f", while both are {percent(time_error)} off the continuum"
+    minima = [value for case, _, _ in rows if (value := case.number("dda", "pressure.minimum")) is not None]
+    stiffer = [closed.stiffer(longest.scene, ratio) for ratio in STIFFNESSES]
+    excesses = [closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1 for s in stiffer]
     return (
         "What should I not trust?",
-        f"The agreement at a long step: {percent(agreed)} at {milliseconds(longest.scene.time.step)}, because both are "
-        f"damped out{late}; a locked contact that looks closed (it pulls with {plain(-min(pulls) / 1e6, 3)} MPa in "
-        f"DDA); and the first frequency: one strain makes the natural one {percent(min(high))} to "
-        f"{percent(max(high))} too high from p = {STIFFNESSES[0]:g}E to {STIFFNESSES[-1]:g}E (softer springs less), "
-        f"and the step lowers it: {_stepped(longest.scene)} against the exact one at "
+        f"The agreement at a long step: {percent(agreement)} at {milliseconds(longest.scene.time.step)}, because both "
+        f"are damped out{both_off}; a locked contact that looks closed (it pulls with {plain(-min(minima) / 1e6, 3)} "
+        f"MPa in DDA); and the first frequency: one strain makes the natural one {percent(min(excesses))} to "
+        f"{percent(max(excesses))} too high from p = {STIFFNESSES[0]:g}E to {STIFFNESSES[-1]:g}E (softer springs "
+        f"less), and the step lowers it: {_stepped_frequencies(longest.scene)} against the exact one at "
         f"p = {closed.ratio_of(longest.scene):g}E.",
     )
 
 
-def _stepped(scene: Scene) -> str:
+def _stepped_frequencies(scene: Scene) -> str:
     """Say what the step makes of DDA's first frequency against the exact bar's, at a short and at a longer step."""
-    spoken = []
-    for step in STEPPED:
+    parts = []
+    for step in STEPS:
         excess = stepped_frequency(closed.timed(scene, step=step)) / closed_forms.bar_frequency(scene) - 1
-        spoken.append(f"{percent(abs(excess))} {'above' if excess > 0 else 'below'} at {milliseconds(step)}")
-    return ", ".join(spoken)
+        parts.append(f"{percent(abs(excess))} {'above' if excess > 0 else 'below'} at {milliseconds(step)}")
+    return ", ".join(parts)
 
 
 def stepped_frequency(scene: Scene) -> float:
@@ -235,52 +248,49 @@ def stepped_frequency(scene: Scene) -> float:
     return abs(cmath.log(root)) / scene.time.step
 
 
-def _stiffnesses(scene: Scene) -> list[Scene]:
-    return [closed.stiffer(scene, ratio) for ratio in STIFFNESSES]
-
-
 # ---- the figure ---------------------------------------------------------------------------------------------------
 
 
-def carrying(found: Found, paper: Scene) -> list[Chart]:
+def damping_and_error(groups: Groups, paper: Scene) -> list[Chart]:
     """Return damping and error over the time step, the paper's steps marked."""
-    orange, black = style_of("dda").color, style_of("bar").color
+    orange = style_of("dda").color
+    black = style_of("bar").color
     grid = np.geomspace(5e-5, 2e-2, 200)
-    own = by_step(found.get(paper.name.partition("[")[0]))
-    marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in own}
-    measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in own]
+    cases = by_step(groups.get(paper.name.partition("[")[0]))
+    marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in cases}
+    measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in cases]
     dots = np.array([(x, 100 * y) for x, y in measured if y is not None]).reshape(-1, 2).T
-    axis, limits = "time step dt [ms]", (0.05, 20.0)
+    labels = ("time step dt [ms]", "")
+    limits = (0.05, 20.0)  # ms
     damping = Chart(
         "Damping ratio of the first mode [%]",
-        (axis, ""),
+        labels,
         (
             Stroke("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
-            Stroke("as run", dots[0], dots[1], orange, dots=True, line=False, named=False),
+            Stroke("as run", dots[0], dots[1], orange, dots=True, line=False, has_label=False),
         ),
         limits,
         (0.2, 100.0),
         marks,
-        {"5 %": 100 * WANTED},
+        {"5 %": 100 * TARGET_DAMPING},
     )
     errors = []
-    group = found.get("model-form")
     for name, pair, color, dash in (
         ("DDA − bar", ("dda", "bar"), orange, ()),
         ("bar − continuum", ("bar", "continuum"), black, ()),
         ("DDA − continuum", ("dda", "continuum"), CHOICES[0], DASHED),
     ):
-        x, y = _errors(found, pair)
-        if group is not None and x.size:
+        x, y = _errors(groups.get("model-form"), pair)
+        if x.size:
             errors.append(Stroke(name, x, 100 * y, color, dash, dots=True))
     if not errors:
         return [damping]
-    error = Chart("Error of the displacement over 0.2 s [%]", (axis, ""), errors, limits, (0.2, 200.0), marks)
-    return [damping, error]
+    return [damping, Chart("Error of the displacement over 0.2 s [%]", labels, errors, limits, (0.2, 200.0), marks)]
 
 
-def _errors(found: Found, pair: tuple[str, str]) -> tuple[Array, Array]:
-    group, points = found.get("model-form"), []
+def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Array]:
+    """Return the steps [ms] of a group's cases, in rising order, and the relative L2 errors of a pair."""
+    points = []
     for case in reversed(by_step(group)):
         value = group.number_of_pair(case, *pair, "displacement.l2") if group else None
         points += [] if value is None else [(1e3 * case.scene.time.step, value)]
@@ -288,26 +298,30 @@ def _errors(found: Found, pair: tuple[str, str]) -> tuple[Array, Array]:
     return x, y
 
 
-def carrying_caption(found: Found, paper: Scene) -> str:
+def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
-    rows = _model_form(found)
+    rows = _model_form(groups)
     turn = closed.most_damped(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
-    said = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
+    claim = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
     if len(rows) > 1:
-        said += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
-        said += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
+        claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
+        claim += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
     return (
-        f"{said}. What the step itself spoils grows instead. p = {closed.ratio_of(paper):g}E, constant acceleration. "
+        f"{claim}. What the step itself spoils grows instead. p = {closed.ratio_of(paper):g}E, constant acceleration. "
         "Line: closed form; dots: as run, right in relative L2; dashed: the paper's steps."
     )
 
 
 def verdict_line(verdicts: Sequence[VerdictRecord]) -> Callout:
     """Return the one line of verdicts."""
-    count = Counter(v["verdict"] for v in verdicts)
-    gates = "gate" if len(verdicts) == 1 else "gates"
-    told = f"{count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
-    words = f"{len(verdicts)} {gates}: {told}"
     if not verdicts:
         return Callout("No gate was judged.", "warn")
-    return Callout(words, "fail" if count["FAIL"] else "warn" if count["NOT RUN"] else "pass")
+    count = Counter(v["verdict"] for v in verdicts)
+    gates = "gate" if len(verdicts) == 1 else "gates"
+    outcomes = f"{count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
+    text = f"{len(verdicts)} {gates}: {outcomes}"
+    if count["FAIL"]:
+        return Callout(text, "fail")
+    if count["NOT RUN"]:
+        return Callout(text, "warn")
+    return Callout(text, "pass")

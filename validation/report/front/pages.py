@@ -9,19 +9,21 @@ from validation.report.blocks import PageBreak, Paragraph, Part
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
-from validation.report.front.found import Found, paper_scene
+from validation.report.front.groups import Groups, paper_scene
 from validation.runs.records import VerdictRecord
 
 
-def front_pages(found: Found, verdicts: Sequence[VerdictRecord], studies: Sequence[str], directory: Path) -> list[Part]:
+def front_pages(
+    groups: Groups, verdicts: Sequence[VerdictRecord], studies: Sequence[str], directory: Path
+) -> list[Part]:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
-    paper = paper_scene(found)
-    if paper is None:
-        what = f"{len(found)} scene{'s' * (len(found) != 1)} of {', '.join(studies)}: one chapter a study."
-        return [Paragraph(what, "lead"), verdict_line(verdicts), *not_passed(verdicts)]
+    paper = paper_scene(groups)
     failures = not_passed(verdicts)
+    if paper is None:
+        what = f"{len(groups)} scene{'s' * (len(groups) != 1)} of {', '.join(studies)}: one chapter a study."
+        return [Paragraph(what, "lead"), verdict_line(verdicts), *failures]
     return [
-        *first_page(found, paper, verdicts, directory),
+        *first_page(groups, paper, verdicts, directory),
         *([PageBreak(), *failures] if failures else []),
-        *decisions(found, paper, directory),
+        *decisions(groups, paper, directory),
     ]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.report.blocks import Block, Heading, Table, columns
-from validation.report.chapters.data import Group, groups
+from validation.report.chapters.data import CaseGroup, groups_by_name
 from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.scene import drift_values, opening, scene_section
 from validation.report.chapters.text import DASH, percent, plain, short
@@ -21,7 +21,7 @@ from validation.runs.results import Results
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-SHOWN = {  # scene -> columns that its figure holds
+DRAWN_COLUMNS = {  # scene -> columns that its figure holds
     "figures-3-4": (DISPLACEMENT, PRESSURE),
     "figures-5-6": (DISPLACEMENT, PRESSURE),
     "figure-7": (DISPLACEMENT,),
@@ -30,67 +30,73 @@ SHOWN = {  # scene -> columns that its figure holds
     "model-form": (DISPLACEMENT, PRESSURE),
 }
 UNDER_THE_STEP = ("figures-3-4", "figures-5-6", "model-form")  # where the undamped continuum would hide the rest
-TOLD = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
+IN_WORDS = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: a section for each figure of the paper, then mesh and springs, then the ledger."""
-    found = {group.name: group for group in groups(results, manifest)}
+    groups = groups_by_name(results, manifest)
     blocks = opening(manifest)
-    for name, group in found.items():
-        if name not in TOLD:
-            left = tuple(by_role(Role.TRUTH)) if name in UNDER_THE_STEP else ()
-            blocks += scene_section(group, directory, SHOWN.get(name), without=left)
-    return [*blocks, *mesh_blocks(found, directory), *ledger_blocks(list(found.values()), "core", directory)]
+    for name, group in groups.items():
+        if name not in IN_WORDS:
+            without = tuple(by_role(Role.TRUTH)) if name in UNDER_THE_STEP else ()
+            blocks += scene_section(group, directory, DRAWN_COLUMNS.get(name), without=without)
+    return [*blocks, *mesh_blocks(groups, directory), *ledger_blocks(list(groups.values()), "core", directory)]
 
 
-def mesh_blocks(found: Mapping[str, Group], directory: Path) -> list[Block]:
+def mesh_blocks(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
     """Return what mesh, point springs and lateral strain do to the finite elements beside DDA."""
-    color = style_of("fem").color
-    charts, said = [], list[str]()
-    if (points := mesh_errors(found)) is not None:
+    charts: list[Chart] = []
+    sentences: list[str] = []
+    points = mesh_errors(groups)
+    if points is not None:
         n, error = points
         slope = float(np.polyfit(np.log(n), np.log(error), 1)[0])
         charts.append(
             Chart(
                 "Error of fem against the bar [-]",
                 ("elements a side n", ""),
-                (Stroke("fem", n, error, color, dots=True),),
+                (Stroke("fem", n, error, style_of("fem").color, dots=True),),
                 (n[0] / 1.3, n[-1] * 1.3),
                 (error.min() / 3, 3 * error.max()),
             )
         )
-        said.append(
+        sentences.append(
             f"Under average acceleration the error of quadratic elements falls as n to the power {plain(slope, 3)} "
             f"where the front is sharpest, from {percent(error[0])} to {percent(error[-1])}."
         )
-    drift = drift_values(found["corner-springs"]) if "corner-springs" in found else []
+    drift = drift_values(groups["corner-springs"]) if "corner-springs" in groups else []
     if len(drift) > 1:
-        chart, sentence = drift_chart(found["corner-springs"], drift)
+        chart, sentence = drift_chart(groups["corner-springs"], drift)
         charts.append(chart)
-        said.append(sentence)
+        sentences.append(sentence)
     if not charts:
         return []
-    figure = histories.saved(charts_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(said))
-    table = lateral_table(found)
+    figure = histories.saved(charts_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(sentences))
+    table = lateral_table(groups)
     return [Heading("Mesh, point springs and lateral strain", 2), figure, *([table] if table.rows else [])]
 
 
-def mesh_errors(found: Mapping[str, Group]) -> tuple[np.ndarray, np.ndarray] | None:
+def mesh_errors(groups: Mapping[str, CaseGroup]) -> tuple[np.ndarray, np.ndarray] | None:
     """Return elements a side and relative L2 error of fem against the bar; None for fewer than two meshes."""
-    group, points = found.get("mesh-convergence"), []
-    for case in group.cases if group else ():
-        error = group.number_of_pair(case, "fem", "bar", "displacement.l2") if group else None
-        points += [] if error is None else [(float(case.scene.fem.per_side), error)]
+    group = groups.get("mesh-convergence")
+    if group is None:
+        return None
+    points = []
+    for case in group.cases:
+        error = group.number_of_pair(case, "fem", "bar", "displacement.l2")
+        if error is not None:
+            points.append((float(case.scene.fem.per_side), error))
     if len(points) < 2:
         return None
     n, errors = np.array(sorted(points)).T
     return n, errors
 
 
-def drift_chart(group: Group, drift: list[tuple[int, float]]) -> tuple[Chart, str]:
+def drift_chart(group: CaseGroup, drift: list[tuple[int, float]]) -> tuple[Chart, str]:
     """Return the drift of fem on corner point springs as a chart, and the sentence that it carries."""
-    n, v = np.array([float(n) for n, _ in drift]), 1e3 * np.array([v for _, v in drift])
+    n, v = np.array(drift, dtype=float).T
+    v = 1e3 * v  # mm
     slope = float(np.polyfit(np.log2(n), v, 1)[0])
     strokes = [Stroke("fem", n, v, style_of("fem").color, dots=True)]
     dda = group.cases[0].number("dda", "displacement.static")
@@ -111,15 +117,15 @@ def drift_chart(group: Group, drift: list[tuple[int, float]]) -> tuple[Chart, st
     )
 
 
-def lateral_table(found: Mapping[str, Group]) -> Table:
+def lateral_table(groups: Mapping[str, CaseGroup]) -> Table:
     """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
     rows = []
-    group = found.get("poisson-statics")
+    group = groups.get("poisson-statics")
     for case in group.cases if group else ():
-        own, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
-        shown = [DASH if value is None else f"{1e3 * value:.3f}".replace("-", "−") for value in (own, fem)]
-        ratio = DASH if not own or not fem else percent(abs(own / fem - 1))
-        rows.append((case.label, short(case.scene.block.poisson), *shown, ratio))
+        dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
+        cells = [DASH if value is None else f"{1e3 * value:.3f}".replace("-", "−") for value in (dda, fem)]
+        ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
+        rows.append((case.label, short(case.scene.block.poisson), *cells, ratio))
     titles = (*columns("text", "Case"), *columns("decimal", "μ", "dda", "fem"), *columns("text", "apart"))
     caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
     return Table(titles, tuple(rows), caption)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.report.blocks import Block, Callout, Paragraph, Table, columns
-from validation.report.chapters.data import Group, groups
+from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.chapters.data import CaseGroup, case_groups
 from validation.report.chapters.scene import gate_count, opening, outcomes
 from validation.report.chapters.text import DASH, bounded, power
 from validation.runs.records import Manifest
@@ -17,29 +17,28 @@ MEASURES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max"
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: how far the codes are apart, scene by scene; where one did not run, why."""
-    found = groups(results, manifest)
+    groups = case_groups(results, manifest)
     blocks = opening(manifest)
     verdicts = results.verdicts(manifest["study"])
-    table = apart(found)
+    table = apart(groups)
     blocks += [Paragraph(f"{gate_count(verdicts).capitalize()}."), table] if table.rows else []
-    missing = list(
-        dict.fromkeys(block.text for group in found for block in outcomes(group) if isinstance(block, Callout))
-    )
-    blocks += [Callout(text, "warn") for text in missing[:3]]
-    return blocks
+    distinct: dict[Block, None] = {}
+    for group in groups:
+        distinct |= dict.fromkeys(outcomes(group))
+    return [*blocks, *list(distinct)[:3]]
 
 
-def apart(found: list[Group]) -> Table:
+def apart(groups: list[CaseGroup]) -> Table:
     """Return the largest difference of the two codes over the cases of each scene."""
     rows = []
-    for group in found:
-        worst = []
+    for group in groups:
+        cells = []
         for metric in MEASURES:
             values = [group.number_of_pair(case, *CODES, metric) for case in group.cases]
-            known = [value for value in values if value is not None]
-            worst.append(bounded(max(known), power(max(known))) if known else DASH)
-        if set(worst) != {DASH}:
-            rows.append((group.title, str(len(group.cases)), *worst))
+            worst = max((value for value in values if value is not None), default=None)
+            cells.append(DASH if worst is None else bounded(worst, power(worst)))
+        if set(cells) != {DASH}:
+            rows.append((group.title, str(len(group.cases)), *cells))
     titles = (
         *columns("text", "Scene"), *columns("decimal", "Cases"),
         *columns("decimal", "L2", "largest", group="Displacement"),

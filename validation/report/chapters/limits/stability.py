@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,12 +26,13 @@ from validation.runs.run import Outcome
 QUANTITIES = {"displacement": "Displacement", "pressure": "Contact pressure"}
 MEASURE = {"bar": "scaled"}  # the bar's wave may not have arrived; all others over their own maximum
 SOLVERS = ("dda", "dda-textbook", "fem", "bar")
-MATRIX, FACTOR = "extremes-", "extreme-"
+MATRIX = "extremes-"  # prefix of the scenes of the maps
+FACTOR = "extreme-"  # prefix of the scenes with one datum at its extremes
 MOST_ROWS = 16  # of the one-factor extremes
 
 
 @dataclass(frozen=True)
-class Cell:
+class ExtremeRun:
     """One run of the study beside its sixty-digit reference."""
 
     scene: str
@@ -41,35 +43,38 @@ class Cell:
     errors: Mapping[str, Value]
 
 
-def cells(results: Results, manifest: Manifest) -> list[Cell]:
+def extreme_runs(results: Results, manifest: Manifest) -> list[ExtremeRun]:
     """Return the runs of the solvers that are judged, with their errors where there are any."""
     rows = results.rows()
     compared = {(c["scene"], c["solver"]): c["metrics"] for c in manifest.get("comparisons", [])}
-    found = []
+    runs = []
     for entry in manifest.get("cases", []):
-        solver, name, data = entry["solver"], entry["scene"], entry["definition"]
+        solver = entry["solver"]
         if solver not in SOLVERS or entry["key"] not in rows:
             continue
+        name = entry["scene"]
+        definition = entry["definition"]
         metrics = compared.get((name, solver), {})
         errors = {q: metrics.get(f"{q}.{MEASURE.get(solver, 'max')}") for q in QUANTITIES}
-        ratio = data["contact"]["stiffness"] / data["block"]["young"]
-        found.append(Cell(name, solver, ratio, data["time"]["step"], rows[entry["key"]], errors))
-    return found
+        ratio = definition["contact"]["stiffness"] / definition["block"]["young"]
+        runs.append(ExtremeRun(name, solver, ratio, definition["time"]["step"], rows[entry["key"]], errors))
+    return runs
 
 
 def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of a study of extremes."""
-    found = cells(results, manifest)
-    blocks = [*opening(manifest, lead=conclusion(found)), outcome_table(found)]
-    matrix = [cell for cell in found if cell.scene.startswith(MATRIX)]
+    runs = extreme_runs(results, manifest)
+    blocks = [*opening(manifest, lead=conclusion(runs)), outcome_table(runs)]
+    matrix = [run for run in runs if run.scene.startswith(MATRIX)]
     for solver in SOLVERS:
-        blocks += _maps(manifest["study"], [cell for cell in matrix if cell.solver == solver], directory)
-    return [*blocks, *factor_tables([c for c in found if c.scene.startswith(FACTOR)])]
+        blocks += _maps(manifest["study"], [run for run in matrix if run.solver == solver], directory)
+    return [*blocks, *factor_tables([run for run in runs if run.scene.startswith(FACTOR)])]
 
 
-def _numbers(found: Iterable[Cell], quantity: str) -> list[float]:
-    values = [cell.errors.get(quantity) for cell in found]
-    return [float(v) for v in values if isinstance(v, int | float)]
+def _errors(runs: Iterable[ExtremeRun]) -> list[float]:
+    """Return the errors of runs in both quantities, as far as they are numbers."""
+    values = itertools.chain.from_iterable(run.errors.values() for run in runs)
+    return [float(value) for value in values if isinstance(value, int | float)]
 
 
 def digits(error: float) -> int:
@@ -77,31 +82,36 @@ def digits(error: float) -> int:
     return int(digits_of(np.array(error)))
 
 
-def conclusion(found: Sequence[Cell]) -> str:
+def conclusion(runs: Sequence[ExtremeRun]) -> str:
     """Say in one sentence how many digits each solver keeps at least, and how runs beyond their limit end."""
-    said = []
+    parts = []
     for solver in SOLVERS:
-        own = [c for c in found if c.solver == solver and (solver != "fem" or 1e-3 <= c.ratio <= 1e12)]
-        worst = [*_numbers(own, "displacement"), *_numbers(own, "pressure")]
-        if worst:
+        errors = _errors(c for c in runs if c.solver == solver and (solver != "fem" or 1e-3 <= c.ratio <= 1e12))
+        if errors:
             where = " for p/E from 10⁻³ to 10¹²" if solver == "fem" else ""
-            said.append(f"{solver} {digits(max(worst))}{where}")
-    ends = Counter(cell.row.outcome for cell in found if cell.solver == "dda")
-    grown, odd = ends[Outcome.UNSTABLE] + ends[Outcome.OVERFLOW], ends[Outcome.MISPREDICTED]
-    tail = f"; {grown} runs of dda left their bounds, {f'all but {odd} more' if odd else 'all'} as predicted"
-    return f"Fewest correct digits, in both quantities: {', '.join(said)}{tail if grown else ''}."
+            parts.append(f"{solver} {digits(max(errors))}{where}")
+    text = f"Fewest correct digits, in both quantities: {', '.join(parts)}"
+    ends = Counter(run.row.outcome for run in runs if run.solver == "dda")
+    grown = ends[Outcome.UNSTABLE] + ends[Outcome.OVERFLOW]
+    if grown:
+        mispredicted = ends[Outcome.MISPREDICTED]
+        share = f"all but {mispredicted} more" if mispredicted else "all"
+        text += f"; {grown} runs of dda left their bounds, {share} as predicted"
+    return f"{text}."
 
 
-def outcome_table(found: Sequence[Cell]) -> Table:
+def outcome_table(runs: Sequence[ExtremeRun]) -> Table:
     """Return how often each outcome was met, by solver."""
     kinds = [str(kind) for kind in Stability]
     rows = []
     for solver in SOLVERS:
         count: Counter[str] = Counter()
-        for cell in (c for c in found if c.solver == solver):
-            kind = cell.row.metrics.get("stability.kind")
-            named = cell.row.outcome in (Outcome.COMPLETED, Outcome.UNSTABLE, Outcome.OVERFLOW) and kind in kinds
-            count[str(kind) if named else str(cell.row.outcome)] += 1
+        for run in runs:
+            if run.solver != solver:
+                continue
+            kind = run.row.metrics.get("stability.kind")
+            has_kind = run.row.outcome in (Outcome.COMPLETED, Outcome.UNSTABLE, Outcome.OVERFLOW) and kind in kinds
+            count[str(kind) if has_kind else str(run.row.outcome)] += 1
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
     titles = (Column("Solver"), *columns("decimal", *kinds), Column("otherwise", "fill"))
@@ -110,75 +120,78 @@ def outcome_table(found: Sequence[Cell]) -> Table:
     return Table(titles, tuple(rows), caption, notes)
 
 
-def _maps(study: str, own: Sequence[Cell], directory: Path) -> list[Block]:
+def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> list[Block]:
     """Return the two maps of one solver, worst over schemes, starts and discounts."""
-    if not any(_numbers(own, quantity) for quantity in QUANTITIES):
+    if not _errors(runs):
         return []
-    ratios, steps = sorted({c.ratio for c in own}), sorted({c.step for c in own})
-    maps = [DigitMap(title, _worst(own, q, ratios, steps)) for q, title in QUANTITIES.items()]
-    drawn = digit_maps(maps, [*map(_decade, ratios)], [*map(_decade, steps)], "Time step dt [s]", "p / E")
-    solver = own[0].solver
-    over = "over the static value where nothing has arrived, " if solver == "bar" else ""
-    caption = f"{solver}: correct digits, {over}the worst of all bounded schemes; blank: no bounded run."
-    return [histories.saved(drawn, directory, f"{study}-digits-{solver}.svg", caption)]
+    ratios = sorted({run.ratio for run in runs})
+    steps = sorted({run.step for run in runs})
+    maps = [DigitMap(title, _worst(runs, q, ratios, steps)) for q, title in QUANTITIES.items()]
+    figure = digit_maps(maps, [*map(_decade, ratios)], [*map(_decade, steps)], "Time step dt [s]", "p / E")
+    solver = runs[0].solver
+    scale = "over the static value where nothing has arrived, " if solver == "bar" else ""
+    caption = f"{solver}: correct digits, {scale}the worst of all bounded schemes; blank: no bounded run."
+    return [histories.saved(figure, directory, f"{study}-digits-{solver}.svg", caption)]
 
 
-def _worst(own: Sequence[Cell], quantity: str, ratios: Sequence[float], steps: Sequence[float]) -> Array:
-    error = np.full((len(ratios), len(steps)), np.nan)
-    for cell in own:
-        value = cell.errors.get(quantity)
+def _worst(runs: Sequence[ExtremeRun], quantity: str, ratios: Sequence[float], steps: Sequence[float]) -> Array:
+    errors = np.full((len(ratios), len(steps)), np.nan)
+    for run in runs:
+        value = run.errors.get(quantity)
         if isinstance(value, int | float):
-            i, j = ratios.index(cell.ratio), steps.index(cell.step)
-            error[i, j] = np.fmax(error[i, j], float(value))
-    return error
+            place = ratios.index(run.ratio), steps.index(run.step)
+            errors[place] = np.fmax(errors[place], float(value))
+    return errors
 
 
 def _decade(value: float) -> str:
     return f"$10^{{{round(math.log10(value))}}}$"
 
 
-def factor_tables(found: Sequence[Cell]) -> list[Block]:
+def factor_tables(runs: Sequence[ExtremeRun]) -> list[Block]:
     """Return one table of the one-factor extremes: radius, condition, residual and digits."""
-    by_key = {(c.scene, c.solver): c for c in found}
-    scenes = dict.fromkeys(c.scene for c in found)
+    by_key = {(run.scene, run.solver): run for run in runs}
+    scenes = dict.fromkeys(run.scene for run in runs)
     rows = [_factor_row(scene, by_key) for scene in scenes]
     if not rows:
         return []
+    caption = ""
     if len(rows) > MOST_ROWS:
         fewest = sorted(rows, key=lambda row: _fewest(by_key.get((row[0], "dda"))))[:MOST_ROWS]
         rows = [row for row in rows if row in fewest]
+        caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
     titles = (
         Column("Scene", "id"),
         *columns("decimal", "|λ|", "condition", "residual", group="dda"),
         *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
     )
-    left = len(rows) < len(scenes)
-    caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits." if left else ""
     return [Heading("One datum at its extremes", 3), Table(titles, tuple(rows), caption, ruled=False)]
 
 
-def _factor_row(scene: str, found: Mapping[tuple[str, str], Cell]) -> tuple[str, ...]:
-    own = found.get((scene, "dda"))
-    metrics = own.row.metrics if own else {}
-    shown = [_shown(metrics.get(f"stability.{name}")) for name in ("radius", "condition", "residual")]
-    return (scene, *shown, *(_both(found.get((scene, solver))) for solver in ("dda", "dda-textbook", "fem")))
+def _factor_row(scene: str, runs: Mapping[tuple[str, str], ExtremeRun]) -> tuple[str, ...]:
+    dda = runs.get((scene, "dda"))
+    metrics = dda.row.metrics if dda else {}
+    numbers = [_number_cell(metrics.get(f"stability.{name}")) for name in ("radius", "condition", "residual")]
+    return (scene, *numbers, *(_digits_cell(runs.get((scene, solver))) for solver in ("dda", "dda-textbook", "fem")))
 
 
-def _fewest(cell: Cell | None) -> float:
-    """Return the fewest digits that a run keeps in either quantity; without end where it has no errors."""
-    values = [] if cell is None else [*_numbers([cell], "displacement"), *_numbers([cell], "pressure")]
-    return digits(max(values)) if values else math.inf
+def _fewest(run: ExtremeRun | None) -> float:
+    """Return the fewest digits that a run keeps in either quantity; infinity where it has no errors."""
+    errors = [] if run is None else _errors([run])
+    return digits(max(errors)) if errors else math.inf
 
 
-def _shown(value: Value) -> str:
-    return (short(value, 3) if abs(value) > 1e-300 else "0") if isinstance(value, float) else DASH
-
-
-def _both(cell: Cell | None) -> str:
-    """Return the digits of both quantities, or the outcome where there are none."""
-    if cell is None:
+def _number_cell(value: Value) -> str:
+    if not isinstance(value, float):
         return DASH
-    values = [cell.errors.get(quantity) for quantity in QUANTITIES]
-    if not all(isinstance(v, int | float) for v in values):
-        return DASH if cell.row.outcome is Outcome.COMPLETED else str(cell.row.outcome)
-    return " / ".join(str(digits(float(v))) for v in values if isinstance(v, int | float))
+    return short(value, 3) if abs(value) > 1e-300 else "0"
+
+
+def _digits_cell(run: ExtremeRun | None) -> str:
+    """Return the digits of both quantities, or the outcome where there are none."""
+    if run is None:
+        return DASH
+    errors = _errors([run])
+    if len(errors) < len(QUANTITIES):
+        return DASH if run.row.outcome is Outcome.COMPLETED else str(run.row.outcome)
+    return " / ".join(str(digits(error)) for error in errors)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from validation.report.blocks import Block, Heading, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, plain
+from validation.report.chapters.text import cell
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.solvers.contract import EXACT_IN_TIME
@@ -29,31 +29,22 @@ NOTE = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: a table for each benchmark."""
-    found = groups(results, manifest)
-    blocks = opening(manifest, verdicts_of(found), said=NOTE)
-    for group in found:
+    groups = case_groups(results, manifest)
+    blocks = opening(manifest, verdicts_of(groups), remark=NOTE)
+    for group in groups:
         blocks += [Heading(group.title, 3), table(group)]
     return blocks
 
 
-def table(group: Group) -> Table:
-    """Return what each solver found in each case."""
+def table(group: CaseGroup) -> Table:
+    """Return the quantities of each run."""
     titles = (*columns("text", "Case", "Solver"), *columns("decimal", *(title for title, _, _ in QUANTITIES)))
     rows = []
     for case in group.cases:
         label = case.label
         for solver in case.rows:
-            rows.append((label, named(solver), *cells(case, solver)))
+            name = f"{solver} (exact)" if role(solver) in EXACT_IN_TIME else solver
+            cells = (cell(case.number(solver, metric), factor, 5) for _, metric, factor in QUANTITIES)
+            rows.append((label, name, *cells))
             label = ""
     return Table(titles, tuple(rows))
-
-
-def named(solver: str) -> str:
-    """Return a solver's name, marked where it is exact in time."""
-    return f"{solver} (exact)" if role(solver) in EXACT_IN_TIME else solver
-
-
-def cells(case: Case, solver: str) -> tuple[str, ...]:
-    """Return the quantities of a run."""
-    values = ((case.number(solver, metric), factor) for _, metric, factor in QUANTITIES)
-    return tuple(DASH if value is None else plain(factor * value, 5) for value, factor in values)

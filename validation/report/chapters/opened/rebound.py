@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 
 from validation.gates import landing
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import contact, histories
@@ -19,7 +20,8 @@ from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 
 EXACT = "block-events"
-IMPACT, MAP = "rebound-", "contact-map-"
+IMPACT = "rebound-"  # prefix of the scenes of single landings
+MAP = "contact-map-"  # prefix of the scenes over step and springs
 MARKS = {0.3: "0.3", 2.0: "2"}
 WORDS = {  # the ends of the scenes' names
     "constant": "constant acceleration (1/2, 1)",
@@ -27,68 +29,70 @@ WORDS = {  # the ends of the scenes' names
     "implicit": "implicit contact, (1/4, 1/2) in the block",
     "conserving": "energy-conserving contact",
 }
-SHOWN = (1e-3, 2e-4)  # time steps in the table of budgets [s]
+BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: restitution, then energy, switches and solves."""
-    found = groups(results, manifest)
-    impacts = [group for group in found if group.name.startswith(IMPACT)]
-    maps = [group for group in found if group.name.startswith(MAP)]
+    groups = case_groups(results, manifest)
+    impacts = [group for group in groups if group.name.startswith(IMPACT)]
+    maps = [group for group in groups if group.name.startswith(MAP)]
     blocks = opening(manifest)
     blocks += [Paragraph(conclusion(maps), "lead")] if maps else []
     if (data := manifest.get("data")) and data.get("schemes"):
         blocks += restitution_blocks(data, impacts, directory)
-    return blocks + map_blocks(maps, verdicts_of(found), directory)
+    return blocks + map_blocks(maps, verdicts_of(groups), directory)
 
 
 # ---- restitution --------------------------------------------------------------------------------------------------
 
 
-def restitution_blocks(data: dict[str, Any], impacts: Sequence[Group], directory: Path) -> list[Block]:
+def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> list[Block]:
     """Return the restitution map as a figure, and what it is on a rigid contact."""
     omega = np.array(data["omega"])
     curves = []
     for name, rows in data["schemes"].items():
-        dots = tuple(dot for group in impacts if kind(group) == name for dot in impact_dots(group))
+        dots: list[tuple[float, float]] = []
+        for group in impacts:
+            if kind(group) == name:
+                dots += impact_dots(group)
         words = WORDS.get(name, name).partition(",")[0].removesuffix(" (1/2").removesuffix(" (1/4")
         mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
-        curves.append(contact.Curve(words, omega, mean, low, high, dots))
+        curves.append(contact.RestitutionCurve(words, omega, mean, low, high, tuple(dots)))
     caption = (
         "Share of its landing speed that a rigid block keeps, over ω_c dt: mean (line) and range over the phase of the "
         "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. Without a time "
         "step a rigid block keeps all of it, e = 1."
     )
-    own = {ratio: landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
-    said = (
+    exact = {ratio: landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
+    text = (
         "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ exp(−π ω_c dt / 4) for (1/2, 1); at ω_c "
         "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
         "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
         "average. This is a rigid mass. The block of one strain is one only in two limits, with a quarter of its mass, "
         "ω_c = √(8 p / m), at p ≫ E, and with all of it, ω_c = √(2 p / m), at p ≪ E; without a time step its own "
-        f"restitution is {own[1.0]:.3f}, {own[10.0]:.3f} and {own[100.0]:.3f} at p = 1, 10 and 100E, and "
-        f"at p ≫ E it lands in "
-        "three contacts in a row."
+        f"restitution is {exact[1.0]:.3f}, {exact[10.0]:.3f} and {exact[100.0]:.3f} at p = 1, 10 and 100E, and "
+        "at p ≫ E it lands in three contacts in a row."
     )
     figure = contact.restitution_figure(curves, MARKS)
     return [
         Heading("What a landing returns", 2),
         histories.saved(figure, directory, "rebound-restitution.svg", caption),
-        Paragraph(said),
+        Paragraph(text),
     ]
 
 
-def kind(group: Group) -> str:
+def kind(group: CaseGroup) -> str:
     """Return the kind of contact and scheme, the end of the scene's name."""
     return group.name.rpartition("-")[2]
 
 
-def impact_dots(group: Group) -> list[tuple[float, float]]:
+def impact_dots(group: CaseGroup) -> list[tuple[float, float]]:
     """Return Omega and restitution of the impacts that were run."""
     dots = []
     for case in group.cases:
-        width, height = (float(np.ptp([point[i] for point in case.scene.block.outline])) for i in (0, 1))
-        mass = case.scene.block.density * width * height
+        width, height = np.ptp(np.array(case.scene.block.outline), axis=0)
+        mass = case.scene.block.density * float(width) * float(height)
         e = case.number("dda", "contact.restitution")
         if e is not None:
             dots.append((math.sqrt(2 * case.scene.contact.stiffness / mass) * case.scene.time.step, e))
@@ -98,57 +102,63 @@ def impact_dots(group: Group) -> list[tuple[float, float]]:
 # ---- over step and springs ----------------------------------------------------------------------------------------
 
 
-def ratio(case: Case) -> float:
+def ratio(case: CaseResults) -> float:
     """Return p/E."""
     return case.scene.contact.stiffness / case.scene.block.young
 
 
-def exact_switches(maps: Sequence[Group]) -> dict[float, float]:
+def exact_switches(maps: Sequence[CaseGroup]) -> dict[float, float]:
     """Return the switches of the exact block by p/E."""
-    found = {}
+    switches = {}
     for group in maps:
         for case in group.cases:
-            if (count := case.number(EXACT, "switches.count")) is not None:
-                found[ratio(case)] = count
-    return found
+            count = case.number(EXACT, "switches.count")
+            if count is not None:
+                switches[ratio(case)] = count
+    return switches
 
 
-def conclusion(maps: Sequence[Group]) -> str:
+def conclusion(maps: Sequence[CaseGroup]) -> str:
     """Say in one or two sentences what was gained, and how many solves it took."""
     parts = []
     for group in maps:
-        rises = [value for case in group.cases if (value := case.number("dda", "energy.rise")) is not None]
-        solves = [value for case in group.cases if (value := case.number("dda", "contact.most_solves")) is not None]
+        rises = group.numbers("dda", "energy.rise")
+        solves = group.numbers("dda", "contact.most_solves")
         if rises and solves:
             words = WORDS.get(kind(group), group.title)
             most = max(rises)
             gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
-    said = "; ".join(parts)
-    return f"{said[:1].upper()}{said[1:]}: a step too large for the contact spoils the motion, not the iteration."
+    text = "; ".join(parts)
+    return f"{text[:1].upper()}{text[1:]}: a step too large for the contact spoils the motion, not the iteration."
 
 
-def map_blocks(maps: Sequence[Group], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
+def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
     """Return the maps over dt and p, and the budget of energy as a table."""
     if not maps:
         return []
-    ratios = sorted({ratio(case) for group in maps for case in group.cases})
-    steps = sorted({case.scene.time.step for group in maps for case in group.cases}, reverse=True)
+    cases = list(itertools.chain.from_iterable(group.cases for group in maps))
+    ratios = sorted({ratio(case) for case in cases})
+    steps = sorted({case.scene.time.step for case in cases}, reverse=True)
     exact = exact_switches(maps)
-    drawn = [number_maps_of(group, ratios, steps, exact) for group in maps]
-    names = ([f"p = {short(r)}E" for r in ratios], [short(1e3 * step) for step in steps])
+    number_maps = [number_maps_of(group, ratios, steps, exact) for group in maps]
+    figure = contact.number_maps(
+        number_maps, [f"p = {short(r)}E" for r in ratios], [short(1e3 * step) for step in steps]
+    )
+    schemes = ", ".join(WORDS.get(kind(group), group.title) for group in maps)
     caption = (
         "The paper's block, unlocked, over 0.2 s, dda: solves of the open-close iteration a step (mean), greatest "
         "energy above that given, over it, and openings and closings over those of the exact motion; from above: "
-        + ", ".join(WORDS.get(kind(group), group.title) for group in maps)
-        + "."
+        f"{schemes}."
     )
-    count = f"{gate_count(verdicts).capitalize()}."
+    remark = HORIZON
+    if verdicts:
+        remark += f" {gate_count(verdicts).capitalize()}."
     return [
         Heading("Energy, switches and solves", 2),
-        histories.saved(contact.number_maps(drawn, *names), directory, "rebound-maps.svg", caption),
+        histories.saved(figure, directory, "rebound-maps.svg", caption),
         budget_table(maps),
-        Paragraph(f"{HORIZON} {count}" if verdicts else HORIZON),
+        Paragraph(remark),
     ]
 
 
@@ -161,14 +171,14 @@ HORIZON = (
 
 
 def number_maps_of(
-    group: Group, ratios: Sequence[float], steps: Sequence[float], exact: dict[float, float]
+    group: CaseGroup, ratios: Sequence[float], steps: Sequence[float], exact: dict[float, float]
 ) -> list[contact.NumberMap]:
     """Return the three maps of a scheme."""
     cells = {(ratio(case), case.scene.time.step): case for case in group.cases}
     grid = [[cells.get((r, step)) for step in steps] for r in ratios]
     solves = [[None if c is None else c.number("dda", "contact.mean_solves") for c in row] for row in grid]
     rises = [[None if c is None else c.number("dda", "energy.rise") for c in row] for row in grid]
-    switches = [[_over(c, exact) for c in row] for row in grid]
+    switches = [[_switches_over_exact(c, exact) for c in row] for row in grid]
     return [
         _map("solves a step", solves, lambda v: min(1.0, v - 1.0)),
         _map("energy gained", rises, lambda v: 0.0 if v < 1e-3 else min(1.0, (3 + math.log10(v)) / 6)),
@@ -176,10 +186,12 @@ def number_maps_of(
     ]
 
 
-def _over(case: Case | None, exact: dict[float, float]) -> float | None:
-    count = None if case is None else case.number("dda", "switches.count")
-    known = None if case is None else exact.get(ratio(case))
-    return None if count is None or not known else count / known
+def _switches_over_exact(case: CaseResults | None, exact: dict[float, float]) -> float | None:
+    if case is None:
+        return None
+    count = case.number("dda", "switches.count")
+    exact_count = exact.get(ratio(case))
+    return None if count is None or not exact_count else count / exact_count
 
 
 def _map(title: str, values: list[list[float | None]], shade: Any) -> contact.NumberMap:
@@ -192,10 +204,12 @@ def _number(value: float) -> str:
     """Return a number that fits into a cell."""
     if abs(value) < 1e-9:
         return "0"
-    return "<0.001" if abs(value) < 1e-3 else short(value, 3) if value < 100 else f"{value:.0f}"
+    if abs(value) < 1e-3:
+        return "<0.001"
+    return short(value, 3) if value < 100 else f"{value:.0f}"
 
 
-def budget_table(maps: Sequence[Group]) -> Table:
+def budget_table(maps: Sequence[CaseGroup]) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
     titles = columns("text", "Scheme", "p", "dt [ms]")
     titles += columns("decimal", "scheme", "switching", group="Lost by, over the energy given")
@@ -203,24 +217,24 @@ def budget_table(maps: Sequence[Group]) -> Table:
     rows = []
     for group in maps:
         name = kind(group)
-        shown = [case for case in group.cases if case.scene.time.step in SHOWN]
-        for case in sorted(shown, key=lambda c: (ratio(c), -c.scene.time.step)):
+        cases = [case for case in group.cases if case.scene.time.step in BUDGET_STEPS]
+        for case in sorted(cases, key=lambda c: (ratio(c), -c.scene.time.step)):
             rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
             name = ""
     return Table(titles, tuple(rows), "Budget of the cases of two time steps, dda.", ruled=False)
 
 
-def budget_cells(case: Case) -> tuple[str, ...]:
+def budget_cells(case: CaseResults) -> tuple[str, ...]:
     """Return losses, peak force, penetration, share open and horizon of a case."""
-    gain, given = case.number("dda", "energy.switching_gain"), case.number("dda", "energy.given")
+    input_energy = case.number("dda", "energy.given")
     lost = case.number("dda", "energy.lost_algorithmic")
-    scheme_share = None if lost is None or not given else lost / given
     numbers = (
-        (scheme_share, 1.0),
-        (None if gain is None else -gain, 1.0),
+        (None if lost is None or not input_energy else lost / input_energy, 1.0),
+        (case.number("dda", "energy.switching_gain"), -1.0),
         (case.number("dda", "contact.peak_force"), 1e-6),
         (case.number("dda", "contact.penetration"), 1e3),
         (case.number("dda", "contact.open_share"), 100.0),
         (case.number("dda", "horizon.time"), 1.0),
     )
+    # Adding zero takes the sign off a negative zero.
     return tuple(DASH if value is None else plain(factor * value + 0.0, 3) for value, factor in numbers)

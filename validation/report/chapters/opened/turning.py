@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from validation.report.blocks import Block, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import histories, turning
-from validation.report.figures.turning import Line, Panel
+from validation.report.figures.turning import TurningLine, TurningPanel
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.rocking.read import increments, rectangle
@@ -47,82 +48,82 @@ QUANTITIES = {  # metric -> words
 
 def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of `rocking`."""
-    found = groups(results, manifest)
-    swings = [group for group in found if group.name in LET_GO]
-    pulses = [group for group in found if group.name == PULSE]
-    shown = [swing_panel(group) for group in swings[-1:]] + [pulse_panel(group) for group in pulses]
+    groups = case_groups(results, manifest)
+    swings = [group for group in groups if group.name in LET_GO]
+    pulses = [group for group in groups if group.name == PULSE]
+    panels = [swing_panel(group) for group in swings[-1:]] + [pulse_panel(group) for group in pulses]
     caption = (
         "Left: tilt over that of the release, over time in quarter periods of the rigid block, which lies flat at 1. "
         "Right: tilt over the tipping angle on a base that accelerates for 0.36 s, by the pulse over the least that "
         "overturns the rigid block."
     )
-    blocks = [*opening(manifest, verdicts_of(found)), Paragraph(SWINGS), swing_table(swings)]
+    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(SWINGS), swing_table(swings)]
     blocks += [Paragraph(PULSES), pulse_table(pulses)]
-    return [*blocks, *drawn(shown, directory, "rocking.svg", caption)]
+    return [*blocks, *drawn(panels, directory, "rocking.svg", caption)]
 
 
 def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter of `toppling`."""
-    found = groups(results, manifest)
+    groups = case_groups(results, manifest)
     caption = (
         "Left: turn of a tower of 10 m × 25 m on a slope of 40° (dashed: rigid block, let go on its corner). Right: "
         "its area over that of the start (dashed: the product of 1 + r² over the steps)."
     )
-    shown = [fall_panel(found), area_panel(found)]
-    blocks = [*opening(manifest, verdicts_of(found)), Paragraph(FALLS), fall_table(found)]
-    return [*blocks, *drawn([panel for panel in shown if panel.lines], directory, "toppling.svg", caption)]
+    panels = [fall_panel(groups), area_panel(groups)]
+    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(FALLS), fall_table(groups)]
+    return [*blocks, *drawn(panels, directory, "toppling.svg", caption)]
 
 
-def drawn(shown: Sequence[Panel], directory: Path, file: str, caption: str) -> list[Block]:
-    """Return the figure, nothing where no case finished."""
-    kept = [panel for panel in shown if panel.lines]
-    return [histories.saved(turning.panels(kept), directory, file, caption)] if kept else []
+def drawn(panels: Sequence[TurningPanel], directory: Path, file: str, caption: str) -> list[Block]:
+    """Return the figure of the panels that have lines, nothing where no case finished."""
+    filled = [panel for panel in panels if panel.lines]
+    return [histories.saved(turning.turning_figure(filled), directory, file, caption)] if filled else []
 
 
-def judged(group: Group, case: Case, metric: str) -> str:
+def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
     """Return the value that a gate saw, as text."""
     values = [v["value"] for v in group.verdicts if v["scene"] == case.name and v["metric"] == metric]
     return short(values[0]) if values and isinstance(values[0], int | float) else DASH
 
 
-def swing_table(swings: Sequence[Group]) -> Table:
+def swing_table(swings: Sequence[CaseGroup]) -> Table:
     """Return quarter periods and rate ratios."""
     titles = ("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner")
     rows = []
     for group in swings:
         for case in group.cases:
-            block, tilt = rectangle(case.scene), math.radians(case.scene.block.tilt)
-            own = (judged(group, case, metric) for metric in ("quarter period", "rate ratio"))
+            block = rectangle(case.scene)
+            tilt = math.radians(case.scene.block.tilt)
+            measured = (judged(group, case, metric) for metric in ("quarter period", "rate ratio"))
             ratio = plain(block.height / block.width, 2)
-            rows.append((ratio, plain(tilt / block.alpha, 2), *own, plain(block.housner, 3)))
+            rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
     caption = (
         "Blocks of a = 2 m that are let go. Quarter period over the rigid block's; rate after over before the impact."
     )
     return Table(columns("decimal", *titles), tuple(rows), caption)
 
 
-def size(case: Case) -> float:
+def size(case: CaseResults) -> float:
     """Return the pulse over the least one that overturns the rigid block [-]."""
     block = rectangle(case.scene)
     return PUSH / block.gravity / block.pulse_threshold(DURATION)
 
 
-def pulse_table(pulses: Sequence[Group]) -> Table:
+def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
     """Return peaks, and times of tipping, after pulses."""
-    rows = tuple(
-        (plain(size(case), 3), *(judged(group, case, metric) for metric in ("peak", "time")))
-        for group in pulses
-        for case in group.cases
-    )
+    rows = []
+    for group in pulses:
+        for case in group.cases:
+            rows.append((plain(size(case), 3), judged(group, case, "peak"), judged(group, case, "time")))
     titles = columns("decimal", "pulse / threshold", "peak tilt", "time of tipping")
-    return Table(titles, rows, "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
+    return Table(titles, tuple(rows), "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
 
 
-def fall_table(found: Sequence[Group]) -> Table:
-    """Return what the gates saw of blocks on slopes, with their bands."""
+def fall_table(groups: Sequence[CaseGroup]) -> Table:
+    """Return what the gates of blocks on slopes measured, with their bands."""
     titles = (*columns("text", "Scene", "Quantity"), *columns("decimal", "DDA", "from", "to"))
     rows = []
-    for group in found:
+    for group in groups:
         for case in group.cases:
             label = f"{group.name.removeprefix('toppling-')} {case.label if len(group.cases) > 1 else ''}".strip()
             for verdict in (v for v in group.verdicts if v["scene"] == case.name):
@@ -133,56 +134,58 @@ def fall_table(found: Sequence[Group]) -> Table:
     return Table(titles, tuple(rows))
 
 
-def swing_panel(group: Group) -> Panel:
+def swing_panel(group: CaseGroup) -> TurningPanel:
     """Return tilt over time of blocks that are let go."""
     lines = []
     for case in group.cases:
         if (history := case.histories.get("dda")) is not None:
-            block, tilt = rectangle(case.scene), math.radians(case.scene.block.tilt)
+            block = rectangle(case.scene)
+            tilt = math.radians(case.scene.block.tilt)
             x = history.time / block.quarter_period(tilt)
             y = 1 + history.columns["rotation"] / tilt
-            lines.append(Line(f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
-    return Panel("Let go", "t / T", "tilt / first tilt", tuple(lines), 0.0, 1.0)
+            lines.append(TurningLine(f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
+    return TurningPanel("Let go", "t / T", "tilt / first tilt", tuple(lines), 0.0, 1.0)
 
 
-def pulse_panel(group: Group) -> Panel:
+def pulse_panel(group: CaseGroup) -> TurningPanel:
     """Return tilt over time of blocks on a base that accelerates."""
     lines = []
     for case in group.cases:
         if (history := case.histories.get("dda")) is not None:
             tilt = history.columns["rotation"] / rectangle(case.scene).alpha
-            lines.append(Line(f"{size(case):.2f}", history.time, tilt))
-    return Panel("A pulse of the base", "t [s]", "tilt / tipping angle", tuple(lines), 1.0, DURATION)
+            lines.append(TurningLine(f"{size(case):.2f}", history.time, tilt))
+    return TurningPanel("A pulse of the base", "t [s]", "tilt / tipping angle", tuple(lines), 1.0, DURATION)
 
 
-def histories_of(found: Sequence[Group], name: str) -> list[Case]:
-    """Return the finished cases of a scene."""
-    return [case for group in found if group.name == name for case in group.cases if "dda" in case.histories]
+def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
+    """Return the cases of a scene that have a history of DDA."""
+    cases = itertools.chain.from_iterable(group.cases for group in groups if group.name == name)
+    return [case for case in cases if "dda" in case.histories]
 
 
-def fall_panel(found: Sequence[Group]) -> Panel:
+def fall_panel(groups: Sequence[CaseGroup]) -> TurningPanel:
     """Return the turn of falling towers, and that of a rigid one."""
     lines = []
     for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "let go")):
-        for case in histories_of(found, name):
+        for case in finished_cases(groups, name):
             history = case.histories["dda"]
-            lines.append(Line(words, history.time, -history.columns["rotation"]))
-    for case in histories_of(found, "toppling-fall"):
+            lines.append(TurningLine(words, history.time, -history.columns["rotation"]))
+    for case in finished_cases(groups, "toppling-fall"):
         turns = np.linspace(0.0, -float(case.histories["dda"].columns["rotation"][-1]), 101)[1:]
         times = np.array([rectangle(case.scene).fall_time(beyond(case.scene), turn) for turn in turns])
-        lines.append(Line("rigid", times, turns, dashed=True))
-    return Panel("Toppling", "t [s]", "turn [rad]", tuple(lines))
+        lines.append(TurningLine("rigid", times, turns, dashed=True))
+    return TurningPanel("Toppling", "t [s]", "turn [rad]", tuple(lines))
 
 
-def area_panel(found: Sequence[Group]) -> Panel:
+def area_panel(groups: Sequence[CaseGroup]) -> TurningPanel:
     """Return the area of towers by exact and by first-order rotation."""
     lines = []
     for name, words in (("toppling-fall", "exact"), ("toppling-growth", "first-order")):
-        for case in histories_of(found, name):
+        for case in finished_cases(groups, name):
             history = case.histories["dda"]
-            lines.append(Line(words, history.time, 100 * (history.columns["area"] - 1)))
-    for case in histories_of(found, "toppling-growth"):
+            lines.append(TurningLine(words, history.time, 100 * (history.columns["area"] - 1)))
+    for case in finished_cases(groups, "toppling-growth"):
         history = case.histories["dda"]
         product = 100 * (np.cumprod(1 + increments(history) ** 2) - 1)
-        lines.append(Line("product", history.time, np.asarray(product, dtype=np.float64), dashed=True))
-    return Panel("Growth of the area", "t [s]", "area / first area − 1 [%]", tuple(lines))
+        lines.append(TurningLine("product", history.time, np.asarray(product, dtype=np.float64), dashed=True))
+    return TurningPanel("Growth of the area", "t [s]", "area / first area − 1 [%]", tuple(lines))

@@ -9,17 +9,22 @@ import numpy as np
 
 from validation.gates import friction
 from validation.report.blocks import Block, FigureBlock, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, plain
-from validation.report.figures.friction import Panel, Trace, panels_figure
+from validation.report.chapters.text import cell, plain
+from validation.report.figures.friction import Trace, TracePanel, panels_figure
 from validation.report.figures.histories import saved
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.slopes import creep as study
 
-CONSTANT, AVERAGE = "constant acceleration", "average acceleration"
-ORANGE, AMBER, BLUE, GREEN, BLACK = "#d55e00", "#e69f00", "#0072b2", "#009e73", "black"
+CONSTANT = "constant acceleration"
+AVERAGE = "average acceleration"
+ORANGE = "#d55e00"
+AMBER = "#e69f00"
+BLUE = "#0072b2"
+GREEN = "#009e73"
+BLACK = "black"
 CAPTION = (
     "Constant acceleration stops the creep, average acceleration keeps it, and lagged friction with dead bands speeds "
     "it up as the step is refined. "
@@ -27,7 +32,7 @@ CAPTION = (
     "over the step; the horizontal line is the exact block's. Lagged friction with dead bands is under another load, "
     "nine times the weight, and is compared with an established program (circles)."
 )
-SAID = (
+EXPLANATION = (
     "The normal springs ring when the weight comes on. Each cycle unloads the base, friction lets go, and the block "
     "moves by about g/ωₙ²: undamped it creeps on and on, on this slope by half to twice g/ωₙ = g √(m/2p) per second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
@@ -39,41 +44,43 @@ SAID = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: the figure and the table by steps."""
-    found = {group.name: group for group in groups(results, manifest)}
-    blocks = [*opening(manifest, verdicts_of(found.values())), Paragraph(SAID)]
-    if found.get(study.STEPS):
-        blocks += [over_time_and_step(found, directory), by_step(found)]
-    blocks += by_stiffness(found)
+    groups = groups_by_name(results, manifest)
+    blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
+    if groups.get(study.STEPS):
+        blocks += [over_time_and_step(groups, directory), by_step(groups)]
+    blocks += by_stiffness(groups)
     return blocks
 
 
-def over_time_and_step(found: Mapping[str, Group], directory: Path) -> FigureBlock:
+def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> FigureBlock:
     """Return the figure of slides over time and of slip over the step."""
-    exact = [case for case in cases(found, study.EXACT) if case.scene.contact.friction == 30]
+    exact = [case for case in cases(groups, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
-    steps = cases(found, study.STEPS)
+    steps = cases(groups, study.STEPS)
     for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, AMBER)):
         lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
     lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
     kinds = ((CONSTANT, "(1/2, 1), consistent", ORANGE), (AVERAGE, "(1/4, 1/2), consistent", BLUE))
     slips = [over_step(words, [c for c in steps if of(c, kind)], color) for kind, words, color in kinds]
-    slips.append(over_step("lagged, dead bands", lagged(found), GREEN))
-    program = np.array(sorted(study.PROGRAM.items()))
-    slips.append(Trace("an established program", 1e3 * program[:, 0], 1e3 * program[:, 1], BLACK, dotted=True))
+    slips.append(over_step("lagged, dead bands", lagged(groups), GREEN))
+    program_steps, program_slips = np.array(sorted(study.PROGRAM.items())).T
+    slips.append(Trace("an established program", 1e3 * program_steps, 1e3 * program_slips, BLACK, dotted=True))
     slips += [across(case) for case in exact[:1]]
+    lines = [line for line in lines if len(line.x)]
+    slips = [line for line in slips if len(line.x)]
     panels = (
-        Panel("Slide", "t [s]", "slide [mm]", tuple(line for line in lines if len(line.x)), legend="upper left"),
-        Panel("Slip in a second", "dt [ms]", "slip [mm]", tuple(s for s in slips if len(s.x)), True, "upper center"),
+        TracePanel("Slide", "t [s]", "slide [mm]", tuple(lines), legend="upper left"),
+        TracePanel("Slip in a second", "dt [ms]", "slip [mm]", tuple(slips), True, "upper center"),
     )
     return saved(panels_figure(panels), directory, "creep.svg", CAPTION)
 
 
-def cases(found: Mapping[str, Group], name: str) -> list[Case]:
+def cases(groups: Mapping[str, CaseGroup], name: str) -> list[CaseResults]:
     """Return the cases of a scene."""
-    return list(found[name].cases) if name in found else []
+    return list(groups[name].cases) if name in groups else []
 
 
-def of(case: Case, kind: str) -> bool:
+def of(case: CaseResults, kind: str) -> bool:
     """Whether a case is of a scheme from the usual start, without a discount."""
     t = case.scene.time
     if t.discount < 1 or (kind == AVERAGE) != (t.delta == 0.5):
@@ -81,17 +88,17 @@ def of(case: Case, kind: str) -> bool:
     return t.start == ("consistent" if kind == AVERAGE else "zero")
 
 
-def at(case: Case, step: float) -> bool:
+def at(case: CaseResults, step: float) -> bool:
     """Whether a case is of a time step."""
     return abs(case.scene.time.step / step - 1) < 1e-9
 
 
-def lagged(found: Mapping[str, Group]) -> list[Case]:
+def lagged(groups: Mapping[str, CaseGroup]) -> list[CaseResults]:
     """Return the cases of lagged friction on the scene's own springs."""
-    return [case for case in cases(found, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
+    return [case for case in cases(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
 
 
-def trace(words: str, case: Case, solver: str, color: str) -> Trace:
+def trace(words: str, case: CaseResults, solver: str, color: str) -> Trace:
     """Return the slide of a case over time."""
     history = case.histories.get(solver)
     if history is None:
@@ -99,21 +106,22 @@ def trace(words: str, case: Case, solver: str, color: str) -> Trace:
     return Trace(words, history.time, 1e3 * study.slid(history.columns), color)
 
 
-def slip(case: Case) -> float | None:
-    """Return the way of the corners in a second, of a block that slides far that of the centroid [m]."""
+def slip(case: CaseResults) -> float | None:
+    """Return the slip of the corners in a second, of a block that slides far that of the centroid [m]."""
     if case.scene.contact.rules == "lagged":
         return case.number("dda", "horizontal.final")
     history = case.histories.get("dda")
     return None if history is None else float(study.slid(history.columns)[-1])
 
 
-def over_step(words: str, own: list[Case], color: str) -> Trace:
+def over_step(words: str, runs: list[CaseResults], color: str) -> Trace:
     """Return the slip of some cases over their steps."""
-    known = sorted((case.scene.time.step, value) for case in own if (value := slip(case)))
-    return Trace(words, 1e3 * np.array([x for x, _ in known]), 1e3 * np.array([y for _, y in known]), color)
+    points = sorted((case.scene.time.step, value) for case in runs if (value := slip(case)))
+    steps, slips = 1e3 * np.array(points).reshape(-1, 2).T
+    return Trace(words, steps, slips, color)
 
 
-def across(case: Case) -> Trace:
+def across(case: CaseResults) -> Trace:
     """Return the exact block's slip in a second, at any step."""
     history = case.histories.get("block-events")
     if history is None:
@@ -122,20 +130,14 @@ def across(case: Case) -> Trace:
     return Trace("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
 
 
-def by_step(found: Mapping[str, Group]) -> Table:
+def by_step(groups: Mapping[str, CaseGroup]) -> Table:
     """Return the slip in a second by step and rule."""
-    steps = cases(found, study.STEPS)
+    steps = cases(groups, study.STEPS)
     rows = []
-    for step, way in study.PROGRAM.items():
-        kinds = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
-        late = next((slip(c) for c in lagged(found) if at(c, step)), None)
-        rows.append(
-            (
-                plain(1e3 * step, 3),
-                *(DASH if value is None else plain(1e3 * value, 3) for value in (*kinds, late)),
-                plain(1e3 * way, 3),
-            )
-        )
+    for step, program_slip in study.PROGRAM.items():
+        slips = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
+        slips.append(next((slip(c) for c in lagged(groups) if at(c, step)), None))
+        rows.append(tuple(cell(value, 1e3, 3) for value in (step, *slips, program_slip)))
     scale = friction.creep_scale(steps[0].scene)
     titles = columns(
         "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"
@@ -144,20 +146,23 @@ def by_step(found: Mapping[str, Group]) -> Table:
     return Table(titles, tuple(rows), caption)
 
 
-def by_stiffness(found: Mapping[str, Group]) -> list[Block]:
+def by_stiffness(groups: Mapping[str, CaseGroup]) -> list[Block]:
     """Return the table of the creep on springs of any stiffness, where a run has it."""
-    damped = cases(found, study.DAMPED)
+    damped = cases(groups, study.DAMPED)
     rows = []
-    for case in sorted(cases(found, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
-        p, scale = case.scene.contact.stiffness, friction.creep_scale(case.scene)
-        speeds = [speed(case, solver) for solver in ("block-events", "dda")]
-        stands = [one for one in damped if one.scene.contact.stiffness == p]
-        stops = [
-            next((slip(one) for one in stands if (one.scene.time.discount < 1) == gg), None) for gg in (False, True)
-        ]
-        numbers = (*speeds, *stops)
-        cells = (DASH if value is None else plain(1e3 * value, 3) for value in numbers)
-        rows.append((plain(p / case.scene.block.young, 3), plain(1e3 * scale, 3), *cells))
+    for case in sorted(cases(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
+        p = case.scene.contact.stiffness
+        stopping = [one for one in damped if one.scene.contact.stiffness == p]
+        by_step_alone = next((slip(one) for one in stopping if one.scene.time.discount == 1), None)
+        by_discount = next((slip(one) for one in stopping if one.scene.time.discount < 1), None)
+        numbers = (
+            friction.creep_scale(case.scene),
+            speed(case, "block-events"),
+            speed(case, "dda"),
+            by_step_alone,
+            by_discount,
+        )
+        rows.append((plain(p / case.scene.block.young, 3), *(cell(value, 1e3, 3) for value in numbers)))
     titles = columns(
         "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
     )
@@ -168,7 +173,7 @@ def by_stiffness(found: Mapping[str, Group]) -> list[Block]:
     return [Table(titles, tuple(rows), caption)] if rows else []
 
 
-def speed(case: Case, solver: str) -> float | None:
+def speed(case: CaseResults, solver: str) -> float | None:
     """Return the mean speed of the corners over a run [m/s]."""
     history = case.histories.get(solver)
     return None if history is None else float(study.slid(history.columns)[-1] / history.time[-1])

@@ -1,7 +1,8 @@
-"""The chapter of the study `slopes`: the way of a sliding block beside its closed form, and what a discount leaves."""
+"""The chapter of the study `slopes`: displacement of a sliding block beside its closed form, and under a discount."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -9,17 +10,20 @@ import numpy as np
 
 from validation.gates import friction
 from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import Case, Group, groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, plain
-from validation.report.figures.friction import Panel, Trace, panels_figure
+from validation.report.chapters.text import DASH, cell, plain
+from validation.report.figures.friction import Trace, TracePanel, panels_figure
 from validation.report.figures.histories import saved
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.studies.slopes import sliding as study
 
-OURS, ALONG = "dda", "horizontal_displacement"
-ORANGE, BLUE, GREY = "#d55e00", "#0072b2", "#666666"
+DDA = "dda"
+ALONG = "horizontal_displacement"
+ORANGE = "#d55e00"
+GREY = "#666666"
+BRAKED_COLORS = ("#0072b2", "#009e73", "#cc79a7", GREY)
 RATES = np.geomspace(0.1, 100.0, 61)  # 1/s
 CAPTION = (
     "DDA follows the closed form down the incline, and a discount brakes it as a drag. "
@@ -27,7 +31,7 @@ CAPTION = (
     "gg = 0.98 and 0.99 per step. Right: share of the distance without drag that a body covers in a second, over the "
     "rate of the drag: continuous drag (line) and runs (circles)."
 )
-SAID = (
+EXPLANATION = (
     "While every corner slips one way or is open, the centroid's uₜ + uₙ tan φ moves freely under "
     "g (sin β − tan φ cos β) − c a / m, whatever springs, step and scheme, through bounces too. The springs put the "
     "block ahead by tan φ times its settlement, at any step: this is what papers call the penalty error of sliding. "
@@ -37,55 +41,64 @@ SAID = (
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: figure, run-outs, thresholds."""
-    found = {group.name: group for group in groups(results, manifest)}
-    slides = [
-        case for name in (study.SLIDING, study.AVERAGE, study.DRAG) if name in found for case in found[name].cases
-    ]
-    starts = [case for name in (study.THRESHOLD, study.MANUAL) if name in found for case in found[name].cases]
-    blocks = [*opening(manifest, verdicts_of(found.values())), Paragraph(SAID)]
-    if found.get(study.SLIDING) and found.get(study.DRAG):
-        blocks.append(trajectories(found[study.SLIDING], found[study.DRAG], directory))
-    blocks += [Heading("Run-out", 2), run_outs(slides)] if slides else []
-    shaken = [case for name in (study.SHAKEN, study.QUAKE) if name in found for case in judged(found[name])]
-    return [*blocks, *(thresholds(starts) if starts else []), *(shaking(shaken) if shaken else [])]
+    groups = groups_by_name(results, manifest)
+
+    def cases_of(*names: str) -> list[CaseResults]:
+        return list(itertools.chain.from_iterable(groups[name].cases for name in names if name in groups))
+
+    blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
+    if groups.get(study.SLIDING) and groups.get(study.DRAG):
+        blocks.append(trajectories(groups[study.SLIDING], groups[study.DRAG], directory))
+    slides = cases_of(study.SLIDING, study.AVERAGE, study.DRAG)
+    if slides:
+        blocks += [Heading("Run-out", 2), run_outs(slides)]
+    starts = cases_of(study.THRESHOLD, study.MANUAL)
+    if starts:
+        blocks += thresholds(starts)
+    shaken: list[ShakenCase] = []
+    for name in (study.SHAKEN, study.QUAKE):
+        shaken += judged(groups[name]) if name in groups else []
+    return [*blocks, *shaking(shaken)]
 
 
-def trajectories(free: Group, braked: Group, directory: Path) -> FigureBlock:
-    """Return the figure of ways over time, and of what a drag leaves."""
+def trajectories(free: CaseGroup, braked: CaseGroup, directory: Path) -> FigureBlock:
+    """Return the figure of displacements over time, and of the share that is left under a drag."""
     traces = []
-    for case, color in zip((*free.cases[-1:], *braked.cases), (ORANGE, BLUE, "#009e73", "#cc79a7", GREY), strict=False):
-        if (history := case.histories.get(OURS)) is None:
+    for case, color in zip((*free.cases[-1:], *braked.cases), (ORANGE, *BRAKED_COLORS), strict=False):
+        history = case.histories.get(DDA)
+        if history is None:
             continue
         gg = case.scene.time.discount
         words = f"gg = {gg:g}, dt = {1e3 * case.scene.time.step:g} ms"
-        way, _ = friction.free_motion(case.scene, friction.sliding_acceleration(case.scene))
+        displacement, _ = friction.free_motion(case.scene, friction.sliding_acceleration(case.scene))
         traces.append(Trace(words, history.time, history.columns[ALONG], color))
-        traces.append(Trace("_", history.time, way, "black", dash=(2.0, 2.0)))
-    curve = Trace("drag c", RATES, np.array([kept(rate) for rate in RATES]), GREY)
-    dots = [dot for case in braked.cases if (dot := share(case)) is not None]
-    points = Trace("dda", np.array([x for x, _ in dots]), np.array([y for _, y in dots]), ORANGE, dotted=True)
+        traces.append(Trace("_", history.time, displacement, "black", dash=(2.0, 2.0)))
+    curve = Trace("drag c", RATES, np.array([drag_share(rate) for rate in RATES]), GREY)
+    measured = [point for case in braked.cases if (point := share(case)) is not None]
+    rates, shares = np.array(measured).reshape(-1, 2).T
+    points = Trace("dda", rates, shares, ORANGE, dotted=True)
     panels = (
-        Panel("Way down the incline", "t [s]", "way [m]", tuple(traces), legend="upper left"),
-        Panel("What a drag leaves after 1 s", "c [1/s]", "share of the way", (curve, points), True, "lower left"),
+        TracePanel("Way down the incline", "t [s]", "way [m]", tuple(traces), legend="upper left"),
+        TracePanel("What a drag leaves after 1 s", "c [1/s]", "share of the way", (curve, points), True, "lower left"),
     )
     return saved(panels_figure(panels), directory, "slopes-ways.svg", CAPTION)
 
 
-def kept(rate: float, time: float = 1.0) -> float:
-    """Return the share of its way under a drag, 2 (c t - 1 + exp(-c t)) / (c t)^2 [-]."""
+def drag_share(rate: float, time: float = 1.0) -> float:
+    """Return the displacement under a drag over that without, 2 (c t - 1 + exp(-c t)) / (c t)^2 [-]."""
     x = rate * time
     return 2 * (x + float(np.expm1(-x))) / x**2
 
 
-def share(case: Case) -> tuple[float, float] | None:
-    """Return the drag's rate and the share of the way that a run went."""
-    way = case.number(OURS, "horizontal.final")
-    whole = friction.run_out(case.scene, case.scene.time.duration)
-    return None if way is None else (friction.drag_rate(case.scene), way / whole)
+def share(case: CaseResults) -> tuple[float, float] | None:
+    """Return the drag's rate, and the displacement of a run over that without drag."""
+    displacement = case.number(DDA, "horizontal.final")
+    undamped = friction.run_out(case.scene, case.scene.time.duration)
+    return None if displacement is None else (friction.drag_rate(case.scene), displacement / undamped)
 
 
-def run_outs(cases: Sequence[Case]) -> Table:
-    """Return the ways of all runs beside the closed form."""
+def run_outs(cases: Sequence[CaseResults]) -> Table:
+    """Return the displacements of all runs beside the closed form."""
     titles = (
         *columns("decimal", "dt [ms]", "α", "δ", "gg", "c [1/s]", "cohesion [Pa]"),
         *columns("decimal", "closed form [m]", "dda [m]", "ahead [µm]", "fem [m]"),
@@ -97,37 +110,46 @@ def run_outs(cases: Sequence[Case]) -> Table:
     return Table(titles, tuple(_run_out(case) for case in cases), caption)
 
 
-def _run_out(case: Case) -> tuple[str, ...]:
-    t, scene = case.scene.time, case.scene
-    free = float(friction.free_motion(scene, friction.sliding_acceleration(scene))[0][-1])
-    ours, elements = (case.number(name, "horizontal.final") for name in (OURS, "fem"))
-    numbers = (
-        (1e3 * t.step, t.alpha, t.delta, t.discount),
-        (friction.drag_rate(scene) + 0.0, scene.contact.cohesion, free),
+def _run_out(case: CaseResults) -> tuple[str, ...]:
+    scene = case.scene
+    time = scene.time
+    data = (1e3 * time.step, time.alpha, time.delta, time.discount, friction.drag_rate(scene), scene.contact.cohesion)
+    displacements, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
+    free = float(displacements[-1])
+    dda, fem = (case.number(solver, "horizontal.final") for solver in (DDA, "fem"))
+    ahead = None if dda is None else dda - free
+    return (
+        *(plain(value + 0.0) for value in data),  # without a negative zero
+        plain(free, 6),
+        cell(dda, digits=6),
+        cell(ahead, 1e6),
+        cell(fem, digits=6),
     )
-    said = [plain(value, 4 if i < 6 else 6) for i, value in enumerate((*numbers[0], *numbers[1]))]
-    ahead = None if ours is None else 1e6 * (ours - free)
-    return (*said, *(DASH if v is None else plain(v, d) for v, d in ((ours, 6), (ahead, 4), (elements, 6))))
 
 
-def thresholds(cases: Sequence[Case]) -> Iterator[Block]:
+def thresholds(cases: Sequence[CaseResults]) -> Iterator[Block]:
     """Yield the accelerations about the angle of friction."""
     titles = columns(
         "decimal", "slope [°]", "friction [°]", "a, closed form [m/s²]", "a, dda [m/s²]", "slip a second [mm/s]"
     )
     rows = []
     for case in cases:
-        history, rate = case.histories.get(OURS), case.number(OURS, "contact.slip_rate")
+        history = case.histories.get(DDA)
+        slip_rate = case.number(DDA, "contact.slip_rate")
         expected = friction.sliding_acceleration(case.scene)
-        stands = expected < 0 and rate is not None and rate < 1e-9
-        measured = None if history is None or stands else study.acceleration(case.scene, history)
-        numbers = (case.scene.load.slope, case.scene.contact.friction or 0.0)
+        measured = DASH
+        if expected < 0 and slip_rate is not None and slip_rate < 1e-9:
+            measured = "stands"
+            slip_rate = 0.0
+        elif history is not None:
+            measured = cell(study.acceleration(case.scene, history), digits=5)
         rows.append(
             (
-                *(plain(value, 4) for value in numbers),
+                plain(case.scene.load.slope),
+                plain(case.scene.contact.friction or 0.0),
                 plain(expected, 5),
-                "stands" if stands else DASH if measured is None else plain(measured, 5),
-                DASH if rate is None else plain(0.0 if stands else 1e3 * rate, 4),
+                measured,
+                cell(slip_rate, 1e3),
             )
         )
     yield Heading("Where sliding begins", 2)
@@ -138,20 +160,20 @@ def thresholds(cases: Sequence[Case]) -> Iterator[Block]:
     yield Table(titles, tuple(rows), "Acceleration over the second half of each run.")
 
 
-Judged = tuple[Case, dict[str, VerdictRecord]]
+ShakenCase = tuple[CaseResults, dict[str, VerdictRecord]]
 
 
-def judged(group: Group) -> list[Judged]:
+def judged(group: CaseGroup) -> list[ShakenCase]:
     """Return the cases of a group that have gates against a rigid mass, and these by their metrics."""
-    found = []
+    cases = []
     for case in group.cases:
-        own = {v["metric"]: v for v in group.verdicts if v["scene"] == case.name and v["pair"] == [study.RIGID]}
-        if {"slide", "largest difference"} <= set(own):
-            found.append((case, own))
-    return found
+        verdicts = {v["metric"]: v for v in group.verdicts if v["scene"] == case.name and v["pair"] == [study.RIGID]}
+        if {"slide", "largest difference"} <= set(verdicts):
+            cases.append((case, verdicts))
+    return cases
 
 
-def shaking(cases: Sequence[Judged]) -> Iterator[Block]:
+def shaking(cases: Sequence[ShakenCase]) -> Iterator[Block]:
     """Yield the slides over a base that shakes, beside those of a rigid mass."""
     titles = columns(
         "decimal",
@@ -164,13 +186,14 @@ def shaking(cases: Sequence[Judged]) -> Iterator[Block]:
         "allowed [mm]",
     )
     rows = []
-    for case, own in cases:
-        low, high = own["slide"]["band"]
-        found = (own["slide"]["value"], own["largest difference"]["value"])
-        said = (DASH if not isinstance(value, float) else plain(1e3 * value, 4) for value in found)
+    for case, verdicts in cases:
+        low, high = verdicts["slide"]["band"]
+        values = (verdicts["slide"]["value"], verdicts["largest difference"]["value"])
+        measured = (plain(1e3 * value, 4) if isinstance(value, float) else DASH for value in values)
         base = "record" if case.name.startswith(study.QUAKE) else "2 Hz"
         scene = (plain(case.scene.load.slope, 2), plain(case.scene.contact.stiffness / 1e9, 3))
-        rows.append((base, *scene, plain(500 * (low + high), 5), *said, plain(500 * (high - low), 3)))
+        # Half of a band in mm: its middle is the rigid mass's slide, its half width what is allowed.
+        rows.append((base, *scene, plain(500 * (low + high), 5), *measured, plain(500 * (high - low), 3)))
     if rows:
         yield Heading("A base that shakes", 2)
         yield Table(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.chapters.data import DerivedRows, derived_rows
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain
 from validation.report.figures.histories import saved
@@ -16,43 +17,46 @@ from validation.report.figures.response import ResponseCurve, response_figure
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
-WAYS = {
+ANSWERS = {  # scene -> title
     "response-exact": "exact in time",
     "response-constant": "dt = 2 ms, (1/2, 1)",
     "response-average": "dt = 2 ms, (1/4, 1/2), gg = 0.98",
 }
 SOLVERS = ("dda", "fem", "bar")
 PARTS = {"displacement": 1e3, "pressure": 1e-6}  # mm, MPa
-DIGITS = 6  # that rows are kept with: to round once more would be to round twice
+DIGITS = 6  # that rows are stored with: to round once more would be to round twice
 HIDDEN = "response-damping"
-Rows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene, name) -> metrics
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
     """Return the chapter: what the step takes, the figure, the table."""
-    rows: Rows = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+    rows = derived_rows(manifest)
     blocks = opening(manifest, results.verdicts(manifest["study"]), lead(rows))
-    if curves := [_curve(manifest["data"], told) for told in manifest.get("data", {}).get("curves", [])]:
+    data = manifest.get("data", {})
+    curves = [_response_curve(data["frequency"], curve) for curve in data.get("curves", [])]
+    if curves:
         caption = (
             "The paper's block under a pressure of 5 MPa that vibrates: DDA at dt = 2 ms under (1/2, 1), the same "
             "model exact in time, and the continuum. The phase is the lead over the load."
         )
         blocks.append(saved(response_figure(curves, logarithmic=False), directory, "response.svg", caption))
-    if (table := amplitudes(rows)).rows:
+    table = amplitudes(rows)
+    if table.rows:
         blocks.append(table)
-    return [*blocks, *(Paragraph(said) for said in (hidden(rows),) if said)]
+    sentence = hidden(rows)
+    return [*blocks, Paragraph(sentence)] if sentence else blocks
 
 
-def _curve(data: Mapping[str, Any], told: Mapping[str, Any]) -> ResponseCurve:
-    parts = {column: (np.array(size), np.array(phase)) for column, (size, phase) in told["columns"].items()}
-    dashed = told["exact"] and told["solver"] == "dda"
-    return ResponseCurve(told["name"], told["solver"], dashed, np.array(data["frequency"]), parts)
+def _response_curve(frequency: Sequence[float], curve: Mapping[str, Any]) -> ResponseCurve:
+    columns = {column: (np.array(size), np.array(phase)) for column, (size, phase) in curve["columns"].items()}
+    dashed = curve["exact"] and curve["solver"] == "dda"
+    return ResponseCurve(curve["name"], curve["solver"], dashed, np.array(frequency), columns)
 
 
-def lead(rows: Rows) -> str:
+def lead(rows: DerivedRows) -> str:
     """Say what the step takes next to the first frequency."""
-    sizes = [rows.get((way, "dda at 52 Hz"), {}).get("displacement") for way in ("response-exact", "response-constant")]
-    exact, stepped = sizes
+    scenes = ("response-exact", "response-constant")
+    exact, stepped = (rows.get((scene, "dda at 52 Hz"), {}).get("displacement") for scene in scenes)
     if not (isinstance(exact, float) and isinstance(stepped, float)):
         return ""
     return (
@@ -61,16 +65,16 @@ def lead(rows: Rows) -> str:
     )
 
 
-def amplitudes(rows: Rows) -> Table:
-    """Return the amplitudes of each way, frequency and solver."""
+def amplitudes(rows: DerivedRows) -> Table:
+    """Return the amplitudes of each answer, frequency and solver."""
     lines = []
-    found = dict.fromkeys((scene, name.partition(" at ")[2]) for scene, name in rows if scene in WAYS)
-    for way, frequency in found:
+    answers = dict.fromkeys((scene, name.partition(" at ")[2]) for scene, name in rows if scene in ANSWERS)
+    for scene, frequency in answers:
         cells = []
         for part, factor in PARTS.items():
-            values = [rows.get((way, f"{solver} at {frequency}"), {}).get(part) for solver in SOLVERS]
+            values = [rows.get((scene, f"{solver} at {frequency}"), {}).get(part) for solver in SOLVERS]
             cells += [plain(factor * value, DIGITS) if isinstance(value, float) else DASH for value in values]
-        lines.append((WAYS[way], frequency.removesuffix(" Hz"), *cells))
+        lines.append((ANSWERS[scene], frequency.removesuffix(" Hz"), *cells))
     titles = (
         *columns("text", "Answer"), *columns("decimal", "f [Hz]"),
         *columns("decimal", *SOLVERS, group="Displacement [mm]"),
@@ -80,14 +84,14 @@ def amplitudes(rows: Rows) -> Table:
     return Table(titles, tuple(lines), caption)
 
 
-def hidden(rows: Rows) -> str:
+def hidden(rows: DerivedRows) -> str:
     """Say the damping that the step hides, as measured on the steps."""
-    found = [(name, row.get("damping.steps")) for (scene, name), row in rows.items() if scene == HIDDEN]
-    said = [f"{percent(v)} at {name.partition(' at ')[2]}" for name, v in found if isinstance(v, float)]
-    if not said:
+    ratios = {name: row.get("damping.steps") for (scene, name), row in rows.items() if scene == HIDDEN}
+    parts = [f"{percent(xi)} at {name.partition(' at ')[2]}" for name, xi in ratios.items() if isinstance(xi, float)]
+    if not parts:
         return ""
     return (
-        f"At dt = 0.01 s the usual scheme has the steady ratios |Im W|/|W| = sin(ω dt/4) of {', '.join(said)}, "
+        f"At dt = 0.01 s the usual scheme has the steady ratios |Im W|/|W| = sin(ω dt/4) of {', '.join(parts)}, "
         "measured on stepped histories of a base that vibrates. The damping ratio of a free vibration is within 1.4 % "
         "of it while ω dt is below 0.3, and smaller above: 25.5 % at 20 Hz."
     )

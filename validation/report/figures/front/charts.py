@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
-from validation.report.figures.curves import GREY, HAIR
+from validation.report.figures.curves import GREY, HAIR, dash_style
 from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends
 from validation.runs.history import Array
 
@@ -32,7 +32,7 @@ class Stroke:
     dash: tuple[float, ...] = ()
     dots: bool = False
     line: bool = True
-    named: bool = True  # at its end
+    has_label: bool = True  # its name, at its end
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,10 @@ class Chart:
 
 def charts_figure(charts: Sequence[Chart], height: float = 48.0) -> Figure:
     """Draw charts side by side, each with room for the names of its curves at the right."""
-    room = 4.5 + NARROW * max(len(s.name) for chart in charts for s in chart.strokes if s.named)
+    labels: list[str] = []
+    for chart in charts:
+        labels += [stroke.name for stroke in chart.strokes if stroke.has_label]
+    room = 4.5 + NARROW * max(map(len, labels))
     with house_style():
         margins = Margins(10.0, room, 10.0, 9.5, room + 9.0)
         figure, (row,) = axes_grid([(height, 0.0)], len(charts), margins)
@@ -67,21 +70,24 @@ def _draw(axes: Axes, chart: Chart) -> None:
             axis = getattr(axes, f"{name}axis")
             axis.set_major_locator(LogLocator(numticks=7))
             axis.set_major_formatter(lambda value, _: _power(value))
-            axis.set_minor_locator(NullLocator() if name == "y" else LogLocator(subs=tuple(range(2, 10)), numticks=12))
+            minor = NullLocator() if name == "y" else LogLocator(subs=tuple(range(2, 10)), numticks=12)
+            axis.set_minor_locator(minor)
             axis.set_minor_formatter(NullFormatter())
     axes.set(xlim=chart.x_range, ylim=chart.y_range, xlabel=chart.labels[0], ylabel=chart.labels[1])
     axes.set_title(chart.title, pad=12.0)
     _hairlines(axes, chart)
-    ends, colors = {}, {}
+    ends: dict[str, float] = {}
+    colors: dict[str, str] = {}
     for stroke in chart.strokes:
         look: dict[str, Any] = {"color": stroke.color, "zorder": 4}
         if stroke.line:
-            axes.plot(stroke.x, stroke.y, lw=1.2, ls=(0, stroke.dash) if stroke.dash else "-", **look)
+            axes.plot(stroke.x, stroke.y, lw=1.2, ls=dash_style(stroke.dash), **look)
         if stroke.dots:
             axes.plot(stroke.x, stroke.y, "o", ms=3.2, **look)
-        known = np.flatnonzero(np.isfinite(stroke.y) & (stroke.x <= chart.x_range[1]))
-        if stroke.named and known.size:
-            ends[stroke.name], colors[stroke.name] = float(np.clip(stroke.y[known[-1]], *chart.y_range)), stroke.color
+        drawn = np.flatnonzero(np.isfinite(stroke.y) & (stroke.x <= chart.x_range[1]))
+        if stroke.has_label and drawn.size:
+            ends[stroke.name] = float(np.clip(stroke.y[drawn[-1]], *chart.y_range))
+            colors[stroke.name] = stroke.color
     label_ends(axes, ends, colors=colors, below=0.0)
 
 

@@ -10,9 +10,13 @@ from matplotlib.patches import Arc, Rectangle
 from validation.report.figures.curves import GREY, style_of
 from validation.report.figures.histories import house_style
 
-WIDTH, HEIGHT = 72.0, 62.0  # mm, the units of the drawing
-SIDE, LEFT, BASE = 34.0, 17.0, 17.0  # mm: the block as drawn, its left edge, its lower edge
-GAP = 6.0  # mm, that the springs are drawn long
+# Lengths of the drawing, in mm.
+WIDTH = 72.0
+HEIGHT = 62.0
+SIDE = 34.0  # of the block
+LEFT = 17.0  # edge of the block
+BASE = 17.0  # lower edge of the block
+GAP = 6.0  # length of the springs
 FIXED = "#e8e8e8"
 BLOCK = "#fdf3e7"
 
@@ -25,8 +29,8 @@ def model_figure(side: str, pressure: str) -> Figure:
         axes.set(xlim=(0.0, WIDTH), ylim=(0.0, HEIGHT))
         axes.set_axis_off()
         _bodies(axes)
-        for x, name in ((LEFT, "M"), (LEFT + SIDE, "N")):
-            _corner(axes, x, name, outwards=-1.0 if name == "M" else 1.0)
+        _corner(axes, LEFT, "M", outwards=-1.0)
+        _corner(axes, LEFT + SIDE, "N", outwards=1.0)
         _load(axes, pressure)
         _unknowns(axes)
         _dimension(axes, side)
@@ -44,12 +48,13 @@ def _bodies(axes: Axes) -> None:
 
 def _corner(axes: Axes, x: float, name: str, outwards: float) -> None:
     """Draw a corner's normal spring below it and its shear spring beside it, both on block B."""
-    color, zigzag = style_of("dda").color, np.array([0, 0, 1, -1, 1, -1, 1, 0, 0.0])
+    color = style_of("dda").color
+    zigzag = np.array([0, 0, 1, -1, 1, -1, 1, 0, 0.0])
     along = np.concatenate([[0.0], np.linspace(0.15, 0.85, 7), [1.0]])
     axes.plot(x + 1.2 * zigzag, BASE - GAP * along, color=color, lw=0.9, zorder=3)
-    reach, level = 7.0, BASE
-    axes.plot(x + outwards * reach * along, level + 0.9 * zigzag, color=color, lw=0.9, zorder=3)
-    axes.plot([x + outwards * reach] * 2, [level, BASE - GAP], color="black", lw=0.7)
+    reach = 7.0
+    axes.plot(x + outwards * reach * along, BASE + 0.9 * zigzag, color=color, lw=0.9, zorder=3)
+    axes.plot([x + outwards * reach] * 2, [BASE, BASE - GAP], color="black", lw=0.7)
     axes.plot(x, BASE, "o", ms=3.0, color="black", zorder=4)
     side = "right" if outwards < 0 else "left"
     axes.text(x + outwards * 1.6, BASE + 1.6, name, ha=side, va="bottom", fontweight="bold")
@@ -67,7 +72,9 @@ def _load(axes: Axes, pressure: str) -> None:
 
 
 def _unknowns(axes: Axes) -> None:
-    x, y, color = LEFT + SIDE / 2, BASE + SIDE / 2 + 1.0, style_of("dda").color
+    x = LEFT + SIDE / 2
+    y = BASE + SIDE / 2 + 1.0
+    color = style_of("dda").color
     axes.plot(x, y, "o", ms=3.0, color=color, zorder=4)
     _arrow(axes, (x, y), (x + 9.0, y), color)
     _arrow(axes, (x, y), (x, y + 9.0), color)

@@ -17,8 +17,8 @@ Make = Callable[[Scene], Search]
 
 
 @dataclass(frozen=True)
-class Instead:
-    """The nearest damping ratio that the asked parameter gives, and settings that give the wanted one."""
+class Alternative:
+    """The nearest damping ratio that the chosen parameter gives, and settings that give the target."""
 
     nearest: float | None = None  # xi [1]; None where none is defined
     nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
@@ -26,43 +26,47 @@ class Instead:
     words: str = ""
 
 
-def instead(scene: Scene, solve_for: str, target: float, makes: Mapping[str, Make], frequency: float) -> Instead:
+def alternative(
+    scene: Scene, solve_for: str, target: float, makes: Mapping[str, Make], frequency: float
+) -> Alternative:
     """Return what can be had where no value of a parameter gives the target.
 
     Parameters
     ----------
     scene, solve_for, target
-        As for `advise`, which has found nothing.
+        As for `advise`, which has no solution.
     makes
         The search of each parameter.
     frequency
         Of the first axial mode [rad/s].
     """
     searches = {kind: makes[kind](scene) for kind in OPTIONS}
-    own = searches[solve_for]
-    near = min(own.ends(), key=lambda s: abs(own.at(s) - target), default=None)
-    found = Instead() if near is None else Instead(own.at(near), own.value(near))
+    chosen = searches[solve_for]
+    near = min(chosen.ends(), key=lambda s: abs(chosen.at(s) - target), default=None)
+    nearest = Alternative() if near is None else Alternative(chosen.at(near), chosen.value(near))
     for kind, search in searches.items():
         if kind != solve_for and (values := search.solutions(target)):
             settings = search.settings(min(values, key=partial(change, scene, kind, search)))
-            words = f"Change the {OPTIONS[kind]} instead: {said(settings)} gives it (--solve-for {kind})."
-            return replace(found, settings=settings, words=words)
+            words = f"Change the {OPTIONS[kind]} instead: {settings_text(settings)} gives it (--solve-for {kind})."
+            return replace(nearest, settings=settings, words=words)
     step = min(scene.time.step, 2 * math.pi / (PERIOD * frequency))
-    for changed in (UNDAMPED, UNDAMPED | {"time.step": step}):
-        plain = makes["gg"](scene.with_values(dict(changed)))
-        if values := plain.solutions(target):
-            settings = changed | plain.settings(min(values))
-            return replace(found, settings=settings, words=f"Change more than one: {said(settings)} together give it.")
-    return replace(found, words="No other dt, gg or scheme gives it either, nor does average acceleration with any gg.")
+    for undamped in (UNDAMPED, UNDAMPED | {"time.step": step}):
+        search = makes["gg"](scene.with_values(dict(undamped)))
+        if values := search.solutions(target):
+            settings = undamped | search.settings(min(values))
+            words = f"Change more than one: {settings_text(settings)} together give it."
+            return replace(nearest, settings=settings, words=words)
+    words = "No other dt, gg or scheme gives it either, nor does average acceleration with any gg."
+    return replace(nearest, words=words)
 
 
 def change(scene: Scene, kind: str, search: Search, s: float) -> float:
-    """Return by how much the scene's own value would change, as a logarithm: of two ways the smaller change."""
-    own = {"dt": scene.time.step, "gg": scene.time.discount, "scheme": scene.time.delta}[kind]
+    """Return by how much the scene's present value would change, as a logarithm whatever its sign."""
+    present = {"dt": scene.time.step, "gg": scene.time.discount, "scheme": scene.time.delta}[kind]
     value = search.value(s)
-    return abs(math.log(value / own)) if value > 0 and own > 0 else math.inf
+    return abs(math.log(value / present)) if value > 0 and present > 0 else math.inf
 
 
-def said(settings: Mapping[str, float]) -> str:
+def settings_text(settings: Mapping[str, float]) -> str:
     """Return settings as ``--set`` takes them."""
     return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())

@@ -1,39 +1,39 @@
-"""The scenes that the first pages speak of, found in whatever studies a results directory holds."""
+"""The scenes that the first pages speak of, looked up in whatever studies a results directory holds."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from validation.report.chapters.data import Case, Group, groups
+from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.report.front.closed import ratio_of
 from validation.runs.results import Results
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-Found = Mapping[str, Group]
+Groups = Mapping[str, CaseGroup]
 PAPER = "figures-3-4"
 
 
-def found_scenes(results: Results, studies: Sequence[str]) -> dict[str, Group]:
+def groups_of_studies(results: Results, studies: Sequence[str]) -> dict[str, CaseGroup]:
     """Return the scenes of all studies by name, each as the first study has it, without histories."""
-    found: dict[str, Group] = {}
+    groups: dict[str, CaseGroup] = {}
     for study in studies:
-        for group in groups(results, results.manifest(study), drawn=False):
-            found.setdefault(group.name, group)
-    return found
+        for group in case_groups(results, results.manifest(study), drawn=False):
+            groups.setdefault(group.name, group)
+    return groups
 
 
-def paper_scene(found: Found) -> Scene | None:
+def paper_scene(groups: Groups) -> Scene | None:
     """Return the paper's block as the results have it; None where DDA finished none that the closed forms are for."""
-    group = found.get(PAPER)
+    group = groups.get(PAPER)
     if group is None or not any("dda" in case.rows and case.rows["dda"].metrics for case in group.cases):
         return None
     scene = group.cases[0].scene
-    plain = scene.block.vertices is None and scene.block.poisson == 0 and features.linear(scene)
-    return scene if plain and scene.column is None else None
+    has_closed_forms = scene.block.vertices is None and scene.block.poisson == 0 and features.linear(scene)
+    return scene if has_closed_forms and scene.column is None else None
 
 
-def case_where(group: Group | None, fits: Callable[[Scene], bool]) -> Case | None:
+def case_where(group: CaseGroup | None, fits: Callable[[Scene], bool]) -> CaseResults | None:
     """Return the first case of a group whose scene fits."""
     return next((case for case in group.cases if fits(case.scene)), None) if group else None
 
@@ -43,7 +43,7 @@ def at_ratio(ratio: float, alpha: float | None = None) -> Callable[[Scene], bool
     return lambda scene: abs(ratio_of(scene) / ratio - 1) < 1e-9 and alpha in (None, scene.time.alpha)
 
 
-def by_step(group: Group | None) -> list[Case]:
+def by_step(group: CaseGroup | None) -> list[CaseResults]:
     """Return the cases of a group from the longest step to the shortest."""
     return sorted(group.cases, key=lambda case: -case.scene.time.step) if group else []
 

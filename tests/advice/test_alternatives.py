@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from validation.advice.advice import Advice, advise
-from validation.advice.instead import instead
+from validation.advice.alternatives import alternative
 from validation.advice.spectra import damping
 from validation.scenes.scene import Scene, load_scene
 
@@ -58,7 +58,7 @@ class Found:
 @pytest.mark.parametrize(("steps", "kept"), [((0.0015, 0.02), 0.0015), ((0.0001, 0.003), 0.003)])
 def test_of_two_steps_that_do_the_one_that_changes_less_is_named(steps: tuple[float, float], kept: float) -> None:
     makes: Any = {"dt": lambda scene: Found(*steps), "gg": lambda scene: Found(), "scheme": lambda scene: Found()}
-    found = instead(BASE, "gg", 0.05, makes, 344.6)
+    found = alternative(BASE, "gg", 0.05, makes, 344.6)
     assert found.settings == {"time.step": pytest.approx(kept)}
     assert found.words == f"Change the time step instead: time.step = {kept:g} gives it (--solve-for dt)."
 
@@ -75,7 +75,7 @@ def test_of_two_discounts_under_average_acceleration_the_gentler_is_named() -> N
         return Discounts() if scene.time.delta == 0.5 else Found()
 
     makes: Any = {"dt": lambda scene: Found(), "gg": over_gg, "scheme": lambda scene: Found()}
-    found = instead(BASE, "dt", 0.05, makes, 344.6)
+    found = alternative(BASE, "dt", 0.05, makes, 344.6)
     assert found.settings == {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}
 
 
