@@ -201,7 +201,7 @@ class Stepper:
         zero = np.zeros(n)
         parts = (model.mass, whole, self.without_gap)
         M, K, carried = (repeated(part) for part in parts)
-        return Equations(M, K, carried, zero + p, zero, repeated(self.corner), repeated(model.load))
+        return Equations(M, K, carried, zero + p, zero, repeated(self.corner), repeated(model.force))
 
     # ---- one step ---------------------------------------------------------------------------------------------------
 
