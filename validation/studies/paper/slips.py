@@ -63,7 +63,7 @@ def load(e: Evidence) -> dict[str, float]:
     """Return the load on v over a q, and the static displacement that it causes."""
     block_model = model(SOFT)
     return {
-        "load on v over a q": float(block_model.load[1] / (2.0 * block_model.pressure)),
+        "load on v over a q": float(block_model.force[1] / (2.0 * block_model.load.pressure)),
         "static displacement, mm": 1e3 * e.number(SOFT, "displacement.static"),
     }
 
