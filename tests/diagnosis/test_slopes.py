@@ -261,7 +261,8 @@ def test_one_wrong_number_is_named_by_a_run_that_gives_the_history(
     assert answer.causes == [cause] and answer.departs
     assert answer.values[cause] == pytest.approx(value, rel=1e-3)
     stages = {stage.name: stage for stage in answer.evidence}
-    assert stages["motion"].agrees  # of the scene with that number
+    assert stages["motion"].agrees is False  # of the scene as it is, as every stage
+    assert stages["motion"].numbers["misfit"] > 1e-3
 
 
 def test_a_wrong_coefficient_of_friction_is_not_called_right_by_its_forces() -> None:
