@@ -211,6 +211,7 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 50:
         raise ValueError(f"digits: must be at least 50, got {digits!r}")
+    digits += math.ceil(2.5 * max(0.0, -math.log10(problem.kappa)))  # integration divides by kappa, twice a piece
     while True:
         try:
             motion = _solved(problem, float(end), digits, limit)
@@ -221,7 +222,7 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
             lost = error
         if digits >= MOST_DIGITS:
             raise lost
-        digits = min(2 * digits, MOST_DIGITS)
+        digits = max(digits, min(2 * digits, MOST_DIGITS))
 
 
 def _solved(problem: BarProblem, end: float, digits: int, limit: int) -> BarMotion:
