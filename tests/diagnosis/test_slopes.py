@@ -247,7 +247,8 @@ NUMBERS = [
     ({"phi": math.degrees(math.atan(1.1 * math.tan(math.radians(22))))}, "friction-factor", 1.1),
     ({"ps": 1e9}, "shear-springs-factor", 2.5),
     ({"gg": 0.99}, "gg", 0.99),
-    ({"rho": 2970.0}, "density-factor", 1.1),
+    # the scene's load is its weight, which is heavier with the block
+    ({"rho": 2970.0, "force": (1.1 * LOAD * math.sin(SLOPE), -1.1 * LOAD * math.cos(SLOPE))}, "density-factor", 1.1),
     ({"cohesion": 2e4}, "cohesion", 2e4),
     ({"p": 1.2e9}, "normal-springs-factor", 1.2),
 ]
