@@ -16,11 +16,11 @@ from validation.advice import friction as advice
 from validation.advice.alarms import alarms
 from validation.engine.run import finish
 from validation.engine.study import Study
-from validation.gates import friction
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
+from validation.theory import friction
 
 SLIDES = load_scene("slope-drag").expand()[0]
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration

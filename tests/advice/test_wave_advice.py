@@ -13,8 +13,8 @@ from validation.advice import wave_advice
 from validation.advice.wave_advice import advise_wave
 from validation.cli.app import app
 from validation.errors import InputError
-from validation.gates.waves import Stepping
 from validation.scenes.scene import Scene
+from validation.theory.waves import Stepping
 
 COLUMN = load_scene("figures-3-4").with_values(
     {"time.step": 0.01, "block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 50]}

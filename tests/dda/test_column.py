@@ -9,8 +9,8 @@ from conftest import thinned
 import dda
 from dda.column.column import Column, Layer, Motion, Spring
 from dda.column.stepping import Drive, solve_column
-from validation.gates import waves
 from validation.metrics.transform import spectrum
+from validation.theory import waves
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 HEIGHT, DENSITY, YOUNG, BLOCKS = 0.5, 2000.0, 1.8e9, 12

@@ -25,11 +25,11 @@ from validation.advice.advice import SEARCHES
 from validation.engine import run_study
 from validation.gallery import site
 from validation.gallery.calculators import CALCULATORS
-from validation.gates import closed_forms, landing
-from validation.gates.waves import Column, Stepping
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.catalogue import scene_study
+from validation.theory import landing, spectra
+from validation.theory.waves import Column, Stepping
 
 pytestmark = [
     pytest.mark.long,
@@ -146,8 +146,8 @@ def test_formulas_of_the_block(opened: Callable[..., Any]) -> None:
     page = opened("damping.html")
     for s in random_settings():
         scene, block = scene_of(s), block_of(s)
-        agrees(page.evaluate("v => formulas.dda_frequency(v)", block), closed_forms.dda_frequency(scene))
-        agrees(page.evaluate("v => formulas.contact_frequency(v)", block), closed_forms.contact_frequency(scene))
+        agrees(page.evaluate("v => formulas.dda_frequency(v)", block), spectra.dda_frequency(scene))
+        agrees(page.evaluate("v => formulas.contact_frequency(v)", block), spectra.contact_frequency(scene))
         agrees(page.evaluate("v => formulas.base_frequency(v)", block), landing.quarter_mass_frequency(scene))
         given = [s["alpha"], s["delta"], s["gg"]]
         agrees(page.evaluate("v => formulas.critical_omega(...v)", given), spectral.critical_omega(*given))
@@ -159,7 +159,7 @@ def test_formulas_of_the_adviser(opened: Callable[..., Any], solve_for: str) -> 
     limited = [s | {"alpha": 0.2, "delta": 0.6} for s in random_settings()]  # beyond a step the highest mode grows
     for s in (*random_settings(), *limited):
         scene = scene_of(s)
-        first, other = closed_forms.dda_frequency(scene), closed_forms.contact_frequency(scene)
+        first, other = spectra.dda_frequency(scene), spectra.contact_frequency(scene)
         search = SEARCHES[solve_for](scene, first, max(first, other))
         expected = sorted(map(search.value, search.solutions(s["target"])))
         found = page.evaluate(

@@ -15,7 +15,6 @@ from scipy.linalg import eigh
 
 from fem_reference.exact.bar import applicable
 from validation.errors import InputError
-from validation.gates import closed_forms as expected
 from validation.runs.files import read_csv, write_csv
 from validation.runs.history import History
 from validation.runs.modes import Mode, contact_index
@@ -28,6 +27,8 @@ from validation.solvers.dda import SubBlocks, model_of
 from validation.solvers.fem import problem_of
 from validation.solvers.registry import get_solver
 from validation.solvers.translation import tension_note, to_run
+from validation.theory import spectra as expected
+from validation.theory import statics
 
 PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
 
@@ -302,7 +303,7 @@ def oblong(scene: Scene) -> Scene:
 
 def two_unknowns(scene: Scene) -> np.ndarray:
     """Return the frequencies of (v, ey): the springs' stretch is v - h ey / 2."""
-    w, h = expected.size(scene)
+    w, h = statics.size(scene)
     m, p, E = scene.block.density * w * h, scene.contact.stiffness, scene.block.young
     K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
     return np.sqrt(eigh(K, m * np.diag([1, h * h / 12]), eigvals_only=True))
@@ -348,7 +349,7 @@ def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
 
 def bar_matrices(scene: Scene, n: int, degree: int) -> tuple[np.ndarray, np.ndarray]:
     """Return M and K of n linear or quadratic bar elements on the base spring 2 p."""
-    w, h = expected.size(scene)
+    w, h = statics.size(scene)
     rho, E, length = scene.block.density, scene.block.young, h / n
     if degree == 1:
         mass, stiff = np.array([[2, 1], [1, 2]]) / 6, np.array([[1, -1], [-1, 1]])
@@ -382,7 +383,7 @@ def test_elements_that_the_front_passes_in_a_step(oblong: Scene) -> None:
 
 
 def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:
-    w, h = expected.size(oblong)
+    w, h = statics.size(oblong)
     b = expected.bar_modes(oblong, 4000)
     ratio = 2 * 4e8 * h / (6e8 * w)
     assert np.abs(b[:50] * np.tan(b[:50]) / ratio - 1).max() <= 1e-11
@@ -419,7 +420,7 @@ def test_the_predicted_error_of_quadratic_elements_is_theirs(name: str, quantity
     n, t = case.fem.per_side, case.time
     M, K = bar_matrices(case, n, 2)
     squares, shapes = eigh(K, M)
-    w, h = expected.size(case)
+    w, h = statics.size(case)
     F = np.zeros(len(M))
     F[-1] = -case.load.pressure * w
     row = np.zeros(len(M))

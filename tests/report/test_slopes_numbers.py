@@ -11,7 +11,6 @@ import pytest
 from matplotlib.figure import Figure
 from oracles.made_cases import between, made_case, made_group, made_row
 
-from validation.gates import friction
 from validation.report.blocks import Callout, Table
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.data import CaseGroup
@@ -24,6 +23,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.studies.slopes import creep
 from validation.studies.slopes import sliding as study
+from validation.theory import friction
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 

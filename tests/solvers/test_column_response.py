@@ -17,7 +17,7 @@ from fem_reference.column.vibration import line_response
 from fem_reference.problem.result import Result as FemResult
 from validation import load_scene, response
 from validation.errors import InputError
-from validation.gates import waves
+from validation.theory import waves
 
 NAMES = ("displacement", "contact_pressure")
 Drawn = tuple[Column, Ground, list[int], dict[str, float]]

@@ -19,7 +19,6 @@ from oracles.processes import answer_here
 
 from validation import plugin
 from validation.engine.measure import completed
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -34,6 +33,7 @@ from validation.studies.own_solver import block_data, evidence, gates
 from validation.studies.own_solver.block import block, first, outside
 from validation.studies.own_solver.history import AT_REST, PENCIL, TAIL, natural_frequency, rest, root
 from validation.studies.own_solver.session import Session, Told
+from validation.theory import spectra
 
 ROOT = Path(__file__).parents[2]
 ORACLES = ROOT / "tests/oracles"
@@ -236,7 +236,7 @@ def test_a_word_that_names_no_solver_is_refused_before_anything_runs(tmp_path: P
 def test_the_natural_frequency_follows_from_the_root_whatever_delta_was(scheme: tuple[float, float, float]) -> None:
     alpha, delta, gg = scheme
     scene = load_scene("figure-8").with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
-    logarithm = cmath.log(closed_forms.roots(scene, 700.0)[0])
+    logarithm = cmath.log(spectra.roots(scene, 700.0)[0])
     size = abs(logarithm)
     other = scene.with_values({"time.delta": 0.5})  # what is asked for; the history had `delta`
     found = natural_frequency(other, size / scene.time.step, -logarithm.real / size)
@@ -246,9 +246,9 @@ def test_the_natural_frequency_follows_from_the_root_whatever_delta_was(scheme: 
 def swinging(scene: Scene, steps: int, noise: float = 0.0) -> History:
     """Return -0.01 + sum of both modes' powers, as the step's roots in closed form make it, with noise."""
     n, x = np.arange(1, steps + 1), np.full(steps, -0.01)
-    frequencies = closed_forms.dda_frequency(scene), closed_forms.contact_frequency(scene)
+    frequencies = spectra.dda_frequency(scene), spectra.contact_frequency(scene)
     for share, frequency in zip((0.009, 0.001), frequencies, strict=True):
-        x = x + share * np.real(closed_forms.roots(scene, frequency)[0] ** n)
+        x = x + share * np.real(spectra.roots(scene, frequency)[0] ** n)
     x = x * (1 + noise * np.sin(1e3 * n**2))
     return History(scene.time.step * n, {"displacement": x})
 
@@ -261,10 +261,10 @@ def test_the_strongest_root_is_known_to_the_error_that_is_stated(
     step, alpha, delta, steps = scheme
     values = {"time.step": step, "time.alpha": alpha, "time.delta": delta, "time.steps": steps}
     scene = load_scene("figure-8").with_values(values)
-    found, wanted = root(scene, swinging(scene, steps, noise)), closed_forms.dda_frequency(scene)
+    found, wanted = root(scene, swinging(scene, steps, noise)), spectra.dda_frequency(scene)
     assert found is not None and found.error <= 20 * noise + 1e-9
     least = 1e-8 if noise else PENCIL
-    assert found.ratio == pytest.approx(closed_forms.damping_ratio(scene, wanted), abs=found.error + least)
+    assert found.ratio == pytest.approx(spectra.damping_ratio(scene, wanted), abs=found.error + least)
     w = natural_frequency(scene, found.frequency, found.ratio)
     assert w == pytest.approx(wanted, rel=2 * found.error + least)
 

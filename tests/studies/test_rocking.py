@@ -21,9 +21,9 @@ from dda.stepping.driver import driver
 from fem_reference.exact.rocking import Pulse, RockingBlock
 from fem_reference.exact.rocking import solve as solve_rigid
 from validation.engine.study import Study
-from validation.gates.rigid_rocking import Rectangle
 from validation.studies.bands import cases
 from validation.studies.rocking import rocking, toppling
+from validation.theory.rocking import Rectangle
 
 DDA = ("dda",)
 Wrapper = Callable[[Callable[..., Any]], Callable[..., Any]]

@@ -19,7 +19,6 @@ from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
-from validation.gates import friction
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.scenes.record import base_record
@@ -27,6 +26,7 @@ from validation.scenes.scene import Scene, load_scene
 from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.bands import cases
 from validation.studies.slopes import creep, sliding
+from validation.theory import friction
 
 Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
 

@@ -15,12 +15,12 @@ import numpy as np
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.spectra import CONTACT, FIRST, dda_modes, mode_damping
 from validation.errors import InputError
-from validation.gates import closed_forms
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array
 from validation.runs.modes import contact_index
 from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
+from validation.theory import spectra, statics
 
 POINTS = 161
 LOWEST = 1e-3  # w dt of the first axial mode at which the range of dt begins
@@ -126,7 +126,7 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
 
 def transit(scene: Scene) -> float:
     """Time h / c of an axial wave through the block's height [s], c = sqrt(E' / rho)."""
-    E, _ = closed_forms.moduli(scene)
+    E, _ = statics.moduli(scene)
     height = np.ptp([y for _, y in scene.block.outline])
     return float(height) / math.sqrt(E / scene.block.density)
 
@@ -135,7 +135,7 @@ def _floor(scene: Scene, first: float) -> float | None:
     """First frequency of DDA over that of the exact bar; None for a block that is no rectangle or not at mu = 0."""
     if scene.block.vertices is not None or scene.block.poisson != 0:
         return None
-    return float(f"{first / closed_forms.bar_frequency(scene):.6g}")
+    return float(f"{first / spectra.bar_frequency(scene):.6g}")
 
 
 def _listed(values: Array) -> list[float | None]:

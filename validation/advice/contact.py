@@ -1,6 +1,6 @@
 """What springs and time step make of a contact that opens, and which of them keep a restitution and a penetration.
 
-All of it is about one landing: an unloaded, unstrained rectangle that comes down on both corners. `gates.landing` has
+All of it is about one landing: an unloaded, unstrained rectangle that comes down on both corners. `theory.landing` has
 the block's own landing, exact in time, and that of a time step; the advice is the difference of the two.
 """
 
@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from validation.gates import closed_forms, landing
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.events import rectangle
+from validation.theory import landing, statics
 
 RAISES = 8  # of p, at most, until the exact block stays above the requested penetration
 LEAST_RAISE = 1.2  # factor on p
@@ -105,7 +105,7 @@ def impact_force(scene: Scene, speed: float) -> float:
 
 def wave_force(scene: Scene, speed: float) -> float:
     """Return the force rho c V a with which a bar lands on a rigid wall [N]."""
-    modulus, _ = closed_forms.moduli(scene)
+    modulus, _ = statics.moduli(scene)
     return abs(speed) * math.sqrt(modulus * scene.block.density) * scene.block.base_length
 
 

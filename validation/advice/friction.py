@@ -23,13 +23,13 @@ from typing import Any
 import numpy as np
 
 from validation.advice.alarm import Alarm
-from validation.gates import friction
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
+from validation.theory import friction
 
 CREEPS = "creep of a stable block"
 LAGS = "lagged friction"

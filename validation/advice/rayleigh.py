@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from validation.errors import InputError
-from validation.gates.waves import Stepping
 from validation.runs.history import Array
+from validation.theory.waves import Stepping
 
 STARTS = 30  # of the search for a scheme, where the leading order does not lead to one
 ROUNDING = 1e-9  # of a discount that is 0 or 1, or of a ratio

@@ -1,7 +1,7 @@
 r"""Blocks and time step for a wave: how much of it a column of blocks under the scheme lets arrive, and when.
 
 In blocks of height h the scheme carries a wave e^{iwt - ikx} with cos(kh) = (6 - 2 L)/(6 + L), L = W2 h^2 rho / M
-(`validation.gates.waves`). Over a distance X it keeps exp(-|Im k| X) and arrives (Re k - w/c) X / (2 pi) periods late.
+(`validation.theory.waves`). Over a distance X it keeps exp(-|Im k| X) and arrives (Re k - w/c) X / (2 pi) periods late.
 The blocks are made small enough for half of the phase error in exact time; then the step is the largest with which the
 loss and the whole phase error are kept. Under a conditionally stable scheme the step also stays below the limit of the
 solver's own model of these blocks, whose glue, joints and contact springs may be far faster than the blocks.
@@ -21,12 +21,12 @@ from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency, percent
 from validation.errors import InputError
-from validation.gates import closed_forms
-from validation.gates.waves import Column, Stepping
 from validation.runs.history import Array, Complex
 from validation.scenes import features
 from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
+from validation.theory import statics
+from validation.theory.waves import Column, Stepping
 
 MOST_BLOCKS = 10_000_000
 ROUNDING = 1e-12  # of a loss, a delay or a damping ratio that is none
@@ -221,8 +221,8 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
     upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
     if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
         raise InputError(f"{scene.name}: block: must be an upright rectangle on its lower edge for a wave, got another")
-    width, height = closed_forms.size(scene)
-    modulus, _ = closed_forms.moduli(scene)
+    width, height = statics.size(scene)
+    modulus, _ = statics.moduli(scene)
     if b.subdivide is None:
         return (Layer(height, b.density, modulus, 1),)
     columns, rows = b.subdivide

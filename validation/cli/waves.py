@@ -15,9 +15,9 @@ from validation.cli.printing.output import echo
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
     from validation.advice.response import Response
-    from validation.gates.waves import Stepping
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
+    from validation.theory.waves import Stepping
 
 FigureOption = Annotated[
     Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
@@ -203,7 +203,7 @@ def _scheme(scene: str | None, assignments: list[str] | None, options: dict[str,
     from dataclasses import asdict
 
     from validation.advice.rayleigh import scheme_of
-    from validation.gates.waves import Stepping
+    from validation.theory.waves import Stepping
 
     scene_scheme = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
     return scheme_of(scene_scheme | {name: value for name, value in options.items() if value is not None})

@@ -1,4 +1,4 @@
-"""Bands for metrics, closed forms that bands are derived from, changes of verdicts between two runs.
+"""Bands for metrics, their verdicts, changes of verdicts between two runs.
 
 Nothing that runs or measures comes in.
 """

@@ -15,7 +15,7 @@ from validation.runs.text import printable
 
 Record = BaselineVerdict
 Edges = tuple[float, float]
-# Of the larger edge: one that is the difference of two predicted histories (`closed_forms.mesh_error`) has a thousandth
+# Of the larger edge: a difference of two predicted histories (`theory.spectra.mesh_error`) has a thousandth
 # of their size or less, and their rounding of 1e-12 to 1e-11 after thousands of steps is the processor's.
 LAST_DIGITS = 1e-8
 WORDS = ("PASS", "FAIL", "NOT RUN")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
 from validation.studies import core_damping
 from validation.studies.bands import OTHER, OWN, about, cases, decimals, near, printed
 from validation.studies.declaration import Study
+from validation.theory import spectra, statics
 
 SCENES = (
     "figures-3-4",
@@ -53,7 +53,7 @@ TENSION = (
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the core study."""
     return (
-        *statics(),
+        *gates_of_statics(),
         *settling(),
         *frequencies(),
         *damping(),
@@ -66,16 +66,16 @@ def gates() -> tuple[Gate, ...]:
     )
 
 
-def statics() -> Iterator[Gate]:
+def gates_of_statics() -> Iterator[Gate]:
     """Yield the gates on equilibrium and on what the histories tend to."""
     metric = "displacement.static"
     why = "closed form of static equilibrium; the band is rounding: 1e4 eps, conditioning of the static system"
     for scene in cases("figures-5-6", "poisson-statics"):
-        value = closed_forms.static_displacement(scene)
-        yield Gate(scene.name, ("dda",), metric, *near(value, 1e4 * closed_forms.EPS), why)
+        value = statics.static_displacement(scene)
+        yield Gate(scene.name, ("dda",), metric, *near(value, 1e4 * spectra.EPS), why)
     why = "mu = 0: every mesh holds the linear static field; band: rounding of a sparse solution"
     for scene in cases("figures-5-6"):
-        yield Gate(scene.name, ("fem",), metric, *near(closed_forms.static_displacement(scene), 1e-9), why)
+        yield Gate(scene.name, ("fem",), metric, *near(statics.static_displacement(scene), 1e-9), why)
     why = "independent program, four digits: half a unit of the last"
     for scene in cases("poisson-statics"):
         yield printed(scene.name, ("fem",), metric, FE_STATICS[f"{scene.contact.stiffness:g}"], 5e-7, why)
@@ -84,7 +84,7 @@ def statics() -> Iterator[Gate]:
         "for the second mode"
     )
     for scene in cases("figures-3-4"):
-        remaining_motion = closed_forms.remaining_motion(scene)
+        remaining_motion = spectra.remaining_motion(scene)
         yield Gate(scene.name, ("dda",), "pressure.final", *near(scene.load.pressure, 2 * remaining_motion + 1e-9), why)
 
 
@@ -100,14 +100,14 @@ def frequencies() -> Iterator[Gate]:
     """Yield the gates on the first axial frequency: DDA, bar, elements, and the model form between them."""
     block = "root of the two-unknown frequency equation; band: rounding"
     elements = (
-        "quadratic elements overestimate by the interpolation error's energy (closed_forms.mesh_frequency_error); "
+        "quadratic elements overestimate by the interpolation error's energy (spectra.mesh_frequency_error); "
         "a tenth for the next order, 2e-11 for the eigenvalue solver"
     )
     form = "model form, physics: one strain against a wave; ratio of the two closed forms"
     for scene in cases("figures-5-6"):
-        w_dda = closed_forms.dda_frequency(scene)
-        w_bar = closed_forms.bar_frequency(scene)
-        error = closed_forms.mesh_frequency_error(scene)
+        w_dda = spectra.dda_frequency(scene)
+        w_bar = spectra.bar_frequency(scene)
+        error = spectra.mesh_frequency_error(scene)
         name = scene.name
         metric = "mode1.frequency"
         yield Gate(name, ("dda",), metric, *near(w_dda, 1e-12), block)
@@ -120,14 +120,14 @@ def damping() -> Iterator[Gate]:
     """Yield the gates on the damping ratio of the first axial mode, from the operator and from the history."""
     operator = "trace and determinant of one step at the closed-form frequency; band: rounding of the logarithm"
     for scene in cases(*EXACT_BAR):
-        frequency_of = {"dda": closed_forms.dda_frequency(scene), "bar": closed_forms.bar_frequency(scene)}
+        frequency_of = {"dda": spectra.dda_frequency(scene), "bar": spectra.bar_frequency(scene)}
         for solver, frequency in frequency_of.items():
-            value = closed_forms.damping_ratio(scene, frequency)
-            if abs(closed_forms.roots(scene, frequency)[0].imag) >= 1e-6:
+            value = spectra.damping_ratio(scene, frequency)
+            if abs(spectra.roots(scene, frequency)[0].imag) >= 1e-6:
                 yield Gate(scene.name, (solver,), "mode1.damping", *about(value, 1e-10 * abs(value) + 1e-12), operator)
     history = "matrix pencil on the displacement: the history holds the ratio that the operator has, to 1e-6"
     for scene in cases("figures-3-4", "figure-8", "figure-9"):
-        value = closed_forms.damping_ratio(scene, closed_forms.dda_frequency(scene))
+        value = spectra.damping_ratio(scene, spectra.dda_frequency(scene))
         if scene.time.step < 0.01:
             yield Gate(scene.name, ("dda",), "mode1.measured_damping", *about(value, 1e-6), history)
 
@@ -153,11 +153,11 @@ def dispersion() -> Iterator[Gate]:
         if scene.time.alpha == 0.5 and scene.time.step >= 1e-3:
             continue  # the figure's constant acceleration: damped within the window, judged with Figures 3 to 6
         why = (
-            f"closed_forms.mesh_error: every mode b turns (b/n)^4 / 1440 too fast, "
-            f"{closed_forms.elements_per_front(scene):.3g} elements per c dt; the shapes' own error, of the next "
+            f"spectra.mesh_error: every mode b turns (b/n)^4 / 1440 too fast, "
+            f"{spectra.elements_per_front(scene):.3g} elements per c dt; the shapes' own error, of the next "
             "order, takes up to a quarter off"
         )
-        for quantity, value in closed_forms.mesh_error(scene).items():
+        for quantity, value in spectra.mesh_error(scene).items():
             yield Gate(scene.name, ("fem", "bar"), f"{quantity}.l2", 0.75 * value, 1.1 * value, why)
 
 
@@ -219,9 +219,9 @@ def code() -> Iterator[Gate]:
 
 def rounding(scene: Scene) -> float:
     """Relative distance of two sound programs' histories for mu = 0: the band of `code`."""
-    omega2 = (closed_forms.dda_frequency(scene) * scene.time.step) ** 2
+    omega2 = (spectra.dda_frequency(scene) * scene.time.step) ** 2
     soft = 1 + 2 * scene.contact.stiffness / scene.block.young
-    return 10 * closed_forms.EPS * scene.time.steps * soft * max(1.0, 1 / omega2)
+    return 10 * spectra.EPS * scene.time.steps * soft * max(1.0, 1 / omega2)
 
 
 def drift() -> Iterator[Gate]:

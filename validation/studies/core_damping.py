@@ -10,12 +10,12 @@ import functools
 from collections.abc import Iterator, Mapping
 
 from validation.engine.finished import Derived, Finished
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import OWN, about, cases
+from validation.theory import spectra
 
 NAME = "damping"
 READS = tuple(f"mode1.{part}" for part in ("frequency", "spectral_radius", "damping", "measured_damping"))
@@ -69,11 +69,11 @@ def operator_distance(scene: Scene, row: Row) -> Value:
     w, radius, xi = (row.metrics.get(f"mode1.{part}") for part in ("frequency", "spectral_radius", "damping"))
     if not (isinstance(w, float) and isinstance(radius, float)):
         return "not reported"
-    exact = closed_forms.roots(scene, w)
+    exact = spectra.roots(scene, w)
     distance = abs(radius - max(map(abs, exact)))
     if abs(exact[0].imag) < 1e-6:
         return distance
-    return max(distance, abs(xi - closed_forms.damping_ratio(scene, w))) if isinstance(xi, float) else "undefined"
+    return max(distance, abs(xi - spectra.damping_ratio(scene, w))) if isinstance(xi, float) else "undefined"
 
 
 def history_distance(row: Row) -> Value:
@@ -109,10 +109,10 @@ def ratio(scene: Scene) -> Iterator[Gate]:
         )
         yield Gate(scene.name, pair, metric, *about(value, half), reason, OWN, half)
         return
-    frequency = closed_forms.bar_frequency(scene)
-    error = closed_forms.mesh_frequency_error(scene)
-    dda = closed_forms.damping_ratio(scene, closed_forms.dda_frequency(scene))
-    fem = closed_forms.damping_ratio(scene, frequency * (1 + error))
+    frequency = spectra.bar_frequency(scene)
+    error = spectra.mesh_frequency_error(scene)
+    dda = spectra.damping_ratio(scene, spectra.dda_frequency(scene))
+    fem = spectra.damping_ratio(scene, frequency * (1 + error))
     if min(abs(dda), abs(fem)) < UNDAMPED:
         return
     why = "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error"

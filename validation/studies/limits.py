@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation.gates.closed_forms import EPS
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
 from validation.studies.bands import OWN, cases
 from validation.studies.declaration import Study
+from validation.theory.spectra import EPS
 
 # Static displacement of linear over quadratic elements, less one: bands about the values of eight elements a side.
 LOCKED = {0.3: (-0.012, -0.003), 0.49: (-0.15, -0.07), 0.4999: (-0.8, -0.7), 0.499999: (-0.92, -0.82)}

@@ -10,11 +10,11 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.declaration import Study
+from validation.theory import spectra, statics
 
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5))
 STIFFNESS = tuple(10.0**power for power in range(0, 25, 3))  # p [N/m] at E = 1e9 Pa: p/E = 1e-9 to 1e15
@@ -102,12 +102,12 @@ def bounded(case: Scene) -> bool:
     t = case.time
     if not conditional(t.alpha, t.delta):
         return True
-    return closed_forms.contact_frequency(case) * t.step < closed_forms.critical_omega(case) * (1 - 1e-6)
+    return spectra.contact_frequency(case) * t.step < spectra.critical_omega(case) * (1 - 1e-6)
 
 
 def incompressible(case: Scene) -> bool:
     """Whether lam / G = 2 mu' / (1 - mu') exceeds 1e4, beyond which fem says that it keeps fewer digits."""
-    _, mu = closed_forms.moduli(case)
+    _, mu = statics.moduli(case)
     return mu > 1 - 2e-4
 
 
@@ -133,8 +133,8 @@ def digits(case: Scene) -> Iterator[Gate]:
 
 def grown(case: Scene) -> Iterator[Gate]:
     """Yield the gate on the growth of a run beyond its limit."""
-    rate = closed_forms.spectral_radius(case, closed_forms.contact_frequency(case))
-    slower = closed_forms.spectral_radius(case, closed_forms.dda_frequency(case))
+    rate = spectra.spectral_radius(case, spectra.contact_frequency(case))
+    slower = spectra.spectral_radius(case, spectra.dda_frequency(case))
     if slower > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
     why = "beyond the limit the history grows by the spectral radius of its stiffest mode, from trace and determinant"

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
+from validation.theory import spectra
 
 SCENE = "stiff-contact"
 
@@ -21,7 +21,7 @@ def gates() -> Iterator[Gate]:
     root = "the contact mode's root from trace and determinant: near -1 for (1/2, 1), near -1/3 for (9/16, 1)"
     whole = "first step from which the value stays within 1e-4 of static: a whole number, the same in sixty digits"
     for case in cases(SCENE):
-        radius = closed_forms.spectral_radius(case, closed_forms.contact_frequency(case))
+        radius = spectra.spectral_radius(case, spectra.contact_frequency(case))
         half = 1e-11  # rounding of a root near -1, whose distance from it may be 1e-8
         yield Gate(case.name, ("dda",), "contact.spectral_radius", *about(radius, half), root)
         for quantity in ("displacement", "pressure"):

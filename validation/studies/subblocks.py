@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
 from validation.studies.bands import APART, OTHER, OWN, cases, near
 from validation.studies.declaration import Study
+from validation.theory import spectra, statics
 
 SCENES = (
     "subblocks-column",
@@ -52,7 +52,7 @@ def column() -> Iterator[Gate]:
         for metric in ("displacement.max", "pressure.max"):
             yield Gate(scene.name, ("dda", "fem"), metric, APART, SAME, same, OTHER)
         if scene.fem.per_side >= 4:
-            error = closed_forms.mesh_frequency_error(scene)
+            error = spectra.mesh_frequency_error(scene)
             yield Gate(scene.name, ("dda", "bar"), "mode1.frequency", 0.9 * error, 1.1 * error, order)
 
 
@@ -60,16 +60,16 @@ def glue() -> Iterator[Gate]:
     """Yield the gates on the floor that finite glue leaves: joints in series."""
     why = "n - 1 joints in series, 1 / (2 glue_ratio E) each, half of them below the middle; band: rounding"
     for scene in cases("subblocks-glue"):
-        band = near(glued_column(scene), 1e4 * closed_forms.EPS)
+        band = near(glued_column(scene), 1e4 * spectra.EPS)
         yield Gate(scene.name, ("dda",), "displacement.static", *band, why)
 
 
 def glued_column(scene: Scene) -> float:
     """Return the static v of the centroid of a glued column, mu = 0 [m]: block on springs, and its joints."""
-    width, _ = closed_forms.size(scene)
+    width, _ = statics.size(scene)
     _, n = scene.block.subdivide or (1, 1)
     joint = 1 / (2 * scene.block.glue_ratio * scene.block.young)
-    return closed_forms.static_displacement(scene) - (n - 1) / 2 * joint * scene.load.pressure * width
+    return statics.static_displacement(scene) - (n - 1) / 2 * joint * scene.load.pressure * width
 
 
 def triangles() -> Iterator[Gate]:
@@ -107,7 +107,7 @@ def locking() -> Iterator[Gate]:
     for scene in cases("subblocks-locking"):
         b = scene.block
         value, half = numbers[scene.contact.stiffness / b.young, b.poisson]
-        wave = closed_forms.bar_frequency(scene) / (b.young / b.density) ** 0.5 * closed_forms.size(scene)[1]
+        wave = spectra.bar_frequency(scene) / (b.young / b.density) ** 0.5 * statics.size(scene)[1]
         edges = value - half, value + half + (wave / 32) ** 2 / 24
         yield Gate(scene.name, ("dda", "fem"), "mode1.frequency", *edges, why, reference_uncertainty=half)
 
@@ -140,7 +140,7 @@ def rocking_frequency(scene: Scene) -> float:
 
     (17): M = rho diag(a^2, a^4/6, a^4/24); (27): p [[2, a, -a/2], [a, a^2, 0], [-a/2, 0, a^2/4]], and A G for gxy.
     """
-    a = closed_forms.size(scene)[0]
+    a = statics.size(scene)[0]
     p = scene.contact.stiffness
     M = scene.block.density * np.array([a**2, a**4 / 6, a**4 / 24])
     K = p * np.array([[2.0, a, -a / 2], [a, a * a, 0.0], [-a / 2, 0.0, a * a / 4]])

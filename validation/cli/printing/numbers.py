@@ -17,9 +17,9 @@ import numpy as np
 from validation.advice import contact
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
-from validation.gates import closed_forms
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.theory import statics
 
 MOST_CASES = 200  # of a sweep that are looked at, evenly taken
 MOST_BLOCKS = 4  # sub-blocks whose modes are found at once; `damping` finds those of more
@@ -86,7 +86,7 @@ def _block(scene: Scene) -> Iterator[Number]:
     b = scene.block
     dt = scene.time.step
     height = float(np.ptp([y for _, y in b.outline]))
-    speed = math.sqrt(closed_forms.moduli(scene)[0] / b.density)
+    speed = math.sqrt(statics.moduli(scene)[0] / b.density)
     yield Number("m", scene.block.mass, "kg", "mass of the block")
     yield Number("p/E", scene.contact.stiffness / b.young, "", "springs over Young's modulus, unit thickness")
     yield Number("c", speed, "m/s", "speed of an axial wave, sqrt(E'/rho)")
@@ -140,7 +140,7 @@ def _slope(scene: Scene) -> Iterator[Number]:
     if slope:
         yield Number("tan b", abs(slope), "", "of the slope: friction coefficient that it needs at rest")
         if scene.block.vertices is None:
-            width, height = closed_forms.size(scene)
+            width, height = statics.size(scene)
             yield Number("w/h", width / height, "", "slenderness: the tan b beyond which it topples, unless it slides")
 
 

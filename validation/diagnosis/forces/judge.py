@@ -202,7 +202,7 @@ def _along_too(body: Body, softness: float, scheme: Scheme, place: Array, law: s
 
 def _compliance(scene: Scene, body: Body, softness: float) -> float:
     """Return what softer springs add to the static displacement, as a share of it [-]."""
-    from validation.gates.closed_forms import moduli
+    from validation.theory.statics import moduli
 
     width = body.x[1] - body.x[0]
     springs, block = 1 / (2 * scene.contact.stiffness), body.height / (4 * moduli(scene)[0] * width)

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.gates.closed_forms import moduli, size
-from validation.gates.friction import across, along, coefficient
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.friction import across, along, coefficient
+from validation.theory.statics import moduli, size
 
 STANDARD = 9.81  # m/s2
 

@@ -63,7 +63,7 @@ const formulas = (() => {
     return Math.sqrt(Math.min(at_flip, at_spiral));
   }
 
-  // ---- validation.gates.closed_forms: the DDA block on two corner springs, mu = 0 ----------------------------------
+  // ---- validation.theory.spectra: the DDA block on two corner springs, mu = 0 ----------------------------------
 
   // Smaller root of the two-unknown problem of (v, ey): M = diag(m, m h^2/12), K = [[2p, -p h], [-p h, E h w + p h^2/2]]
   function dda_frequency({ width, height, density, young, stiffness }) {
@@ -252,7 +252,7 @@ const formulas = (() => {
     return [Math.atan2(z[0], times(u, v)[0]), Math.asinh(times([u[0], -u[1]], v)[1])];
   }
 
-  // ---- validation.gates.waves: steady vibrations and waves under the scheme ------------------------------------------
+  // ---- validation.theory.waves: steady vibrations and waves under the scheme ------------------------------------------
 
   const GROWTH = 1e-9;  // of a wave over a block, by rounding
 
@@ -281,7 +281,7 @@ const formulas = (() => {
   }
 
   // What becomes of a wave over a distance: share lost, periods late, steady ratio, w / Re k / c - 1
-  // (validation.advice.wave_advice.Passage, validation.gates.waves.Column.travelled)
+  // (validation.advice.wave_advice.Passage, validation.theory.waves.Column.travelled)
   function passage(column, scheme, frequency, distance) {
     const omega = 2 * Math.PI * frequency, speed = Math.sqrt(column.young / column.density);
     const k = wavenumber(column, squared_frequency(scheme, omega));
@@ -346,7 +346,7 @@ const formulas = (() => {
     return { mean, low, high, energy };
   }
 
-  // ---- validation.gates.landing ---------------------------------------------------------------------------------------
+  // ---- validation.theory.landing ---------------------------------------------------------------------------------------
 
   // w_c = sqrt(8 p / m): at p >> E the base of the block of one strain moves with a quarter of its mass
   function base_frequency({ width, height, density, stiffness }) {

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from validation.gates import closed_forms
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory import spectra, statics
 
 LOWEST = 1e-3  # w dt from which on a ratio is looked for
 HIGHEST = 8.0  # w dt up to which it is
@@ -38,9 +38,9 @@ def damping(scene: Scene, frequency: float) -> float:
 
     A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
     """
-    first, second = closed_forms.roots(scene, frequency)
+    first, second = spectra.roots(scene, frequency)
     if first.imag:
-        return closed_forms.damping_ratio(scene, frequency)
+        return spectra.damping_ratio(scene, frequency)
     if min(first.real, second.real) <= 0:
         return math.nan
     logs = math.log(first.real), math.log(second.real)
@@ -49,7 +49,7 @@ def damping(scene: Scene, frequency: float) -> float:
 
 def first_damping(scene: Scene) -> float:
     """Return xi of the DDA block's first axial mode."""
-    return damping(scene, closed_forms.dda_frequency(scene))
+    return damping(scene, spectra.dda_frequency(scene))
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
@@ -61,7 +61,7 @@ def step_for(scene: Scene, ratio: float) -> float | None:
     """Return the least time step [s] that damps the first axial mode by a ratio, or None where none does."""
     from scipy.optimize import brentq
 
-    steps = np.geomspace(LOWEST, HIGHEST, POINTS) / closed_forms.dda_frequency(scene)
+    steps = np.geomspace(LOWEST, HIGHEST, POINTS) / spectra.dda_frequency(scene)
     above = over_steps(scene, steps) - ratio
     with np.errstate(invalid="ignore"):
         crossed = np.flatnonzero((above[:-1] < 0) & (above[1:] >= 0))
@@ -73,14 +73,14 @@ def step_for(scene: Scene, ratio: float) -> float | None:
 
 def most_damped(scene: Scene) -> float:
     """Return w dt at which a step of (1/2, 1) damps the first axial mode most, by its ratio."""
-    frequency = closed_forms.dda_frequency(scene)
+    frequency = spectra.dda_frequency(scene)
     turns = np.linspace(LOWEST, 4.0, 4 * POINTS)
     return float(turns[np.nanargmax(over_steps(scene, turns / frequency))])
 
 
 def rate_for(scene: Scene, ratio: float) -> float:
     """Return the rate c [1/s] of gg = exp(-c dt) that damps the first axial mode by a ratio as dt tends to 0."""
-    return 2 * closed_forms.dda_frequency(scene) * ratio
+    return 2 * spectra.dda_frequency(scene) * ratio
 
 
 def overdamped_below(scene: Scene) -> float | None:
@@ -90,10 +90,10 @@ def overdamped_below(scene: Scene) -> float | None:
     if scene.time.discount >= 1 or scene.time.gg_rate is not None:
         return None
     # w dt of two equal roots lies near (1 - gg) / 2
-    middle = (1 - scene.time.discount) / 2 / closed_forms.dda_frequency(scene)
+    middle = (1 - scene.time.discount) / 2 / spectra.dda_frequency(scene)
 
     def swings(step: float) -> float:
-        first, second = closed_forms.roots(timed(scene, step=step), closed_forms.dda_frequency(scene))
+        first, second = spectra.roots(timed(scene, step=step), spectra.dda_frequency(scene))
         return abs((first - second).imag) - abs((first - second).real)
 
     return float(brentq(swings, middle / 4, 4 * middle))
@@ -101,13 +101,13 @@ def overdamped_below(scene: Scene) -> float | None:
 
 def transit(scene: Scene) -> float:
     """Return the time [s] that a wave takes from the top to the base."""
-    E, _ = closed_forms.moduli(scene)
-    return closed_forms.size(scene)[1] / math.sqrt(E / scene.block.density)
+    E, _ = statics.moduli(scene)
+    return statics.size(scene)[1] / math.sqrt(E / scene.block.density)
 
 
 def contact_radius(scene: Scene) -> float:
     """Return |lambda| of the contact mode over one step."""
-    return closed_forms.spectral_radius(scene, closed_forms.contact_frequency(scene))
+    return spectra.spectral_radius(scene, spectra.contact_frequency(scene))
 
 
 def spring_share(scene: Scene) -> float:
@@ -115,8 +115,8 @@ def spring_share(scene: Scene) -> float:
 
     (a q / 2p) / (h q / 2E') = (w / h) E' / p: a rule on p alone holds for one slenderness.
     """
-    E, _ = closed_forms.moduli(scene)
-    width, height = closed_forms.size(scene)
+    E, _ = statics.moduli(scene)
+    width, height = statics.size(scene)
     return width / height * E / scene.contact.stiffness
 
 
@@ -125,9 +125,9 @@ def sign_change_step(scene: Scene) -> float:
 
     The contact force then changes its sign in each step.
     """
-    return 4 / closed_forms.contact_frequency(scene)
+    return 4 / spectra.contact_frequency(scene)
 
 
 def penetration(scene: Scene) -> float:
     """Return how far the springs deflect at rest [m]: a q / (2 p)."""
-    return closed_forms.size(scene)[0] * scene.load.pressure / (2 * scene.contact.stiffness)
+    return statics.size(scene)[0] * scene.load.pressure / (2 * scene.contact.stiffness)

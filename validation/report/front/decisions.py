@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.gates import closed_forms
 from validation.report.blocks import Block, Callout, Column, Heading, PageBreak, Paragraph, Table, columns
 from validation.report.chapters.data import CaseResults
 from validation.report.chapters.text import DASH, percent, plain, short
@@ -17,6 +16,7 @@ from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
 from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
+from validation.theory import spectra, statics
 
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
 TARGET_DAMPING = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
@@ -89,7 +89,7 @@ def step_table(scenes: Sequence[Scene]) -> Table:
     for xi in TARGET_DAMPING:
         steps = [closed.step_for(scene, xi) for scene in scenes]
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
-    frequencies = [closed_forms.dda_frequency(scene) for scene in scenes]
+    frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
     titles = (
         Column("Wanted ξ"),
@@ -148,8 +148,8 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
     scenes = [closed.stiffer(base, float(r)) for r in grid]
-    share = np.array([100 * closed.penetration(s) / abs(closed_forms.static_displacement(s)) for s in scenes])
-    high = np.array([100 * (closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1) for s in scenes])
+    share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
+    high = np.array([100 * (spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1) for s in scenes])
     marks = {f"{r:g}E": r for r in RATIOS}
     deflection = Chart(
         "What the springs add [%]",
@@ -217,11 +217,11 @@ def spring_table(groups: Groups, base: Scene) -> Table:
         scene = closed.stiffer(base, ratio)
         case, fine = (case_where(groups.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
         closed_form_cells = (
-            f"{1e3 * closed_forms.static_displacement(scene):.3f}".replace("-", "−"),
+            f"{1e3 * statics.static_displacement(scene):.3f}".replace("-", "−"),
             f"{1e3 * closed.penetration(scene):.3g}",
             percent(closed.first_damping(scene)),
             f"{closed.contact_radius(scene):.4f}",
-            f"{1e3 * 4 / closed_forms.contact_frequency(scene):.3g}",
+            f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
         )
         settling_cells = (
             _steps(case, "displacement.settling_step"),
@@ -263,7 +263,7 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     lines.append(
         Stroke(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), CHOICES[3], DASHED)
     )
-    turns = ", ".join(short(closed_forms.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
+    turns = ", ".join(short(spectra.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
     chart = Chart(
         "Damping ratio of the first axial mode [%], average acceleration",
         ("time step dt [ms]", ""), lines, RANGE, (0.1, 1000.0), {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.gates import closed_forms
 from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import percent, plain, short
@@ -22,6 +21,7 @@ from validation.report.front.groups import Groups, at_ratio, by_step, case_where
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
+from validation.theory import spectra
 
 TARGET_DAMPING = 0.05  # damping ratio that the answer names a time step for
 STIFF = 100.0  # p/E of the answer on stiff springs
@@ -221,7 +221,7 @@ def beware(groups: Groups) -> tuple[str, str] | None:
     both_off = "" if time_error is None else f", while both are {percent(time_error)} off the continuum"
     minima = [value for case, _, _ in rows if (value := case.number("dda", "pressure.minimum")) is not None]
     stiffer = [closed.stiffer(longest.scene, ratio) for ratio in STIFFNESSES]
-    excesses = [closed_forms.dda_frequency(s) / closed_forms.bar_frequency(s) - 1 for s in stiffer]
+    excesses = [spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1 for s in stiffer]
     return (
         "What should I not trust?",
         f"The agreement at a long step: {percent(agreement)} at {milliseconds(longest.scene.time.step)}, because both "
@@ -237,14 +237,14 @@ def _stepped_frequencies(scene: Scene) -> str:
     """Say what the step makes of DDA's first frequency against the exact bar's, at a short and at a longer step."""
     parts = []
     for step in STEPS:
-        excess = stepped_frequency(closed.timed(scene, step=step)) / closed_forms.bar_frequency(scene) - 1
+        excess = stepped_frequency(closed.timed(scene, step=step)) / spectra.bar_frequency(scene) - 1
         parts.append(f"{percent(abs(excess))} {'above' if excess > 0 else 'below'} at {milliseconds(step)}")
     return ", ".join(parts)
 
 
 def stepped_frequency(scene: Scene) -> float:
     """Return the undamped frequency of DDA's first axial mode as stepped [rad/s]: |ln lambda| / dt."""
-    root = closed_forms.roots(scene, closed_forms.dda_frequency(scene))[0]
+    root = spectra.roots(scene, spectra.dda_frequency(scene))[0]
     return abs(cmath.log(root)) / scene.time.step
 
 

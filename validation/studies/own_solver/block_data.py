@@ -13,11 +13,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import near
 from validation.studies.core import rounding
+from validation.theory import statics
 
 Values = dict[str, Any]
 RESTING = "where a damped motion of some hundred steps ends, by the closed form of static equilibrium; rounding"
@@ -70,8 +70,8 @@ def displacement_at_rest(scene: Scene) -> float:
     A load whose middle lies beside the centroid presses a shorter part of the top edge. The centroid sinks less by that
     share, since turning does not move it.
     """
-    pressed = 1 - 2 * abs(scene.load.eccentricity) / closed_forms.size(scene)[0]
-    return closed_forms.static_displacement(scene) * pressed
+    pressed = 1 - 2 * abs(scene.load.eccentricity) / statics.size(scene)[0]
+    return statics.static_displacement(scene) * pressed
 
 
 def gates(solver: str) -> Iterator[Gate]:
@@ -96,7 +96,7 @@ class Misreading:
 
 def _sides(scene: Scene, width: int, height: int) -> Values:
     """Return the keys of a rectangle whose sides are the scene's width (0) or height (1)."""
-    sides = closed_forms.size(scene)
+    sides = statics.size(scene)
     return {"block.width": sides[width], "block.height": sides[height]}
 
 

@@ -15,7 +15,6 @@ from validation.engine.case import Case
 from validation.engine.finished import Derived
 from validation.engine.judge import reads
 from validation.engine.study import Study
-from validation.gates import closed_forms
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
 from validation.scenes.scene import Scene, load_scene
@@ -24,6 +23,7 @@ from validation.studies.catalogue import get_study, judged_studies
 from validation.studies.core import rounding
 from validation.studies.own_solver import block_data
 from validation.studies.own_solver.history import FREQUENCY, PENCIL
+from validation.theory import spectra
 
 JUDGED = "dda"  # whose place a user's solver takes
 GROUPS = {  # in the order in which a person looks: a fault in one shows in those after it
@@ -48,8 +48,8 @@ def _start() -> Iterator[Gate]:
     history = "matrix pencil on the displacement, which holds the ratio and, with alpha and gg, the natural frequency"
     same = "same equations, rounding apart (see the core study)"
     for scene in starts():
-        high, pair, frequency = rounding(scene), (JUDGED, "dda-textbook"), closed_forms.dda_frequency(scene)
-        ratio = closed_forms.damping_ratio(scene, frequency)
+        high, pair, frequency = rounding(scene), (JUDGED, "dda-textbook"), spectra.dda_frequency(scene)
+        ratio = spectra.damping_ratio(scene, frequency)
         yield Gate(scene.name, pair, "displacement.max", 0, FIRST, first, until=scene.time.step)
         if scene.time.discount == 1:  # a slip in gg changes the root, and is one of damping
             yield Gate(scene.name, (JUDGED,), "mode1.frequency", *near(frequency, FREQUENCY), history)

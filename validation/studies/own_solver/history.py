@@ -19,12 +19,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.gates.closed_forms import dda_frequency
 from validation.gates.gate import Gate
 from validation.metrics.values import UNDEFINED, largest
 from validation.runs.history import Array, History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
+from validation.theory.spectra import dda_frequency
 
 PENCIL = 1e-6  # the ratio of a history of these scenes is the operator's to this, see the gates on measured damping
 FREQUENCY = 10 * PENCIL  # relative: both numbers of the root enter, times 1 + alpha Omega^2, which is below 2

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from validation.gates import friction
 from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
+from validation.theory import friction
 
 CREEP = named("creep-claim")
 SLIDES = named("slope-sliding")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from validation.gates import landing
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_statistics
 from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named, whole
+from validation.theory import landing
 
 CASES = named("open-close")
 DAMPED, UNDAMPED = (

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from validation.gates.rigid_rocking import Rectangle
 from validation.runs.history import Array, History
 from validation.scenes.scene import Scene
+from validation.theory.rocking import Rectangle
 
 
 def rectangle(scene: Scene) -> Rectangle:

@@ -13,13 +13,13 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.gates.friction import coefficient, sliding_acceleration
 from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, increments, rectangle, settlement
+from validation.theory.friction import coefficient, sliding_acceleration
 
 STATIC = "toppling-static"
 SLIDE = "toppling-slide"

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.gates import friction
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
@@ -23,6 +22,7 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import APART, LAGS, OTHER, about, cases, fitted_order
 from validation.studies.declaration import Study
+from validation.theory import friction
 
 EXACT = "creep-exact"
 STEPS = "creep-steps"

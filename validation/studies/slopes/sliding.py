@@ -1,7 +1,7 @@
 """The study `slopes`: trajectories on inclines against closed forms.
 
 While every corner slips one way or is open, u_t + tan(phi) u_n of the centroid moves freely under
-a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.gates.friction`). So the run-out, what
+a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.theory.friction`). So the run-out, what
 a discount takes of it and the slope at which a block begins to slide are known to rounding.
 """
 
@@ -14,8 +14,6 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.gates import friction
-from validation.gates.closed_forms import moduli, size
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
@@ -23,6 +21,8 @@ from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.bands import APART, LAGS, about, cases
 from validation.studies.declaration import Study
+from validation.theory import friction
+from validation.theory.statics import moduli, size
 
 SLIDING = "slope-sliding"
 AVERAGE = "slope-average"

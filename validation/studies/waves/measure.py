@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.gates import waves
 from validation.metrics.transform import Complex, spectrum
 from validation.runs.history import History
 from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene
+from validation.theory import waves
 
 
 def column_of(scene: Scene) -> ColumnSection:

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
-from validation.gates import waves
-from validation.gates.wave_base import base_reflection
 from validation.scenes.scene import SCENE_DIRECTORY, Scene
 from validation.studies.pack import Part, history_of
 from validation.studies.waves.response import amplitudes
 from validation.studies.waves.rows import travelling
 from validation.studies.waves.study import SITE, usual_site
+from validation.theory import waves
+from validation.theory.wave_base import base_reflection
 
 BLOCKS = (8, 10, 16, 20, 40, 100)
 COURANTS = (0.1, 0.25, 0.5, 1.0)

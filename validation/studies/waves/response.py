@@ -17,16 +17,17 @@ import numpy as np
 
 from validation.advice.response import Response, polar, response
 from validation.engine.finished import Derived, Finished
-from validation.gates import vibration
-from validation.gates.closed_forms import EPS, bar_frequency, dda_frequency, moduli, roots, size
 from validation.gates.gate import Gate
-from validation.gates.waves import Complex, Stepping
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.record import read_record
 from validation.scenes.scene import SCENE_DIRECTORY, Scene, load_scene
 from validation.studies.bands import about, cases
 from validation.studies.declaration import Study
+from validation.theory import vibration
+from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
+from validation.theory.statics import moduli, size
+from validation.theory.waves import Complex, Stepping
 
 BASE = "response-base"
 DAMPING = "response-damping"

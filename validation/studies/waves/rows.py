@@ -11,14 +11,14 @@ from functools import partial
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.gates import waves
 from validation.gates.gate import Gate
-from validation.gates.wave_base import base_reflection
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import about, cases, fitted_order, near
 from validation.studies.waves.measure import Guide, column_of, joint_parts
+from validation.theory import waves
+from validation.theory.wave_base import base_reflection
 
 EXACT = 1e-10  # of k: what a measured wavenumber must keep
 JOINT = 1e-9  # of |T| and |R|

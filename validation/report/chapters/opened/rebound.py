@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from validation.gates import landing
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import gate_count, opening
@@ -18,6 +17,7 @@ from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import contact, histories
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
+from validation.theory import landing
 
 EXACT = "block-events"
 IMPACT = "rebound-"  # prefix of the scenes of single landings

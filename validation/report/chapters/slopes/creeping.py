@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.gates import friction
 from validation.report.blocks import Block, FigureBlock, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
@@ -17,6 +16,7 @@ from validation.report.figures.histories import saved
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.slopes import creep as study
+from validation.theory import friction
 
 CONSTANT = "constant acceleration"
 AVERAGE = "average acceleration"

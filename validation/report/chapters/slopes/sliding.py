@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.gates import friction
 from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
@@ -18,6 +17,7 @@ from validation.report.figures.histories import saved
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.studies.slopes import sliding as study
+from validation.theory import friction
 
 DDA = "dda"
 ALONG = "horizontal_displacement"

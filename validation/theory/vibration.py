@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.gates.closed_forms import EPS, moduli, size
-from validation.gates.waves import Column, Complex
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.spectra import EPS
+from validation.theory.statics import moduli, size
+from validation.theory.waves import Column, Complex
 
 OPERATIONS = 100  # roundings of two programs in a row, of which none is larger than the conditioning times eps
 

@@ -8,7 +8,7 @@ import pytest
 from oracles.sliding_dda import Slider, run
 
 from validation import load_scene
-from validation.gates import friction
+from validation.theory import friction
 
 MEASURED = Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "ntdda-phi22-slope20-dt2ms_meas.m"
 LOAD, WEIGHT, SLOPE = 1e6, 10800 * 9.81, math.radians(20)

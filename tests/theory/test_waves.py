@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dda.scheme import spectral
-from validation.gates import waves
+from validation.theory import waves
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 SQUARED = [

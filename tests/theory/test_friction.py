@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from validation import load_scene, solve
-from validation.gates import friction
 from validation.scenes.scene import Scene
+from validation.theory import friction
 
 SLOPE = {
     "contact.law": "unilateral",

@@ -11,9 +11,9 @@ import pytest
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.gates import landing
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
+from validation.theory import landing
 
 UNLOADED = (
     load_scene("impact")

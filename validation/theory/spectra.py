@@ -1,4 +1,4 @@
-"""Closed forms that gates are derived from: statics, first frequencies, damping; written apart from the solvers.
+"""First frequencies of block, bar and mesh, and what one step of Newmark's scheme makes of them.
 
 They hold for the paper's block, an upright rectangle on its lower edge under vertical pressure, and are code of
 their own, so that a slip in a solver cannot hide in its gate.
@@ -13,38 +13,9 @@ import numpy as np
 
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.statics import moduli, size
 
 EPS = 2.0**-52
-
-
-def moduli(scene: Scene) -> tuple[float, float]:
-    """Return (E', mu') that turn the plane-stress formulas into the scene's hypothesis.
-
-    Plane strain: E' = E / (1 - mu^2), mu' = mu / (1 - mu).
-    """
-    E, mu = scene.block.young, scene.block.poisson
-    return (E, mu) if scene.block.hypothesis == "plane stress" else (E / (1 - mu * mu), mu / (1 - mu))
-
-
-def size(scene: Scene) -> tuple[float, float]:
-    """Width and height of the rectangle [m]."""
-    (x0, y0), (x1, _), (_, y2), _ = scene.block.outline
-    return x1 - x0, y2 - y0
-
-
-def static_displacement(scene: Scene) -> float:
-    """Static v of the centroid on corner springs [m].
-
-    Square, p = ps, plane stress: -(a q / 2 p) [2 E^2 + 3 E p + (1 - mu^2) p^2] / [E (2 E + p)]; here from the three
-    equations of equilibrium of (v, ex, ey) on a w x h rectangle, with the lateral strain eliminated.
-    """
-    E, mu = moduli(scene)
-    w, h = size(scene)
-    q, p, ps = scene.load.pressure, scene.contact.stiffness, scene.contact.shear
-    plate = E / (1 - mu * mu)
-    lateral = plate + ps * w / (2 * h)  # stress per ex, springs included
-    strain = -q / (plate * (1 - mu * mu * plate / lateral))
-    return -q * w / (2 * p) + h / 2 * strain
 
 
 def dda_frequency(scene: Scene) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.gates.waves import Column, Complex, Stepping
+from validation.theory.waves import Column, Complex, Stepping
 
 
 def base_reflection(column: Column, stepping: Stepping, omega: ArrayLike, impedance: float) -> Complex:

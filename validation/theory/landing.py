@@ -27,9 +27,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.gates import closed_forms
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory import statics
 
 PHASES = np.linspace(0.0, 1.0, 33)
 """Landings within a step: e is continuous in the phase and made of straight lines, so that ends and kinks count."""
@@ -67,7 +67,7 @@ def whole_mass_frequency(scene: Scene, stiffness: float | None = None) -> float:
 
 def transit(scene: Scene) -> float:
     """Return the time h / c of a wave through the height of the block [s]."""
-    modulus, _ = closed_forms.moduli(scene)
+    modulus, _ = statics.moduli(scene)
     return height(scene) * math.sqrt(scene.block.density / modulus)
 
 
@@ -78,7 +78,7 @@ def height(scene: Scene) -> float:
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
     """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
-    modulus, _ = closed_forms.moduli(scene)
+    modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
     return 2 * p * height(scene) / (modulus * scene.block.base_length)
 

@@ -16,9 +16,9 @@ import math
 
 import numpy as np
 
-from validation.gates.closed_forms import moduli, size
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.statics import moduli, size
 
 
 def coefficient(scene: Scene) -> float:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from validation.gates import closed_forms
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.core import CORE
+from validation.theory import spectra, statics
 
 BASE = load_scene("poisson-statics").with_values({"contact.stiffness": 1e9})
 DATA = [
@@ -30,15 +30,15 @@ def scene(values: dict[str, object]) -> Scene:
 @pytest.mark.parametrize("values", DATA)
 def test_static_displacement_balances_the_three_equations(values: dict[str, object]) -> None:
     s = scene(values)
-    E, mu = closed_forms.moduli(s)
-    w, h = closed_forms.size(s)
+    E, mu = statics.moduli(s)
+    w, h = statics.size(s)
     p, ps, q = s.contact.stiffness, s.contact.shear, s.load.pressure
     plate = w * h * E / (1 - mu * mu)
     K = np.array(
         [[2 * p, 0, -p * h], [0, plate + ps * w * w / 2, mu * plate], [-p * h, mu * plate, plate + p * h * h / 2]]
     )
     assert np.linalg.solve(K, [-w * q, 0, -w * h * q / 2])[0] == pytest.approx(
-        closed_forms.static_displacement(s), rel=1e-12
+        statics.static_displacement(s), rel=1e-12
     )
 
 
@@ -47,35 +47,35 @@ def test_static_displacement_is_the_printed_formula_corrected(p: float) -> None:
     s = BASE.with_values({"contact.stiffness": p})
     a, E, mu, q = 2.0, 1e9, 0.3, 5e6
     printed = -(a * q / 2 / p) * (2 * E * E + 3 * E * p + (1 - mu * mu) * p * p) / (E * (2 * E + p))
-    assert closed_forms.static_displacement(s) == pytest.approx(printed, rel=1e-14)
+    assert statics.static_displacement(s) == pytest.approx(printed, rel=1e-14)
 
 
 @pytest.mark.parametrize("values", DATA[:2])
 def test_frequencies_satisfy_their_equations(values: dict[str, object]) -> None:
     s = scene(values | {"block.poisson": 0.0})
-    E, (w, h) = s.block.young, closed_forms.size(s)
-    p, m, f = s.contact.stiffness, s.block.density * w * h, closed_forms.dda_frequency(s)
+    E, (w, h) = s.block.young, statics.size(s)
+    p, m, f = s.contact.stiffness, s.block.density * w * h, spectra.dda_frequency(s)
     K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
     assert np.linalg.det(K / m - f * f * np.diag([1, h * h / 12])) == pytest.approx(0, abs=1e-9 * np.linalg.det(K / m))
-    b = closed_forms.bar_frequency(s) * h / math.sqrt(E / s.block.density)
+    b = spectra.bar_frequency(s) * h / math.sqrt(E / s.block.density)
     assert b * math.tan(b) == pytest.approx(2 * p * h / (E * w), rel=1e-12)
 
 
 def test_numbers_of_the_independent_computation() -> None:
     cases = load_scene("figures-5-6").expand()
-    assert [round(closed_forms.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
-    assert [round(closed_forms.bar_frequency(c), 3) for c in cases] == [327.682, 455.258, 475.600]
-    ratios = [closed_forms.dda_frequency(c) / closed_forms.bar_frequency(c) for c in cases]
+    assert [round(spectra.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
+    assert [round(spectra.bar_frequency(c), 3) for c in cases] == [327.682, 455.258, 475.600]
+    ratios = [spectra.dda_frequency(c) / spectra.bar_frequency(c) for c in cases]
     assert [round(r, 4) for r in ratios] == [1.0515, 1.0957, 1.1020]
     stiff = cases[0].with_values({"contact.stiffness": 1e18})
-    assert closed_forms.dda_frequency(stiff) / closed_forms.bar_frequency(stiff) == pytest.approx(
+    assert spectra.dda_frequency(stiff) / spectra.bar_frequency(stiff) == pytest.approx(
         math.sqrt(3) / (math.pi / 2), rel=1e-8
     )
     light = load_scene("figure-9").expand()[1]
     values = [(2e-3, 0.0152), (1e-3, 0.0296), (1e-4, 0.293)]
     for dt, xi in values:
-        assert closed_forms.damping_ratio(
-            light.with_values({"time.step": dt}), closed_forms.dda_frequency(light)
+        assert spectra.damping_ratio(
+            light.with_values({"time.step": dt}), spectra.dda_frequency(light)
         ) == pytest.approx(xi, rel=5e-3)
 
 
@@ -87,7 +87,7 @@ def test_a_number_of_an_independent_program_is_not_called_exact() -> None:
 def test_plane_strain_is_plane_stress_of_other_moduli() -> None:
     """E / (1 - mu^2) and mu / (1 - mu): at mu = 1/4 16/15 E and 1/3."""
     strain = BASE.with_values({"block.hypothesis": "plane strain", "block.poisson": 0.25})
-    assert closed_forms.moduli(strain) == pytest.approx((strain.block.young * 16 / 15, 1 / 3))
+    assert statics.moduli(strain) == pytest.approx((strain.block.young * 16 / 15, 1 / 3))
 
 
 @pytest.mark.parametrize(("start", "share"), [("zero", 0.25), ("consistent", 0.5)])
@@ -95,5 +95,5 @@ def test_the_first_step_of_a_mode_is_by_its_start(start: str, share: float) -> N
     """x1 = Omega^2 share / (1 + alpha Omega^2): alpha from A0 = 0, alpha + (1/2 - alpha) from A0 = w^2."""
     values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": start, "time.steps": 4}
     omega = np.array([0.3, 2.0])
-    found = closed_forms.bar_response(BASE.with_values(values), omega)
+    found = spectra.bar_response(BASE.with_values(values), omega)
     assert found[0] == pytest.approx(share * omega**2 / (1 + 0.25 * omega**2), rel=1e-14)

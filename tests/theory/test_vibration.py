@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from validation import load_scene
-from validation.gates import vibration
-from validation.gates.closed_forms import static_displacement
-from validation.gates.waves import Stepping
+from validation.theory import vibration
+from validation.theory.statics import static_displacement
+from validation.theory.waves import Stepping
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002})
 W = 2 * np.pi * np.array([20.0, 52.0, 80.0, 150.0])
