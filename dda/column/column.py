@@ -129,10 +129,10 @@ class Column:
     @cached_property
     def springs(self) -> list[float | None]:
         """Stiffness of the spring below every block [Pa/m], None where faces move alike."""
-        found = [self.glue] * len(self.heights)
+        stiffnesses = [self.glue] * len(self.heights)
         for joint in self.joints:
-            found[self.face_of(joint)] = joint.stiffness
-        return found
+            stiffnesses[self.face_of(joint)] = joint.stiffness
+        return stiffnesses
 
     def block_at(self, height: float) -> tuple[int, float]:
         """Return the block at a height and the share of its height below; of two that meet there, the lower one.

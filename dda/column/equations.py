@@ -94,10 +94,10 @@ class Equations:
 
     def row(self, block: int, low: float, high: float) -> Array:
         """Return the row that observes low times a block's lower and high times its upper face."""
-        found = np.zeros(self.size)
+        row = np.zeros(self.size)
         for faces, value in ((self.lower[block], low), (self.upper[block], high)):
-            found[list(faces)] += value
-        return found
+            row[list(faces)] += value
+        return row
 
 
 def equations(column: Column) -> Equations:

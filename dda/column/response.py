@@ -54,12 +54,12 @@ def column_response(
     drive = np.zeros((len(w), 4), complex)
     drive[:, :3] = np.stack([np.ones_like(w), 1j * w, -w * w], axis=1) if at == "base" else 0.0
     drive[:, 3] = at == "top"
-    seen = drive @ step.told(rows).T
+    driven = drive @ step.told(rows).T
     by_D, by_V, by_A = (matrix[:, step.first :] for matrix in (rows.D, rows.V, rows.A))
     for i, (w2, s) in enumerate(zip(np.atleast_1d(W2), S, strict=True)):
         D = _solved(step.K.rows + s * step.C.rows - w2 * step.M.rows, step.push @ drive[i])
-        seen[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
-    return dict(zip(columns, seen.T, strict=True))
+        driven[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
+    return dict(zip(columns, driven.T, strict=True))
 
 
 def _solved(lower: Complex, right: Complex) -> Complex:

@@ -56,8 +56,8 @@ class Drive:
 
 def column_names(heights: Sequence[float]) -> tuple[str, ...]:
     """Return the names of the columns of a history: of top and base, then of every height that is asked for."""
-    own = [f"{name}_{number + 1}" for name in (DISPLACEMENT, "stress") for number in range(len(heights))]
-    return (DISPLACEMENT, PRESSURE, *own)
+    names = [f"{name}_{number + 1}" for name in (DISPLACEMENT, "stress") for number in range(len(heights))]
+    return (DISPLACEMENT, PRESSURE, *names)
 
 
 def solve_column(
@@ -95,13 +95,13 @@ def solve_column(
     observed = observers(system, columns, heights)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        found = stepper.run(drive, observed) + 0.0
-        overflow = bound_overflow(found, 1.0)
+        histories = stepper.run(drive, observed) + 0.0
+        overflow = bound_overflow(histories, 1.0)
     ended = perf_counter()
-    steps = found.shape[1]
+    steps = histories.shape[1]
     return Result(
         time=step_times(scheme, steps),
-        columns=dict(zip(columns, found, strict=True)),
+        columns=dict(zip(columns, histories, strict=True)),
         unknowns=stepper.M.rows.shape[1],
         nonzeros=int(np.count_nonzero(stepper.S.rows)),
         factorisations=1,
@@ -182,8 +182,8 @@ class Stepper:
         top = system.row(len(system.lower) - 1, 0.0, -1.0)
         dashed = 2 * system.dashpot * base
         parts = (-(system.K @ base), dashed, -(system.M @ base), top)
-        told = np.array([first, 1 - first, first, 1.0])
-        self.push = (np.array(parts).T * told)[first:]  # (unknowns, 4): load of each part of the drive
+        weights = np.array([first, 1 - first, first, 1.0])
+        self.push = (np.array(parts).T * weights)[first:]  # (unknowns, 4): load of each part of the drive
 
     def run(self, drive: Drive, rows: Observers) -> Array:
         """Return the observed rows at every step, (rows, steps)."""
@@ -193,21 +193,21 @@ class Stepper:
         K, C = _product(self.K), _product(self.C)
         D = np.zeros(len(push))
         V, A = np.zeros_like(D), self._start(push @ parts[0])
-        found = np.empty((len(by_state), len(parts) - 1))
+        observed_values = np.empty((len(by_state), len(parts) - 1))
         for n, part in enumerate(parts[1:]):
             D, V = predictors(s, D, V, A)
             A = self.solve(push @ part - C(V) - K(D))
             D, V = D + s.alpha * s.step**2 * A, V + s.delta * s.step * A
-            found[:, n] = by_state @ np.concatenate((D, V, A))
-        return found + self.told(rows) @ parts[1:].T
+            observed_values[:, n] = by_state @ np.concatenate((D, V, A))
+        return observed_values + self.told(rows) @ parts[1:].T
 
     def told(self, rows: Observers) -> Array:
         """Return the rows of the drive, with what the told base adds by its displacement and acceleration."""
-        own = rows.drive.copy()
+        drive_weights = rows.drive.copy()
         if self.first:
-            own[:, 0] += rows.D[:, 0]
-            own[:, 2] += rows.A[:, 0]
-        return own
+            drive_weights[:, 0] += rows.D[:, 0]
+            drive_weights[:, 2] += rows.A[:, 0]
+        return drive_weights
 
     def _start(self, F: Array) -> Array:
         if self.scheme.start != "consistent":

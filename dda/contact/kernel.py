@@ -154,28 +154,28 @@ def work_for(n: int) -> Work:
     return Work(*(zeros(n, n, 2, n, n, n, dtype=np.int64) + vectors))
 
 
-def set_own_flexibility(paired: Matrix, own: Matrix) -> None:
+def set_own_flexibility(paired: Matrix, flexibility: Matrix) -> None:
     """Write C of two contacts in their own slides from that in their mean and difference, s = mean -+ difference/2."""
     for row in range(4):
         for column in range(4):
-            own[row][column] = paired[row][column]
+            flexibility[row][column] = paired[row][column]
     for row in range(4):
-        mean = own[row][2]
-        half = own[row][3] / 2
-        own[row][2] = mean - half
-        own[row][3] = mean + half
+        mean = flexibility[row][2]
+        half = flexibility[row][3] / 2
+        flexibility[row][2] = mean - half
+        flexibility[row][3] = mean + half
     for column in range(4):
-        mean = own[2][column]
-        half = own[3][column] / 2
-        own[2][column] = mean - half
-        own[3][column] = mean + half
+        mean = flexibility[2][column]
+        half = flexibility[3][column] / 2
+        flexibility[2][column] = mean - half
+        flexibility[3][column] = mean + half
 
 
-def set_paired_flexibility(own: Matrix, paired: Matrix) -> None:
+def set_paired_flexibility(flexibility: Matrix, paired: Matrix) -> None:
     """Write C of two contacts in mean and difference of their slides from that in their own."""
     for row in range(4):
         for column in range(4):
-            paired[row][column] = own[row][column]
+            paired[row][column] = flexibility[row][column]
     for row in range(4):
         first = paired[row][2]
         second = paired[row][3]
@@ -275,20 +275,20 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
     return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i])
 
 
-def states_agree(law: Law, after: Contacts, tried: States) -> bool:
+def states_agree(law: Law, after: Contacts, states: States) -> bool:
     """Tell whether the forces of all contacts agree with the states that were tried."""
     for i in range(after.n):  # noqa: SIM110  (numba knows no generators)
-        if agreed(law, after, i) != tried[i]:
+        if agreed(law, after, i) != states[i]:
             return False
     return True
 
 
-def update_states(law: Law, after: Contacts, tried: States, most: int) -> None:
+def update_states(law: Law, after: Contacts, states: States, most: int) -> None:
     """Set the states that disagree with their forces, `most` at most."""
     for i in range(after.n):
         state = agreed(law, after, i)
-        if state != tried[i] and most > 0:
-            tried[i] = state
+        if state != states[i] and most > 0:
+            states[i] = state
             most -= 1
 
 
@@ -299,26 +299,26 @@ def one_by_one(
     n = before.n
     for i in range(n):
         work.saved[i] = work.tried[i]
-    made, next_save = 0, 1
+    changes, next_save = 0, 1
     while True:
         trial(law, before, free, flexible, law.friction, after, work)
         solves += 1
         if states_agree(law, after, work.tried):
             return FOUND, solves
         update_states(law, after, work.tried, 1)
-        made += 1
+        changes += 1
         if all_equal(work.tried, work.saved, n):
             return NONE, solves
-        if made == next_save:  # Brent: of any circle the states of some power of two are met again
+        if changes == next_save:  # Brent: of any circle the states of some power of two are met again
             next_save *= 2
             for i in range(n):
                 work.saved[i] = work.tried[i]
 
 
-def all_equal(tried: States, saved: States, n: int) -> bool:
+def all_equal(states: States, saved: States, n: int) -> bool:
     """Tell whether two sets of states are the same."""
     for i in range(n):  # noqa: SIM110
-        if tried[i] != saved[i]:
+        if states[i] != saved[i]:
             return False
     return True
 
@@ -349,11 +349,11 @@ def every_state(
     return FOUND, solves
 
 
-def set_states(tried: States, number: int, choices: int, n: int) -> None:
+def set_states(states: States, number: int, choices: int, n: int) -> None:
     """Set the states by the digits of a number, the last contact's first."""
     for i in range(n - 1, -1, -1):
         digit = number % choices
-        tried[i] = -SLIP if digit == 3 else digit
+        states[i] = -SLIP if digit == 3 else digit
         number //= choices
 
 
@@ -527,19 +527,19 @@ def find_crossings(
             work.newton_right[k][0] = crossing_share(law, before.gap[i], after.normal[i]) - work.beta[place]
         for k in range(closing):
             for j in range(closing):
-                own = 1.0 if j == k else 0.0
-                work.newton[k][j] = own - work.rate[k] * work.slope[k][j]
+                identity = 1.0 if j == k else 0.0
+                work.newton[k][j] = identity - work.rate[k] * work.slope[k][j]
             work.scale[k] = 1.0
         eliminate(work.newton, work.newton_right, work.scale, closing, 1)
-        done = True
+        settled = True
         for k in range(closing):
             place = work.closing[k]
             change = work.newton_right[k][0]
             work.beta[place] = min(max(work.beta[place] + change, 0.0), 1.0)
             if not abs(change) <= CROSSING_CHANGE * work.beta[place]:
-                done = False
+                settled = False
         solve_forces(law, before, free, flexible, friction, after, work)
-        if done:
+        if settled:
             return
     for place in range(work.count[0]):
         after.normal[work.closed[place]] = math.nan

@@ -36,8 +36,8 @@ class BaseMotion:
 
     def at(self, instants: ArrayLike) -> Array:
         """Return the displacement at given instants, (len(instants), 2) [m]."""
-        times, record, asked = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
-        return np.column_stack([np.interp(asked, times, column) for column in record.T])
+        times, record, requested = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
+        return np.column_stack([np.interp(requested, times, column) for column in record.T])
 
     def along(self, axes: Array) -> BaseMotion:
         """Return the motion along two axes, the rows of a matrix."""

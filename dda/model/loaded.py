@@ -41,9 +41,9 @@ class LoadedBlock:
         others
             Further fields of the model, and fields of `Load` in place of those in `load`, by name.
         """
-        own = load if isinstance(load, Load) else Load(pressure=load)
+        loads = load if isinstance(load, Load) else Load(pressure=load)
         changes = {name: others.pop(name) for name in set(Load.__dataclass_fields__) & set(others)}
-        values = {"block": block, "contact": contact, "load": dataclasses.replace(own, **changes), "base": base}
+        values = {"block": block, "contact": contact, "load": dataclasses.replace(loads, **changes), "base": base}
         values |= {"top": top} | others
         for name in set(values) - {field.name for field in dataclasses.fields(self)}:
             raise TypeError(f"{name}: is no field of {type(self).__name__} or Load")

@@ -93,7 +93,9 @@ class ContactResult(Result):
     state_m, state_n = at_corner("states", 0), at_corner("states", 1)
 
 
-def contact_parts(history: History, softness: float, **own: Callable[[], Array]) -> dict[str, Callable[[], Any]]:
+def contact_parts(
+    history: History, softness: float, **parts_of_body: Callable[[], Array]
+) -> dict[str, Callable[[], Any]]:
     """Return what makes the properties of a result: those of the contacts, beside what a body has of its own.
 
     Parameters
@@ -109,7 +111,7 @@ def contact_parts(history: History, softness: float, **own: Callable[[], Array])
         "slipped": lambda: history.slipped[1:].T,
         "states": lambda: history.state[1:].T,
     }
-    return shared | own
+    return shared | parts_of_body
 
 
 def run_fields(

@@ -79,16 +79,16 @@ class GapForm:
             reached = grown
         return self.restricted(np.flatnonzero(reached))
 
-    def restricted(self, kept: NDArray[np.intp]) -> GapForm:
+    def restricted(self, unknowns: NDArray[np.intp]) -> GapForm:
         """Return the form in the unknowns with the given indices."""
         return GapForm(
-            tuple(self.unknowns[i] for i in kept),
-            self.M[kept[:, None], kept],
-            self.K[kept],
-            self.F[kept],
-            self.R[kept],
-            self.Q[:, kept],
-            {name: row[kept] for name, row in self.observers.items()},
+            tuple(self.unknowns[i] for i in unknowns),
+            self.M[unknowns[:, None], unknowns],
+            self.K[unknowns],
+            self.F[unknowns],
+            self.R[unknowns],
+            self.Q[:, unknowns],
+            {name: row[unknowns] for name, row in self.observers.items()},
         )
 
 

@@ -48,8 +48,8 @@ def response(
     rows = np.array([model.gap_form.reduced().observers[name] @ modal.shapes for name in columns])
     apart = modal.frequencies[:, None] ** 2 - W2
     if along is None:
-        found = rows @ ((modal.load * model.load_size)[:, None] / apart) * factor
+        amplitudes = rows @ ((modal.load * model.load_size)[:, None] / apart) * factor
     else:
-        found = rows @ ((modal.translation @ along)[:, None] * (W2 / apart))
-        found += np.array([along[_OWN[name]] if name in _OWN else 0.0 for name in columns])[:, None]
-    return dict(zip(columns, found, strict=True))
+        amplitudes = rows @ ((modal.translation @ along)[:, None] * (W2 / apart))
+        amplitudes += np.array([along[_OWN[name]] if name in _OWN else 0.0 for name in columns])[:, None]
+    return dict(zip(columns, amplitudes, strict=True))

@@ -136,11 +136,11 @@ def solve_adaptive(
     with np.errstate(all="ignore"):
         modal = modal_form(form)
         ready = perf_counter()
-        found = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
-        seen = size * np.array([form.observers[name] @ modal.shapes @ found.modes for name in COLUMNS])
-        overflow = bound_overflow(seen, size)
-    own = dict(zip(ADAPTIVE_COLUMNS, (found.discount, found.loss * size * size), strict=True))
-    every = dict(zip(COLUMNS, seen, strict=True)) | own
+        adapted = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
+        observed = size * np.array([form.observers[name] @ modal.shapes @ adapted.modes for name in COLUMNS])
+        overflow = bound_overflow(observed, size)
+    extra_columns = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
+    every = dict(zip(COLUMNS, observed, strict=True)) | extra_columns
     return Result(
         time=step_times(scheme, steps),
         columns={name: every[name] for name in columns},
@@ -179,8 +179,8 @@ def _carried(
         return np.zeros((len(columns), steps))
     instants = scheme.step * np.arange(steps + 1.0)
     histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
-    own = carried(motion, instants[1:])
-    added: Array = rows @ histories.T + np.array([own.get(name, np.zeros(steps)) for name in columns])
+    base_columns = carried(motion, instants[1:])
+    added: Array = rows @ histories.T + np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
     return added
 
 
@@ -225,9 +225,9 @@ def bound_overflow(observed: Array, pressure: float) -> tuple[str, ...]:
     finite = np.isfinite(observed)
     if np.all(finite):
         return ()
-    held = np.logical_and.accumulate(finite, axis=1)
-    observed[~held] = np.inf
-    broken = np.flatnonzero(~np.all(held, axis=0))
+    still_finite = np.logical_and.accumulate(finite, axis=1)
+    observed[~still_finite] = np.inf
+    broken = np.flatnonzero(~np.all(still_finite, axis=0))
     return (f"overflow at step {broken[0] + 1}",) if broken.size else ()
 
 

@@ -29,8 +29,8 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
         return "eq. (8) has no viscous damping"
     if scheme.alpha * scheme.step**2 == 0:
         return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
-    own = model.load
-    if own.traction or own.gravity or own.eccentricity or own.motion is not None:
+    load = model.load
+    if load.traction or load.gravity or load.eccentricity or load.motion is not None:
         return "eq. (31), (32) hold for a centred pressure only"
     corners = np.roll(model.block.corners, -model.base, axis=0)
     x, y = corners.T

@@ -57,11 +57,13 @@ class TwoBlockModel(LoadedBlock):
 
         Without a load it is the form under a pressure of 1 Pa.
         """
-        own, size = self.load, self.load_size
+        load, size = self.load, self.load_size
         if size:
-            unit = replace(own, pressure=own.pressure / size, traction=own.traction / size, gravity=own.gravity / size)
+            unit = replace(
+                load, pressure=load.pressure / size, traction=load.traction / size, gravity=load.gravity / size
+            )
         else:
-            unit = replace(own, pressure=1.0, traction=0.0, gravity=0.0)
+            unit = replace(load, pressure=1.0, traction=0.0, gravity=0.0)
         return gap_form(self.block, self.contact, self.base, self.top, unit)
 
     def static(self) -> dict[str, float]:

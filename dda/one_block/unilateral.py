@@ -231,9 +231,9 @@ def _mirrored_states(history: History) -> Array:
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
     """Raise ValueError where rule, scheme and contact exclude each other."""
     if options.rule != NEWMARK and (scheme.alpha, scheme.delta) != (0.25, 0.5):
-        given = (scheme.alpha, scheme.delta)
+        weights = (scheme.alpha, scheme.delta)
         raise ValueError(
-            f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {given}"
+            f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {weights}"
         )
     law = model.contact
     if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):

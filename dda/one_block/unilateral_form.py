@@ -64,8 +64,8 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
     reached = _reached(form, pushed)
     if not full and not reached[0] and not reached[2] and not reached[5]:
-        kept = [i for i in _SYMMETRIC if reached[i] or i != 3]
-        return _symmetric(block, law, form, a, axes, kept)
+        unknowns = [i for i in _SYMMETRIC if reached[i] or i != 3]
+        return _symmetric(block, law, form, a, axes, unknowns)
     return _two_corners(block, law, form, a, axes)
 
 
@@ -86,28 +86,28 @@ def _elastic(block: Block) -> Array:
 
 
 def _symmetric(
-    block: Block, law: Unilateral, form: GapForm, a: float, axes: Array, kept: Sequence[int]
+    block: Block, law: Unilateral, form: GapForm, a: float, axes: Array, unknowns: Sequence[int]
 ) -> UnilateralForm:
     """Both corners as one contact; its tangential displacement is that of N, and M has the opposite one."""
     names = {3: "ex", 4: "e2", 1: "w"}
     elastic = dict(zip((3, 4, 1), (*_elastic(block)[:2], 0.0), strict=True))
-    rows = [[1.0 if i == 1 else 0.0 for i in kept]]
-    if law.shear and 3 in kept:  # else the corners do not slide
-        rows.append([a / 2 if i == 3 else 0.0 for i in kept])
-    index = np.array(kept)
+    rows = [[1.0 if i == 1 else 0.0 for i in unknowns]]
+    if law.shear and 3 in unknowns:  # else the corners do not slide
+        rows.append([a / 2 if i == 3 else 0.0 for i in unknowns])
+    index = np.array(unknowns)
     return UnilateralForm(
-        unknowns=tuple(names[i] for i in kept),
+        unknowns=tuple(names[i] for i in unknowns),
         M=form.M[np.ix_(index, index)],
-        K=np.array([elastic[i] for i in kept]),
+        K=np.array([elastic[i] for i in unknowns]),
         F=form.F[index],
         translation=np.eye(6, 2)[index],
         axes=axes,
         B=np.array(rows),
         contacts=1,
         multiplicity=2.0,
-        start=np.array([law.gap if i == 1 else 0.0 for i in kept]),
+        start=np.array([law.gap if i == 1 else 0.0 for i in unknowns]),
         observers=_observers(form, np.eye(6)[:, index]),
-        slide=np.array([[side * a / 2 if i == 3 else 0.0 for i in kept] for side in (-1, 1)]),
+        slide=np.array([[side * a / 2 if i == 3 else 0.0 for i in unknowns] for side in (-1, 1)]),
     )
 
 

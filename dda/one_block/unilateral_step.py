@@ -203,18 +203,18 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
     """
     n = block.unknowns
     q = block.forces
-    own = block.room
+    room = block.room
     step = block.step * ratio
     h2 = step * step
     length.numbers[0] = ratio
     length.numbers[1] = block.gg**ratio
     length.numbers[2] = step
-    copy_matrix(block.M, own.A, n)
+    copy_matrix(block.M, room.A, n)
     for i in range(n):
         length.k[i] = h2 * block.K[i]
         length.F[i] = h2 * block.load[i]
-        own.A[i][i] += block.alpha * length.k[i]
-    invert(own.A, n, own.scale, length.inverse)
+        room.A[i][i] += block.alpha * length.k[i]
+    invert(room.A, n, room.scale, length.inverse)
     weight = (block.alpha if block.rule == 0 else 0.5) * h2 * block.multiplicity
     for i in range(n):
         for j in range(q):
@@ -278,22 +278,22 @@ def free_step(
     ratio: float,
 ) -> None:
     """Write the increments of a step without contact forces, and what it does to the contacts."""
-    own = block.room
+    room = block.room
     n = block.unknowns
     c = block.contacts
     for i in range(n):
-        own.P[i] = ratio * state.P[i]
-        own.f[i] = ratio * ratio * state.f[i]
-        own.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], own.P[i], own.f[i])
+        room.P[i] = ratio * state.P[i]
+        room.f[i] = ratio * ratio * state.f[i]
+        room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
     if block.moves:
-        base_displacement(base, block.step, begun, ratio, own.base)
+        base_displacement(base, block.step, begun, ratio, room.base)
         for i in range(n):
-            own.balance[i] -= dot(block.carried[i], own.base, 2)
-    multiply(length.inverse, own.balance, n, n, own.x)
+            room.balance[i] -= dot(block.carried[i], room.base, 2)
+    multiply(length.inverse, room.balance, n, n, room.x)
     for i in range(c):  # the gaps are the last unknowns
-        own.free.gap[i] = state.D[n - c + i] + own.x[n - c + i]
+        room.free.gap[i] = state.D[n - c + i] + room.x[n - c + i]
     if block.law.shears:
-        slides_by(block, own.x, own.free.slide)
+        slides_by(block, room.x, room.free.slide)
 
 
 def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
@@ -312,13 +312,13 @@ def accept(
     block: BlockEquations, length: StepLength, scheme: StepScheme, state: BlockState, after: BlockState, ratio: float
 ) -> None:
     """Write (D, P, f) at the end of the step under the contact forces."""
-    own = block.room
+    room = block.room
     n = block.unknowns
     c = block.contacts
     contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
-        after.D[i] = state.D[i] + own.x[i] + dot(length.pushed[i], own.forces, block.forces)
+        after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, block.forces)
     for i in range(c):
         after.D[n - c + i] = after.contacts.gap[i]
     for i in range(n):
@@ -326,7 +326,7 @@ def accept(
         f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
         if block.rule == 0:
             f1 += pressed
-        P1 = velocity_corrector(scheme, own.P[i], own.f[i], f1)
+        P1 = velocity_corrector(scheme, room.P[i], room.f[i], f1)
         if block.rule != 0:
             P1 += pressed
         after.P[i] = P1 / ratio
@@ -335,16 +335,16 @@ def accept(
 
 def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None:
     """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
-    own = block.room
+    room = block.room
     c = block.contacts
     for i in range(c):
-        own.forces[i] = normal[i]
+        room.forces[i] = normal[i]
     if not block.law.shears:
         return
-    own.forces[c] = shear[0]
+    room.forces[c] = shear[0]
     if c == 2:
-        own.forces[2] = shear[0] + shear[1]
-        own.forces[3] = (shear[1] - shear[0]) / 2
+        room.forces[2] = shear[0] + shear[1]
+        room.forces[3] = (shear[1] - shear[0]) / 2
 
 
 def pushed_by(block: BlockEquations, i: int) -> float:
@@ -360,25 +360,25 @@ def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:
 
     The sum of increments that U was may hold the rounding of a much larger motion without forces.
     """
-    own = block.room
+    room = block.room
     c = block.contacts
     contacts = after.contacts
-    slides_by(block, after.D, own.slide)
+    slides_by(block, after.D, room.slide)
     staying = 0
     apart = 0.0
     for i in range(c):
         if stays(before, contacts, i):
             staying += 1
-            apart += before.reference[i] + contacts.stretch[i] - own.slide[i]
+            apart += before.reference[i] + contacts.stretch[i] - room.slide[i]
     if c == 2 and staying > 0:
         after.D[U_INDEX] += apart / staying
         for i in range(c):
-            own.slide[i] += apart / staying
+            room.slide[i] += apart / staying
     for i in range(c):
         if stays(before, contacts, i):
             contacts.reference[i] = before.reference[i]
         else:
-            contacts.reference[i] = own.slide[i] - contacts.stretch[i]
+            contacts.reference[i] = room.slide[i] - contacts.stretch[i]
 
 
 def stays(before: Contacts, after: Contacts, i: int) -> bool:
@@ -399,7 +399,7 @@ def account(
     sums: Vector,
 ) -> None:
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
-    own = block.room
+    room = block.room
     n = block.unknowns
     length = length_of(block, ratio)
     gg = length.numbers[1]
@@ -408,29 +408,29 @@ def account(
     sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
     stiff = 0.0
     for i in range(n):
-        own.change[i] = after.D[i] - state.D[i]
-        stiff += own.change[i] * own.change[i] * block.K[i]
+        room.change[i] = after.D[i] - state.D[i]
+        stiff += room.change[i] * room.change[i] * block.K[i]
     if block.rule != 2:
         if block.law.shears:
-            slides_by(block, own.change, own.slide)
+            slides_by(block, room.change, room.slide)
         late = block.delta if block.rule == 0 else 1.0
         share = block.multiplicity
         add_contact_losses(
-            block.law, state.contacts, after.contacts, own.slide, own.base, late, length.numbers[2], share, sums
+            block.law, state.contacts, after.contacts, room.slide, room.base, late, length.numbers[2], share, sums
         )
     if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         for i in range(n):
             missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
-            moved = own.change[i] + dot(block.translation[i], own.base, 2)
+            moved = room.change[i] + dot(block.translation[i], room.base, 2)
             sums[ALGORITHMIC] += (1 - block.delta) * moved * missing / h2
     kinetic = 0.0
     kinetic_of_change = 0.0
     if block.alpha != block.delta / 2:
         for i in range(n):
-            own.change[i] = (after.f[i] - state.f[i]) / dt2
+            room.change[i] = (after.f[i] - state.f[i]) / dt2
         stored = quadratic(block.inverse_mass, after.f, n) - quadratic(block.inverse_mass, state.f, n)
         kinetic = stored / 2 / dt2 / dt2
-        kinetic_of_change = quadratic(block.inverse_mass, own.change, n) / 2
+        kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
     sums[ALGORITHMIC] += bulk_loss(block.alpha, block.delta, h2, stiff, kinetic, kinetic_of_change)
 
 

@@ -63,8 +63,8 @@ class RollingModel(LoadedBlock):
         """Return where the resultants of pressure and traction act, and these, along and across the base."""
         load, (start, end) = self.load, self.block.edge(self.top)
         pressed = pressed_part(start, end, load.eccentricity)
-        given = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
-        acting = [(ends, size, direction) for ends, size, direction in given if size]
+        edge_loads = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
+        acting = [(ends, size, direction) for ends, size, direction in edge_loads if size]
         local = self.body.to_base
         where = [local @ (np.mean(ends, axis=0) - self.block.section.centroid) for ends, _, _ in acting]
         forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ along) for ends, size, along in acting]
@@ -72,27 +72,27 @@ class RollingModel(LoadedBlock):
 
     def start(self, setting: Setting, scheme: Scheme) -> RollingState:
         """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
-        own = self.body
+        body = self.body
         Q = turned(self.tilt)
-        touching = own.base if self.tilt == 0 else own.base[:1] if self.tilt > 0 else own.base[1:]
-        down = own.xi[touching[0]]
+        touching = body.base if self.tilt == 0 else body.base[:1] if self.tilt > 0 else body.base[1:]
+        down = body.xi[touching[0]]
         q = np.zeros(6)
-        q[:2] = own.centroid + down - Q @ down + np.array([0.0, self.contact.gap])
-        gap = (q[:2] + own.xi @ Q.T)[:, 1]
+        q[:2] = body.centroid + down - Q @ down + np.array([0.0, self.contact.gap])
+        gap = (q[:2] + body.xi @ Q.T)[:, 1]
         gap[list(touching)] = self.contact.gap
         V = np.zeros(6)
-        V[:2] = own.to_base @ self.velocity
+        V[:2] = body.to_base @ self.velocity
         V[2] = self.spin
         A = np.zeros(6)
         if scheme.start == "consistent":
             push = np.zeros(6)
-            push[:2] = own.M[0, 0] * setting.weight
+            push[:2] = body.M[0, 0] * setting.weight
             spin = np.array([-Q[1], Q[0]])
             across, up = np.zeros((2, 6))
             for (x, y), force in zip(setting.where, setting.dead, strict=True):
                 directions(spin, Q, q, x, y, across, up)
                 push += force[0] * across + force[1] * up
-            A[:] = np.linalg.solve(own.M, push)
+            A[:] = np.linalg.solve(body.M, push)
         return RollingState(q, Q, V, A, at_rest(gap, room_for(len(gap))))
 
 

@@ -161,10 +161,10 @@ class RollingEquations(NamedTuple):
 
 def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     """Return the equations as numbers."""
-    own, loads = setting.body, len(setting.where)
-    capacity = room_for(len(own.xi))
+    body, loads = setting.body, len(setting.where)
+    capacity = room_for(len(body.xi))
     xi = np.zeros((capacity, 2))
-    xi[: len(own.xi)] = own.xi
+    xi[: len(body.xi)] = body.xi
     where, dead = np.zeros((2, 2, 2))
     where[:loads], dead[:loads] = setting.where, setting.dead
     pairs = [Touching(at_rest(np.zeros(n), 2), at_rest(np.zeros(n), 2)) for n in (1, 2)]
@@ -174,7 +174,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     rows += zeros((2, 2), (capacity, 2), (capacity, 2), capacity, capacity, 2, 2, 2, (4, 6), (4, 6), 4, (6, 6))
     rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
-        corners=len(own.xi),
+        corners=len(body.xi),
         loads=loads,
         law=law_of(setting.law),
         limit=setting.limit,
@@ -183,9 +183,9 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         delta=scheme.delta,
         gg=scheme.gg,
         step=scheme.step,
-        size=own.size,
-        M=np.array(own.M),
-        K=np.array(own.K),
+        size=body.size,
+        M=np.array(body.M),
+        K=np.array(body.K),
         xi=xi,
         weight=np.array(setting.weight, dtype=float),
         where=where,
@@ -227,42 +227,42 @@ def area_growth(body: RollingEquations, Q: Matrix) -> float:
     return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
-def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, made: StepMatrices) -> None:
+def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, matrices: StepMatrices) -> None:
     """Write the matrices of a step of some length, of an outline that has grown with Q."""
-    own = body.room
+    room = body.room
     growth = area_growth(body, Q)
-    made.numbers[0] = ratio
-    made.numbers[1] = body.gg**ratio
-    made.numbers[2] = body.step * ratio
-    weight = body.alpha * made.numbers[2] * made.numbers[2]
+    matrices.numbers[0] = ratio
+    matrices.numbers[1] = body.gg**ratio
+    matrices.numbers[2] = body.step * ratio
+    weight = body.alpha * matrices.numbers[2] * matrices.numbers[2]
     for i in range(6):
         for j in range(6):
-            made.M[i][j] = body.M[i][j] * growth
+            matrices.M[i][j] = body.M[i][j] * growth
             if i > 1 and j > 1:
-                made.M[i][j] *= growth
-    copy_matrix(made.M, own.A, 6)
-    invert(own.A, 6, own.scale, made.accelerating)
-    copy_matrix(made.M, own.A, 6)
+                matrices.M[i][j] *= growth
+    copy_matrix(matrices.M, room.A, 6)
+    invert(room.A, 6, room.scale, matrices.accelerating)
+    copy_matrix(matrices.M, room.A, 6)
     for i in range(3):
         for j in range(3):
-            made.K[i][j] = growth * body.K[i][j]
-            own.A[3 + i][3 + j] += weight * made.K[i][j]
-    invert(own.A, 6, own.scale, made.flexible)
+            matrices.K[i][j] = growth * body.K[i][j]
+            room.A[3 + i][3 + j] += weight * matrices.K[i][j]
+    invert(room.A, 6, room.scale, matrices.flexible)
     for i in range(6):  # M is symmetric: its rows are its columns
         for j in range(6):
-            made.kept[i][j] = dot(made.flexible[i], made.M[j], 6)
+            matrices.kept[i][j] = dot(matrices.flexible[i], matrices.M[j], 6)
     for i in range(6):
         for j in range(6):
-            made.flexible[i][j] *= weight
+            matrices.flexible[i][j] *= weight
     body.made[0] += 1
 
 
 def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices:
     """Return the matrices of a step; those of an outline that does not grow are kept."""
-    made = body.whole if ratio == 1.0 else body.part
-    if made.numbers[0] != ratio or not body.exact:
-        set_matrices(body, ratio, Q, made)
-    return made
+    matrices = body.whole if ratio == 1.0 else body.part
+    if matrices.numbers[0] != ratio or not body.exact:
+        set_matrices(body, ratio, Q, matrices)
+    return matrices
 
 
 def advance(
@@ -278,22 +278,22 @@ def advance(
     begun, ratio
         Where it begins and how long it is, in steps.
     """
-    made = matrices_of(body, state.Q, ratio)
-    predict(body, made, state, base, begun, ratio)
-    own = body.room
-    near = nearest(body, own.near, REACH * body.size)
+    matrices = matrices_of(body, state.Q, ratio)
+    predict(body, matrices, state, base, begun, ratio)
+    room = body.room
+    near = nearest(body, room.near, REACH * body.size)
     total = 0
-    for tried in range(PAIRS):
-        outcome, solves = settle(body, made, state, after, near)
+    for attempt in range(PAIRS):
+        outcome, solves = settle(body, matrices, state, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
-        own.tried[tried] = pair_number(own.at, near)
+        room.tried[attempt] = pair_number(room.at, near)
         for i in range(body.corners):
-            own.near[i] = after.contacts.gap[i]
-        near = nearest(body, own.near, math.inf)
-        for k in range(tried + 1):
-            if own.tried[k] == pair_number(own.at, near):
+            room.near[i] = after.contacts.gap[i]
+        near = nearest(body, room.near, math.inf)
+        for k in range(attempt + 1):
+            if room.tried[k] == pair_number(room.at, near):
                 return NONE, total
     return NONE, total
 
@@ -307,46 +307,46 @@ def pair_number(at: States, near: int) -> int:
 
 
 def predict(
-    body: RollingEquations, made: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
+    body: RollingEquations, matrices: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
 ) -> None:
     """Write what is known of a step before its contact: the step without it, and where the corners come from."""
-    own = body.room
-    gg = made.numbers[1]
-    h = made.numbers[2]
+    room = body.room
+    gg = matrices.numbers[1]
+    h = matrices.numbers[2]
     for axis in range(2):
-        own.start[axis] = base_at(base, axis, body.step * begun)
-        own.base[axis] = base_at(base, axis, body.step * (begun + ratio))
-        own.moved[axis] = own.base[axis] - own.start[axis]
-    hold(body, made, state.q, own.held)
+        room.start[axis] = base_at(base, axis, body.step * begun)
+        room.base[axis] = base_at(base, axis, body.step * (begun + ratio))
+        room.moved[axis] = room.base[axis] - room.start[axis]
+    hold(body, matrices, state.q, room.held)
     for i in range(6):
-        own.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
-        own.new[i] = gg * h * state.V[i] + h * h * (0.5 - body.alpha) * state.A[i]
+        room.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
+        room.new[i] = gg * h * state.V[i] + h * h * (0.5 - body.alpha) * state.A[i]
     for i in range(6):
-        own.free[i] = dot(made.flexible[i], own.held, 6) + dot(made.kept[i], own.new, 6)
-    place_corners(body, state.q, state.Q, own.start, own.before)
-    move(body, state, own.free, 1.0)
-    place_corners(body, own.q, own.turn.end, own.base, own.after)
+        room.free[i] = dot(matrices.flexible[i], room.held, 6) + dot(matrices.kept[i], room.new, 6)
+    place_corners(body, state.q, state.Q, room.start, room.before)
+    move(body, state, room.free, 1.0)
+    place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(body.corners):
-        own.near[i] = min(own.before[i][1], own.after[i][1])
+        room.near[i] = min(room.before[i][1], room.after[i][1])
 
 
-def hold(body: RollingEquations, made: StepMatrices, q: Vector, force: Vector) -> None:
+def hold(body: RollingEquations, matrices: StepMatrices, q: Vector, force: Vector) -> None:
     """Write weight and elastic force of a block at q."""
     for i in range(2):
-        force[i] = made.M[0][0] * body.weight[i]
+        force[i] = matrices.M[0][0] * body.weight[i]
     force[2] = 0.0
     for i in range(3):
         force[3 + i] = 0.0
         for j in range(3):
-            force[3 + i] -= made.K[i][j] * q[3 + j]
+            force[3 + i] -= matrices.K[i][j] * q[3 + j]
 
 
 def move(body: RollingEquations, state: RollingState, D: Vector, share: float) -> None:
     """Write the turn of an increment D, and q after a share of it."""
-    own = body.room
-    turn(state.Q, D[2], body.exact, own.turn)
+    room = body.room
+    turn(state.Q, D[2], body.exact, room.turn)
     for i in range(6):
-        own.q[i] = state.q[i] + share * D[i]
+        room.q[i] = state.q[i] + share * D[i]
 
 
 def place_corners(body: RollingEquations, q: Vector, Q: Matrix, base: Vector, out: Matrix) -> None:
@@ -387,32 +387,32 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 
 
 def settle(
-    body: RollingEquations, made: StepMatrices, state: RollingState, after: RollingState, near: int
+    body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
 ) -> tuple[int, int]:
     """Make the step with the corners own.at, and again with the turn that it found until nothing changes."""
-    own = body.room
+    room = body.room
     pair = body.one if near == 1 else body.two
     for k in range(near):
-        copy_contact(state.contacts, own.at[k], pair.before, k)
-        copy_contact(state.contacts, own.at[k], pair.after, k)
+        copy_contact(state.contacts, room.at[k], pair.before, k)
+        copy_contact(state.contacts, room.at[k], pair.after, k)
     for i in range(6):
-        own.D[i] = own.guess[i]
+        room.D[i] = room.guess[i]
     if near == 0 and body.loads == 0:
         for i in range(6):
-            own.D[i] = own.free[i]
-        accept(body, made, state, after, near)
+            room.D[i] = room.free[i]
+        accept(body, matrices, state, after, near)
         return FOUND, 0
     solves = 0
     for _ in range(ROUNDS):
-        turn(state.Q, own.D[2], body.exact, own.turn)
+        turn(state.Q, room.D[2], body.exact, room.turn)
         push_of_loads(body, state)
         for i in range(6):
-            own.new[i] = own.free[i] + dot(made.flexible[i], own.push, 6)
+            room.new[i] = room.free[i] + dot(matrices.flexible[i], room.push, 6)
         if near > 0:
             set_directions(body, state, near)
             for row in range(2 * near):
-                multiply(made.flexible, own.B[row], 6, 6, own.P[row])
-            take_forces(own, pair.after, near)
+                multiply(matrices.flexible, room.B[row], 6, 6, room.P[row])
+            take_forces(room, pair.after, near)
             set_free(body, state, near)
             outcome, spent = find_contacts(
                 body.law, pair.before, body.free, body.flexible, body.limit, pair.after, body.work
@@ -420,16 +420,16 @@ def settle(
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
-            take_forces(own, pair.after, near)
-            add_rows(own.P, own.force, 2 * near, 6, own.new)
+            take_forces(room, pair.after, near)
+            add_rows(room.P, room.force, 2 * near, 6, room.new)
         settled = True
         for i in range(6):
-            change = abs(own.new[i] - own.D[i]) * (body.size if i > 1 else 1.0)
+            change = abs(room.new[i] - room.D[i]) * (body.size if i > 1 else 1.0)
             if not change <= SETTLED * body.size:
                 settled = False
-            own.D[i] = own.new[i]
+            room.D[i] = room.new[i]
         if settled:
-            accept(body, made, state, after, near)
+            accept(body, matrices, state, after, near)
             return FOUND, solves
     return NONE, solves
 
@@ -444,31 +444,31 @@ def copy_contact(source: Contacts, i: int, target: Contacts, k: int) -> None:
     target.slipped[k] = source.slipped[i]
 
 
-def take_forces(own: Room, contacts: Contacts, near: int) -> None:
+def take_forces(room: Room, contacts: Contacts, near: int) -> None:
     """Write the forces of the corners that may touch: N, then T."""
     for k in range(near):
-        own.force[k] = contacts.normal[k]
-        own.force[near + k] = contacts.shear[k]
+        room.force[k] = contacts.normal[k]
+        room.force[near + k] = contacts.shear[k]
 
 
 def set_free(body: RollingEquations, state: RollingState, near: int) -> None:
     """Write gaps and slides for the flexibility about the place to which the present forces bring the corners."""
-    own = body.room
+    room = body.room
     free = body.free
     C = body.flexible.C
     rows = 2 * near
     for row in range(rows):
         for column in range(rows):
-            C[row][column] = dot(own.B[row], own.P[column], 6)
+            C[row][column] = dot(room.B[row], room.P[column], 6)
     for i in range(6):
-        own.push[i] = own.new[i]
-    add_rows(own.P, own.force, rows, 6, own.push)
-    move(body, state, own.push, 1.0)
+        room.push[i] = room.new[i]
+    add_rows(room.P, room.force, rows, 6, room.push)
+    move(body, state, room.push, 1.0)
     for k in range(near):
-        corner = own.at[k]
-        x, y = place(own.q, own.turn.end, body.xi[corner][0], body.xi[corner][1])
-        free.gap[k] = y - own.base[1] - dot(C[k], own.force, rows)
-        free.slide[k] = x - own.base[0] - own.before[corner][0] - dot(C[near + k], own.force, rows)
+        corner = room.at[k]
+        x, y = place(room.q, room.turn.end, body.xi[corner][0], body.xi[corner][1])
+        free.gap[k] = y - room.base[1] - dot(C[k], room.force, rows)
+        free.slide[k] = x - room.base[0] - room.before[corner][0] - dot(C[near + k], room.force, rows)
     if near == 2:
         set_paired_flexibility(C, body.flexible.C_paired)
         free.paired[0] = (free.slide[0] + free.slide[1]) / 2
@@ -477,51 +477,51 @@ def set_free(body: RollingEquations, state: RollingState, near: int) -> None:
 
 def set_directions(body: RollingEquations, state: RollingState, near: int) -> None:
     """Write B_f of the corners that may touch, the rows of y before those of x."""
-    own = body.room
+    room = body.room
     for k in range(near):
-        corner = own.at[k]
+        corner = room.at[k]
         force_directions(body, state, body.xi[corner][0], body.xi[corner][1])
         for i in range(6):
-            own.B[k][i] = own.up[i]
-            own.B[near + k][i] = own.across[i]
+            room.B[k][i] = room.up[i]
+            room.B[near + k][i] = room.across[i]
 
 
 def force_directions(body: RollingEquations, state: RollingState, x: float, y: float) -> None:
     """Write B_f of a point, for own.D and its turn."""
-    own = body.room
+    room = body.room
     late = late_share(body.delta) if body.exact else 0.0
     for i in range(3, 6):
-        own.q[i] = state.q[i] + own.D[i] / 2
-    directions(own.turn.chord, own.turn.mean, own.q, x, y, own.across, own.up)
+        room.q[i] = state.q[i] + room.D[i] / 2
+    directions(room.turn.chord, room.turn.mean, room.q, x, y, room.across, room.up)
     if late == 0:
         return
     for i in range(3, 6):
-        own.q[i] = state.q[i] + own.D[i]
+        room.q[i] = state.q[i] + room.D[i]
     for j in range(2):
-        own.spin[0][j] = -own.turn.end[1][j]
-        own.spin[1][j] = own.turn.end[0][j]
-    directions(own.spin, own.turn.end, own.q, x, y, own.across_end, own.up_end)
+        room.spin[0][j] = -room.turn.end[1][j]
+        room.spin[1][j] = room.turn.end[0][j]
+    directions(room.spin, room.turn.end, room.q, x, y, room.across_end, room.up_end)
     for i in range(6):
-        own.across[i] = (1 - late) * own.across[i] + late * own.across_end[i]
-        own.up[i] = (1 - late) * own.up[i] + late * own.up_end[i]
+        room.across[i] = (1 - late) * room.across[i] + late * room.across_end[i]
+        room.up[i] = (1 - late) * room.up[i] + late * room.up_end[i]
 
 
 def push_of_loads(body: RollingEquations, state: RollingState) -> None:
     """Write B_f' f of the dead loads, for own.D and its turn."""
-    own = body.room
+    room = body.room
     for i in range(6):
-        own.push[i] = 0.0
+        room.push[i] = 0.0
     for m in range(body.loads):
         force_directions(body, state, body.where[m][0], body.where[m][1])
         for i in range(6):
-            own.push[i] += body.dead[m][0] * own.across[i] + body.dead[m][1] * own.up[i]
+            room.push[i] += body.dead[m][0] * room.across[i] + body.dead[m][1] * room.up[i]
 
 
-def accept(body: RollingEquations, made: StepMatrices, state: RollingState, after: RollingState, near: int) -> None:
+def accept(body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int) -> None:
     """Write the state at the end of the step."""
-    own = body.room
-    h = made.numbers[2]
-    turn(state.Q, own.D[2], body.exact, own.turn)
+    room = body.room
+    h = matrices.numbers[2]
+    turn(state.Q, room.D[2], body.exact, room.turn)
     push_of_loads(body, state)
     contacts = after.contacts
     for i in range(body.corners):
@@ -533,25 +533,25 @@ def accept(body: RollingEquations, made: StepMatrices, state: RollingState, afte
     if near > 0:
         pair = body.one if near == 1 else body.two
         set_directions(body, state, near)
-        take_forces(own, pair.after, near)
-        add_rows(own.B, own.force, 2 * near, 6, own.push)
-    move(body, state, own.D, 1.0)
-    hold(body, made, own.q, own.held)
+        take_forces(room, pair.after, near)
+        add_rows(room.B, room.force, 2 * near, 6, room.push)
+    move(body, state, room.D, 1.0)
+    hold(body, matrices, room.q, room.held)
     for i in range(6):
-        own.push[i] += own.held[i]
-        after.q[i] = own.q[i]
+        room.push[i] += room.held[i]
+        after.q[i] = room.q[i]
     for i in range(6):
-        after.A[i] = dot(made.accelerating[i], own.push, 6)
-        after.V[i] = made.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * after.A[i])
+        after.A[i] = dot(matrices.accelerating[i], room.push, 6)
+        after.V[i] = matrices.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * after.A[i])
     for i in range(2):
         for j in range(2):
-            after.Q[i][j] = own.turn.end[i][j]
-    place_corners(body, own.q, own.turn.end, own.base, own.after)
+            after.Q[i][j] = room.turn.end[i][j]
+    place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(body.corners):
-        contacts.gap[i] = own.after[i][1]
-        own.slide[i] = own.after[i][0] - own.before[i][0]
+        contacts.gap[i] = room.after[i][1]
+        room.slide[i] = room.after[i][0] - room.before[i][0]
     for k in range(near):
-        copy_contact(pair.after, k, contacts, own.at[k])
+        copy_contact(pair.after, k, contacts, room.at[k])
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -567,15 +567,15 @@ def account(
     sums: Vector,
 ) -> None:
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
-    own = body.room
+    room = body.room
     gg = body.gg**ratio
     sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
         body.law,
         state.contacts,
         after.contacts,
-        own.slide,
-        own.moved,
+        room.slide,
+        room.moved,
         body.delta,
         body.step * ratio,
         1.0,

@@ -82,12 +82,12 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
 def doubled(start: Array, maps: Array) -> Array:
     """Return the rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
     have = len(start)
-    made = np.empty((have << len(maps), start.shape[1]))
-    made[:have] = start
+    rows = np.empty((have << len(maps), start.shape[1]))
+    rows[:have] = start
     for power in maps:
-        np.matmul(made[:have], power, out=made[have : 2 * have])
+        np.matmul(rows[:have], power, out=rows[have : 2 * have])
         have *= 2
-    return made
+    return rows
 
 
 def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Array]:

@@ -29,18 +29,22 @@ def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
     omega : array_like
         Angular frequencies w of the load [rad/s].
     """
-    forward, kept, moved = _parts(scheme, omega)
-    return np.asarray(-(forward / scheme.step) * (kept / scheme.step) / moved)
+    forward, velocity_difference, moved = _parts(scheme, omega)
+    return np.asarray(-(forward / scheme.step) * (velocity_difference / scheme.step) / moved)
 
 
 def _parts(scheme: Scheme, omega: ArrayLike) -> tuple[Complex, Complex, Complex]:
     """Return z - 1 and z - gg, and (z - 1)(z - gg) D / (dt^2 A), which the two lines give."""
     half = np.asarray(omega, float) * (scheme.step / 2)
     forward: Complex = np.asarray(2j * np.sin(half) * np.exp(1j * half))  # all digits of a slow load
-    kept: Complex = np.asarray(forward + (1 - scheme.gg))
-    moved: Complex = scheme.gg * (1 + scheme.delta * forward) + (0.5 + scheme.alpha * forward) * kept
+    velocity_difference: Complex = np.asarray(forward + (1 - scheme.gg))
+    moved: Complex = scheme.gg * (1 + scheme.delta * forward) + (0.5 + scheme.alpha * forward) * velocity_difference
     eps = np.finfo(float).eps
-    return forward, kept, np.where(np.abs(moved) > eps, moved, eps)  # a load that turns every step may move nothing
+    return (
+        forward,
+        velocity_difference,
+        np.where(np.abs(moved) > eps, moved, eps),
+    )  # a load that turns every step may move nothing
 
 
 def velocity_factor(scheme: Scheme, omega: ArrayLike) -> Complex:

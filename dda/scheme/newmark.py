@@ -87,8 +87,8 @@ class StepScheme(NamedTuple):
 def effective_matrix(scheme: Scheme, M: Real, k: Real) -> Real:
     """Return S = M + delta dt C + alpha dt^2 K, at C = 0 alpha dt^2 times the matrix of eq. (9)."""
     if scheme.damped:
-        held = 1 + scheme.delta * scheme.mass_damping * scheme.step
-        return held * M + (scheme.alpha + scheme.delta * scheme.stiffness_damping / scheme.step) * k
+        mass_factor = 1 + scheme.delta * scheme.mass_damping * scheme.step
+        return mass_factor * M + (scheme.alpha + scheme.delta * scheme.stiffness_damping / scheme.step) * k
     return M + scheme.alpha * k
 
 
@@ -137,10 +137,10 @@ def viscous_step(scheme: Scheme, k: Real, F: Real, state: tuple[Real, Real, Real
     """
     D, P, f = state
     e = viscosity(scheme, k)
-    kept, held = scheme.gg * P + (1 - scheme.delta) * f, 1 + scheme.delta * e
-    balance = held * predictor(scheme, P, f) + scheme.alpha * (F - k * D - e * kept)
-    D = D + balance / (held + scheme.alpha * k)
-    f1 = (F - k * D - e * kept) / held
+    velocity, viscous_factor = scheme.gg * P + (1 - scheme.delta) * f, 1 + scheme.delta * e
+    balance = viscous_factor * predictor(scheme, P, f) + scheme.alpha * (F - k * D - e * velocity)
+    D = D + balance / (viscous_factor + scheme.alpha * k)
+    f1 = (F - k * D - e * velocity) / viscous_factor
     return D, velocity_corrector(scheme, P, f, f1), f1
 
 
@@ -234,9 +234,9 @@ def _assembled_viscous_step(
     """Return the state one step later where C = a0 M + a1 K; `k` is a column."""
     D, P, f = state
     C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * np.diag(k[:, 0])  # dt C
-    kept, ahead = scheme.gg * P + (1 - scheme.delta) * f, predictor(scheme, P, f)
-    drag = C @ np.linalg.solve(M, kept)
-    held = ahead + scheme.delta * C @ np.linalg.solve(M, ahead)
-    D = D + np.linalg.solve(S, held - scheme.alpha * (k * D + drag))
+    velocity, ahead = scheme.gg * P + (1 - scheme.delta) * f, predictor(scheme, P, f)
+    drag = C @ np.linalg.solve(M, velocity)
+    resisting = ahead + scheme.delta * C @ np.linalg.solve(M, ahead)
+    D = D + np.linalg.solve(S, resisting - scheme.alpha * (k * D + drag))
     f1 = M @ np.linalg.solve(M + scheme.delta * C, -(k * D + drag))
-    return D, kept + scheme.delta * f1, f1
+    return D, velocity + scheme.delta * f1, f1

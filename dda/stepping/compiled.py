@@ -35,7 +35,7 @@ _jitable: set[FunctionType] = set()
 
 
 def run_loop(
-    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], kept: tuple[Any, ...], seconds: float
+    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], seconds: float
 ) -> tuple[Any, tuple[Any, ...], str]:
     """Run a loop over steps; return what it returns, the records that it left, and whether it was compiled, in words.
 
@@ -54,12 +54,12 @@ def run_loop(
     """
     with np.errstate(all="ignore"):
         if is_worthwhile(loop, seconds):
-            left = tuple(as_record(part) for part in records)
-            own = compiled(loop, (*left, *series, *kept))
-            if own is not None:
-                return own(*left, *series, *kept), left, COMPILED
-        left = tuple(as_lists(part) for part in records)
-        return loop(*left, *(as_lists(part) for part in series), *kept), left, PLAIN
+            converted = tuple(as_record(part) for part in records)
+            machine_code = compiled(loop, (*converted, *series, *rows))
+            if machine_code is not None:
+                return machine_code(*converted, *series, *rows), converted, COMPILED
+        converted = tuple(as_lists(part) for part in records)
+        return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
 
 
 class Compilable:
@@ -83,13 +83,13 @@ class Compilable:
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the function, compiled or not."""
-        given = [self._converted(argument) for argument in arguments]
+        converted = [self._converted(argument) for argument in arguments]
         if self.records:
-            own = compiled(self.function, tuple(given))
-            if own is not None:
+            machine_code = compiled(self.function, tuple(converted))
+            if machine_code is not None:
                 self.how = COMPILED
-                return own(*given)
-        return self.function(*given)
+                return machine_code(*converted)
+        return self.function(*converted)
 
     def _converted(self, argument: Any) -> Any:
         arrays = isinstance(argument, tuple) and any(isinstance(part, np.ndarray) for part in argument)
@@ -102,7 +102,7 @@ def is_worthwhile(loop: Loop, seconds: float) -> bool:
     if seconds < WORTHWHILE_KEPT:  # and nothing is looked for, nor made, in the user's cache
         return False
     if seconds < WORTHWHILE:
-        return any(known is loop for known, _ in loops) or is_kept(loop)
+        return any(compiled_loop is loop for compiled_loop, _ in loops) or is_kept(loop)
     return seconds >= WORTHWHILE_ANEW or cache_directory() is not None
 
 
@@ -141,8 +141,8 @@ def _type_of(value: Any) -> Any:
     if isinstance(value, tuple):
         fields = zip(value._fields, value, strict=True)  # type: ignore[attr-defined]
         return np.dtype((np.record, [(name, _type_of(part)) for name, part in fields]))
-    own = np.asarray(value)
-    return np.dtype((np.int64 if own.dtype.kind in "bi" else np.float64, own.shape))
+    array = np.asarray(value)
+    return np.dtype((np.int64 if array.dtype.kind in "bi" else np.float64, array.shape))
 
 
 def _fill(records: Any, value: Any) -> None:
@@ -162,9 +162,9 @@ def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
         if any(_is_foreign(part, loop) for part in [*functions, *(use.value for use in uses)]):
             return None
         loops[key] = uses, _compile(loop, functions, arguments)
-    uses, own = loops[key]
+    uses, machine_code = loops[key]
     unchanged = all(use.names.get(use.name) is use.value for use in uses)
-    return own if unchanged else None
+    return machine_code if unchanged else None
 
 
 def _is_foreign(value: object, loop: Loop) -> bool:
@@ -241,12 +241,12 @@ def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path
         if directory is not None:
             numba.config.CACHE_DIR = str(directory)
         # nothing is allocated in a loop: without the counting of references a call costs what it does
-        own: Any = numba.njit(cache=directory is not None, error_model="numpy", _nrt=False)(loop)
+        dispatcher: Any = numba.njit(cache=directory is not None, error_model="numpy", _nrt=False)(loop)
     finally:
         numba.config.CACHE_DIR = before
-    own.compile(types)
-    made: Loop = own
-    return made
+    dispatcher.compile(types)
+    machine_code: Loop = dispatcher
+    return machine_code
 
 
 def _digest(functions: list[FunctionType], version: str) -> str:
@@ -270,8 +270,8 @@ def cache_directory() -> Path | None:
 
 def user_cache() -> Path:
     """Return the directory in which this system's programs keep what they can make again."""
-    if own := os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME"):
-        return Path(own)
+    if directory := os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME"):
+        return Path(directory)
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")

@@ -64,8 +64,8 @@ class BaseRecord(NamedTuple):
 
 def base_record(motion: BaseMotion | None) -> BaseRecord:
     """Return the record of a base that moves, or of one at rest."""
-    own = motion or BaseMotion([0.0], [[0.0, 0.0]])
-    return BaseRecord(np.array(own.time, dtype=float), np.array(own.displacement, dtype=float, order="C"))
+    record = motion or BaseMotion([0.0], [[0.0, 0.0]])
+    return BaseRecord(np.array(record.time, dtype=float), np.array(record.displacement, dtype=float, order="C"))
 
 
 def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, out: Vector) -> None:
@@ -120,14 +120,14 @@ def driver(
         keep(body, state, history.motion, 0)
         keep_contacts(state.contacts, history, 0)
         for number in range(steps):
-            left = 1.0
+            remainder = 1.0
             ratio = 1.0
             row = number + 1
             if len(history.sums) > 0:
                 for k in range(SUMS):
                     history.sums[row, k] = history.sums[number, k]
             while True:
-                outcome, solves = advance(body, state, after, base, number + (1.0 - left), ratio)
+                outcome, solves = advance(body, state, after, base, number + (1.0 - remainder), ratio)
                 history.solves[row] += solves
                 if outcome != FOUND:
                     if ratio <= SHORTEST:
@@ -136,14 +136,14 @@ def driver(
                     history.cuts[row] += 1
                     continue
                 if len(history.sums) > 0:
-                    account(body, state, after, base, number + (1.0 - left), ratio, history.sums[row])
+                    account(body, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
                 for i in range(after.contacts.n):
                     history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state
-                if ratio == left:
+                if ratio == remainder:
                     break
-                left -= ratio
-                ratio = left
+                remainder -= ratio
+                ratio = remainder
             if not keep(body, state, history.motion, row):
                 return number, OVERFLOW
             keep_contacts(state.contacts, history, row)

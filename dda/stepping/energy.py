@@ -59,8 +59,8 @@ def add_contact_losses(
         friction = 0.0 - after.shear[i] * after.slipped[i]
         work = N * (after.gap[i] - before.gap[i]) + T * slide[i]
         lost = spring_energy(law, before, i) - spring_energy(law, after, i) - work - friction
-        kept = (before.state[i] == OPEN) == (after.state[i] == OPEN)
-        sums[ALGORITHMIC if kept else SWITCHING] += share * lost
+        keeps_state = (before.state[i] == OPEN) == (after.state[i] == OPEN)
+        sums[ALGORITHMIC if keeps_state else SWITCHING] += share * lost
         sums[FRICTION] += share * friction
         sums[GIVEN] += share * (N * base[1] + T * base[0])
         sums[IMPULSE] += share * length * N

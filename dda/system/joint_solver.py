@@ -28,8 +28,12 @@ def factor(matrix: csr_array, definite: bool = True) -> Factor:
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
-    held: dict[str, Any] = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
-    lu = splu(csc_array(matrix), **(held if definite else {}))
+    options: dict[str, Any] = {
+        "permc_spec": "MMD_AT_PLUS_A",
+        "diag_pivot_thresh": 0.0,
+        "options": {"SymmetricMode": True},
+    }
+    lu = splu(csc_array(matrix), **(options if definite else {}))
     return Factor(lu.solve, int(matrix.nnz))
 
 
@@ -47,7 +51,7 @@ def saddle(Ke: csr_array, B: csr_array, C: csr_array, modulus: float) -> Callabl
     n = Ke.shape[0]
 
     def solve(F: Array, g: Array) -> tuple[Array, Array]:
-        found = lu.solve(np.concatenate([F / modulus, g]))
-        return found[:n], modulus * found[n:]
+        solution = lu.solve(np.concatenate([F / modulus, g]))
+        return solution[:n], modulus * solution[n:]
 
     return solve

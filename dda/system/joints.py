@@ -88,9 +88,9 @@ def gap_groups(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Gaps]:
     busy = {spring for met in springs if len(met) > 1 for spring in met}
     groups = [_plain(blocks, joint) for j, joint in enumerate(joints) if not {(j, 0), (j, 1)} & busy]
     for met in springs:
-        kept = [(j, e) for j, e in met if {(j, 0), (j, 1)} & busy]
-        if kept:
-            groups.append(_meeting(blocks, joints, kept))
+        loaded_ends = [(j, e) for j, e in met if {(j, 0), (j, 1)} & busy]
+        if loaded_ends:
+            groups.append(_meeting(blocks, joints, loaded_ends))
     return groups
 
 
@@ -101,20 +101,20 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[tuple[int, int]]]:
         return []
     cell = _SAME_PLACE * float(np.max(np.ptp(points, axis=0)))
     labels = _labels(points - points.min(axis=0), 4 * cell)
-    found: dict[int, list[tuple[int, int]]] = {}
+    springs_by_point: dict[int, list[tuple[int, int]]] = {}
     for number, label in enumerate(labels):
-        found.setdefault(label, []).append((number // 2, number % 2))
-    return list(found.values())
+        springs_by_point.setdefault(label, []).append((number // 2, number % 2))
+    return list(springs_by_point.values())
 
 
 def _labels(points: Array, cell: float) -> list[int]:
     """Return a number for each point, equal where points lie within a quarter of a cell of each other."""
-    seen: dict[tuple[int, int], int] = {}
+    label_of_point: dict[tuple[int, int], int] = {}
     labels = []
     for number, (x, y) in enumerate((points / cell).tolist()):
         corners = {(math.floor(x + a), math.floor(y + b)) for a in (-0.25, 0.25) for b in (-0.25, 0.25)}
-        label = next((seen[corner] for corner in corners if corner in seen), number)
-        seen.update(dict.fromkeys(corners, label))
+        label = next((label_of_point[corner] for corner in corners if corner in label_of_point), number)
+        label_of_point.update(dict.fromkeys(corners, label))
         labels.append(label)
     return labels
 

@@ -90,8 +90,10 @@ def opening_subdivided(
         T = cut.blocks[number].T(float(x), float(y))
         normals[i, number], tangents[i, number] = normal @ T, tangent @ T
     share = supports[0].normal  # a side that is cut evenly has edges of one length
-    own = model.contact
-    law = replace(own, stiffness=own.stiffness * share, shear=own.shear * share, cohesion=own.cohesion * share)
+    contact = model.contact
+    law = replace(
+        contact, stiffness=contact.stiffness * share, shear=contact.shear * share, cohesion=contact.cohesion * share
+    )
     return OpeningSystem(
         system=replace(cut, joints=[joint for joint in cut.joints if joint.second != FIXED]),
         law=law,
@@ -211,8 +213,8 @@ def advance(
     length = body.length(ratio)
     scheme, stepper = length.scheme, length.stepper
     P, f, mu = ratio * state.P, ratio * ratio * state.f, ratio * ratio * state.mu
-    held = stepper.k @ state.D + stepper.Bt @ mu
-    dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - held), length.still)
+    internal = stepper.k @ state.D + stepper.Bt @ mu
+    dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - internal), length.still)
     moved = length.rows @ dD
     carried = body.moved_base(base, begun, ratio)
     n = body.points
@@ -261,9 +263,9 @@ def account(
     add_contact_losses(body.law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums)
     sums[DAMPING] += (1 - scheme.gg**2) * energy.kinetic(state.P / body.scheme.step)
     R0, R1 = state.f / dt2, after.f / dt2
-    held = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
+    internal = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
     pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
-    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (energy.F - held + pressed - R0))
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (energy.F - internal + pressed - R0))
     stiff = energy.stiff(moved, (after.mu - state.mu) / dt2)
     kinetic = energy.kinetic(R1) - energy.kinetic(R0)
     change = energy.kinetic(R1 - R0)

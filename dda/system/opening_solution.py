@@ -51,8 +51,8 @@ def solve_opening_system(
     began = perf_counter()
     body = OpeningBody(opening, scheme, options.solve_limit, columns, steps, options.energies)
     nonzeros = body.length(1.0).stepper.factor.nonzeros
-    own, points = len(columns), body.points
-    history = history_of(steps, own + 2 + points + 3 * options.energies, points, options.energies)
+    requested, points = len(columns), body.points
+    history = history_of(steps, requested + 2 + points + 3 * options.energies, points, options.energies)
     base = base_record(opening.motion and opening.motion.along(opening.axes))
     ready = perf_counter()
     with np.errstate(all="ignore"):
@@ -60,16 +60,16 @@ def solve_opening_system(
     history = reached_history(history, reached)
     motion = history.motion[1:]
     mass = math.fsum(block.total_mass for block in opening.system.blocks)
-    velocity = motion[:, own : own + 2].T / (mass * scheme.step)
+    velocity = motion[:, requested : requested + 2].T / (mass * scheme.step)
 
     def slide() -> Array:
-        moved: Array = motion[:, own + 2 : own + 2 + points].T
+        moved: Array = motion[:, requested + 2 : requested + 2 + points].T
         if opening.motion is not None:
             moved = moved - opening.motion.at(step_times(scheme, reached)) @ opening.axes[0]
         return moved
 
     def balance() -> dict[str, Array]:
-        kinetic, strain, load = motion[:, own + 2 + points :].T
+        kinetic, strain, load = motion[:, requested + 2 + points :].T
         springs = spring_energies(law, history.normal[1:], history.shear[1:])
         stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
         return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
@@ -78,7 +78,7 @@ def solve_opening_system(
     own_parts = {"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]}
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),
-        columns=dict(zip(columns, motion[:, :own].T + 0.0, strict=True)),
+        columns=dict(zip(columns, motion[:, :requested].T + 0.0, strict=True)),
         unknowns=len(opening.equations.F),
         nonzeros=nonzeros,
         factorisations=body.made,

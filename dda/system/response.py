@@ -59,14 +59,14 @@ class _Space:
     def grow(self) -> None:
         """Add a vector."""
         j = len(self.diagonal)
-        made = slice(0, j + 1)
+        earlier = slice(0, j + 1)
         D, force = self.equations.at_rest(self.inertias[j], np.zeros(len(self.equations.pressure)))
-        seen = self.rows[0] @ D + self.rows[1] @ force
+        observed = self.rows[0] @ D + self.rows[1] @ force
         inside = 0.0
         for _ in range(2):  # twice is enough
-            part = self.inertias[made] @ D
-            D = D - part @ self.vectors[made]
-            seen = seen - part @ self.observed[made]
+            part = self.inertias[earlier] @ D
+            D = D - part @ self.vectors[earlier]
+            observed = observed - part @ self.observed[earlier]
             inside += float(part[j])
         inertia = self.M @ D
         size = float(np.sqrt(max(D @ inertia, 0.0)))
@@ -75,7 +75,7 @@ class _Space:
         self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(D)
         if not self.closed:
             self.vectors[j + 1], self.inertias[j + 1] = D / size, inertia / size
-            self.observed[j + 1] = seen / size
+            self.observed[j + 1] = observed / size
 
     def grown(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
         """Grow until every frequency is resolved, or the space is closed or as large as allowed; answer."""
@@ -83,9 +83,9 @@ class _Space:
             for _ in range(AT_A_TIME):
                 if not self.closed and len(self.diagonal) < LARGEST:
                     self.grow()
-            found, resolved, lost = self.answer(W2)
+            amplitudes, resolved, lost = self.answer(W2)
             if self.closed or np.all(resolved) or len(self.diagonal) >= LARGEST:
-                return found, resolved & ~lost
+                return amplitudes, resolved & ~lost
 
     def answer(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_], NDArray[np.bool_]]:
         """Return the observed amplitudes, (rows, frequencies), which are resolved, and which are rounding."""
@@ -95,12 +95,12 @@ class _Space:
         values, turned = eigh_tridiagonal(self.diagonal, self.beside[: m - 1])
         y = self.size * turned[0][:, None] / (1 - values[:, None] * W2)  # in the eigenvectors of T
         last = np.abs(turned[-1] @ y)
-        left = 0.0 if self.closed else np.abs(W2) * self.beside[-1] * last
+        residual = 0.0 if self.closed else np.abs(W2) * self.beside[-1] * last
         small = RESOLVED * np.minimum(self.size, np.sqrt(np.sum(np.abs(y) ** 2, axis=0)))
         rows = self.observed[:m].T @ turned
-        found, terms = rows @ y, np.abs(rows) @ np.abs(y)
-        lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(found), axis=0)
-        return found, np.asarray(left <= small), np.asarray(lost)
+        amplitudes, terms = rows @ y, np.abs(rows) @ np.abs(y)
+        lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(amplitudes), axis=0)
+        return amplitudes, np.asarray(residual <= small), np.asarray(lost)
 
 
 def system_response(
@@ -126,13 +126,13 @@ def system_response(
         F, push = equations.F * system.load_size, np.zeros(len(equations.pressure))
     else:
         F, push = 0 * equations.F, equations.G @ along
-    found, resolved = np.zeros((len(columns), len(W2)), complex), np.zeros(len(W2), bool)
+    amplitudes, resolved = np.zeros((len(columns), len(W2)), complex), np.zeros(len(W2), bool)
     dynamic = _Dynamic(equations, F, push)
     if not dynamic.narrow:
-        found, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
+        amplitudes, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
     for i in np.flatnonzero(~resolved):
-        found[:, i] = dynamic.observed(rows, complex(W2[i]))
-    return dict(zip(columns, found * factor, strict=True))
+        amplitudes[:, i] = dynamic.observed(rows, complex(W2[i]))
+    return dict(zip(columns, amplitudes * factor, strict=True))
 
 
 class _Dynamic:
@@ -168,11 +168,11 @@ class _Dynamic:
     def observed(self, rows: tuple[Array, Array], W2: complex) -> Complex:
         """Return the observed amplitudes, infinite at a resonance that nothing damps."""
         try:
-            found = np.empty_like(self.right)
-            found[self.order] = self._by_band(W2) if self.narrow else self._sparse(W2)
+            values = np.empty_like(self.right)
+            values[self.order] = self._by_band(W2) if self.narrow else self._sparse(W2)
         except (np.linalg.LinAlgError, RuntimeError):
             return np.full(len(rows[0]), np.inf, complex)
-        return np.asarray(rows[0] @ found[: self.count] + self.modulus * (rows[1] @ found[self.count :]))
+        return np.asarray(rows[0] @ values[: self.count] + self.modulus * (rows[1] @ values[self.count :]))
 
     def _by_band(self, W2: complex) -> Complex:
         from scipy.linalg import solve_banded

@@ -67,8 +67,8 @@ class Stepper:
         """
         dD, dmu = self._solve(r, push)
         for _ in range(self.corrections):
-            left = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
-            correction = self._solve(left, push - self.B @ dD + self.C @ dmu)
+            residual = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
+            correction = self._solve(residual, push - self.B @ dD + self.C @ dmu)
             dD, dmu = dD + correction[0], dmu + correction[1]
         return dD, dmu
 
@@ -83,14 +83,14 @@ class Stepper:
         by_D, by_mu = rows[0], rows[1] / s.step**2
         D, P = np.zeros_like(F), np.zeros_like(F)
         mu = -(s.step**2 * (e.kappa @ (e.G @ moved[0])))
-        held = self.Bt @ mu
-        f = F - held if s.start == "consistent" else 0 * F
+        internal = self.Bt @ mu
+        f = F - internal if s.start == "consistent" else 0 * F
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
-            dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - held), pushes[n])
+            dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - internal), pushes[n])
             D, mu = D + dD, mu + dmu
-            held = self.k @ D + self.Bt @ mu
-            f1 = F - held
+            internal = self.k @ D + self.Bt @ mu
+            f1 = F - internal
             P, f = velocity_corrector(s, P, f, f1), f1
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
@@ -128,8 +128,8 @@ class _ViscousStepper:
         for n in range(steps):
             D, v = D + s.gg * v + (0.5 - s.alpha) * q, s.gg * v + (1 - s.delta) * q  # D*, v*
             ahead, drag = D + self.lag * v, self.drag * (self.M @ v)
-            held = step.k @ G + step.Bt @ mu
-            dG, dmu = step.increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - held), still)
+            internal = step.k @ G + step.Bt @ mu
+            dG, dmu = step.increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - internal), still)
             G, mu = G + dG, mu + dmu
             q = self.inverse @ (F - drag - step.k @ G - step.Bt @ mu) / self.held
             D = D + (s.alpha / self.beta * (G - ahead) if self.beta else 0 * D)
@@ -194,8 +194,8 @@ def _moved(system: BlockSystem, instants: Array) -> Array:
 def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:
     """Say how many unknowns were kept if not all of them."""
     total = len(system.equations.F)
-    kept = len(equations.F)
-    return () if kept == total else (f"{kept} of {total} unknowns kept",)
+    unknowns = len(equations.F)
+    return () if unknowns == total else (f"{unknowns} of {total} unknowns kept",)
 
 
 def static_system(system: BlockSystem) -> dict[str, float]:
@@ -288,5 +288,5 @@ def highest_frequency(system: BlockSystem) -> float:
     if len(e.F) <= _DENSE:
         return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
     start = np.random.default_rng(0).standard_normal(len(e.F))
-    found = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
-    return float(np.sqrt(found[0]))
+    squares = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
+    return float(np.sqrt(squares[0]))

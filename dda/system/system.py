@@ -62,9 +62,9 @@ class BlockSystem:
 
     def __post_init__(self) -> None:
         """Check that every block that is named exists."""
-        named = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
-        named |= {load.block for load in self.loads} | set(self.fixed)
-        unknown = [b for b in named if not 0 <= b < len(self.blocks)]
+        joined = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
+        joined |= {load.block for load in self.loads} | set(self.fixed)
+        unknown = [b for b in joined if not 0 <= b < len(self.blocks)]
         if unknown:
             raise ValueError(f"joints: must name blocks from 0 to {len(self.blocks) - 1}, got {unknown[0]!r}")
         if not self._blocks_at_point:

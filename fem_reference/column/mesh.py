@@ -70,11 +70,11 @@ class Part:
         start, end = nodes[self.basis.mesh.t[:, element]]
         local = np.array([[(height - start) / (end - start)]])
         unknowns = self.basis.element_dofs[:, element]
-        found = [self.basis.elem.lbasis(local, i) for i in range(len(unknowns))]
+        shape_values = [self.basis.elem.lbasis(local, i) for i in range(len(unknowns))]
         if stress:
             factor = -self.moduli[element] / (end - start)
-            return self.first + unknowns, np.array([factor * slope[0, 0] for _, slope in found])
-        return self.first + unknowns, np.array([float(value[0]) for value, _ in found])
+            return self.first + unknowns, np.array([factor * slope[0, 0] for _, slope in shape_values])
+        return self.first + unknowns, np.array([float(value[0]) for value, _ in shape_values])
 
 
 @dataclass(frozen=True)
@@ -91,10 +91,10 @@ class LineMesh:
         """Row that observes displacement or stress at a height; at a joint the part below it."""
         tops = np.array([part.basis.mesh.p[0].max() for part in self.parts])
         part = self.parts[min(int(np.searchsorted(tops + NEAR * tops[-1], height)), len(self.parts) - 1)]
-        found = np.zeros(self.size)
+        row = np.zeros(self.size)
         unknowns, values = part.observe(min(height, float(tops[-1])), stress)
-        found[unknowns] = values
-        return found
+        row[unknowns] = values
+        return row
 
     @property
     def top(self) -> int:
@@ -124,10 +124,10 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int) -> LineMesh:
     parts: list[Part] = []
     for low, high in zip([0.0, *cuts], [*cuts, ground.height], strict=True):
         inside = (nodes > low - NEAR * ground.height) & (nodes < high + NEAR * ground.height)
-        own = nodes[inside]
-        middles = (own[:-1] + own[1:]) / 2
+        layer_nodes = nodes[inside]
+        middles = (layer_nodes[:-1] + layer_nodes[1:]) / 2
         stratum = np.searchsorted(ground.tops, middles)
-        basis = Basis(MeshLine(own), ELEMENTS[degree]())
+        basis = Basis(MeshLine(layer_nodes), ELEMENTS[degree]())
         first = parts[-1].first + parts[-1].size if parts else 0
         parts.append(Part(basis, moduli[stratum], densities[stratum], first))
     return _joined(ground, parts)

@@ -64,12 +64,12 @@ def solve_line(
     stepper = DampedStepper(model, scheme, work)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        found = stepper.run(excitation, rows)
+        histories = stepper.run(excitation, rows)
     ended = perf_counter()
-    steps = found.shape[1]
+    steps = histories.shape[1]
     return Result(
         time=scheme.step * np.arange(1.0, steps + 1),
-        columns=dict(zip(columns, found, strict=True)),
+        columns=dict(zip(columns, histories, strict=True)),
         unknowns=len(model.free),
         nonzeros=work.nonzeros,
         factorisations=work.factorisations,
@@ -102,14 +102,14 @@ class Model:
 
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
-        found: Array = np.zeros((self.M.shape[0], 4))
+        loads: Array = np.zeros((self.M.shape[0], 4))
         if self.impedance is None:
-            found[:, 0] = -self.K[:, [self.base]].toarray()[:, 0]
-            found[:, 2] = -self.M[:, [self.base]].toarray()[:, 0]
+            loads[:, 0] = -self.K[:, [self.base]].toarray()[:, 0]
+            loads[:, 2] = -self.M[:, [self.base]].toarray()[:, 0]
         else:
-            found[self.base, 1] = 2 * self.impedance
-        found[self.top, 3] = -1.0
-        return np.asarray(found[self.free])
+            loads[self.base, 1] = 2 * self.impedance
+        loads[self.top, 3] = -1.0
+        return np.asarray(loads[self.free])
 
 
 @dataclass(frozen=True)
@@ -159,16 +159,16 @@ class DampedStepper:
         parts = np.column_stack([e.displacement, e.velocity, e.acceleration, e.pressure])
         loads = parts @ self.model.loads().T
         by_D, by_V, by_A = (np.array([getattr(row, part) for row in rows]) for part in "DVA")
-        own = np.array([row.excitation for row in rows])
+        excitation_weights = np.array([row.excitation for row in rows])
         if self.model.impedance is None:
-            own[:, 0] += by_D[:, base]
-            own[:, 2] += by_A[:, base]
+            excitation_weights[:, 0] += by_D[:, base]
+            excitation_weights[:, 2] += by_A[:, base]
         state = self.start(loads[0])
-        found = own @ parts[1:].T
+        histories = excitation_weights @ parts[1:].T
         for n, F in enumerate(loads[1:]):
             state = self.advance(state, F)
-            found[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
-        return found
+            histories[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
+        return histories
 
     def start(self, F: Array) -> State:
         """State at t = 0: at rest, with the initial acceleration that the scheme asks for."""
@@ -183,8 +183,8 @@ class DampedStepper:
         """One step under the load `F` at its end."""
         s = self.scheme
         predicted, slowed = predictor(state, s), velocity_predictor(state, s)
-        held = F - self.C @ slowed
-        increment = self.carried @ (predicted - state.D) + s.alpha * s.step**2 * (held - self.K @ state.D)
+        resisted = F - self.C @ slowed
+        increment = self.carried @ (predicted - state.D) + s.alpha * s.step**2 * (resisted - self.K @ state.D)
         D = state.D + self.solve(increment)
-        A = acceleration(D, predicted, s) if s.alpha > 0 else self.solve(held - self.K @ D)
+        A = acceleration(D, predicted, s) if s.alpha > 0 else self.solve(resisted - self.K @ D)
         return State(D, slowed + s.delta * s.step * A, A)

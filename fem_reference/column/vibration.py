@@ -61,8 +61,8 @@ def line_response(
     V, A = S * D, -W2 * D
     if ground.impedance is None:
         D[model.base], A[model.base] = drive[0], drive[2]
-    seen = [row.D @ D + row.V @ V + row.A @ A + row.excitation @ drive for row in rows]
-    return dict(zip(columns, seen, strict=True))
+    observed = [row.D @ D + row.V @ V + row.A @ A + row.excitation @ drive for row in rows]
+    return dict(zip(columns, observed, strict=True))
 
 
 def _solutions(model: Model, loads: Complex, W2: Complex, S: Complex) -> Complex:
@@ -72,14 +72,14 @@ def _solutions(model: Model, loads: Complex, W2: Complex, S: Complex) -> Complex
     place = np.argsort(order)
     # at least one diagonal on each side, also of one unknown: older SciPy look for the main one in the second row
     width = max(int(np.max(np.abs(place[part.row] - place[part.col]), initial=1)) for part in (M, K))
-    found = np.empty_like(loads)
+    solutions = np.empty_like(loads)
     for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
         band = np.zeros((2 * width + 1, len(order)), complex)
         for part, factor in ((K, 1.0), (C, s), (M, -w2)):
             row, col = place[part.row], place[part.col]
             band[width + row - col, col] += factor * part.data
         try:
-            found[order, i] = solve_banded((width, width), band, loads[order, i], check_finite=False)
+            solutions[order, i] = solve_banded((width, width), band, loads[order, i], check_finite=False)
         except np.linalg.LinAlgError:  # a resonance that nothing damps
-            found[:, i] = np.inf
-    return found
+            solutions[:, i] = np.inf
+    return solutions

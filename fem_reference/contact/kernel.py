@@ -426,14 +426,14 @@ def equations_of(law: Law, states: States, phi: Array) -> Equations:
         if states[point] == OPEN:
             continue
         stiffness = 1.0
-        own = law.compliance[point]
+        diagonal_term = law.compliance[point]
         if i >= count:
             stiffness = 0.0 if abs(states[point]) == SLIP else law.shear_stiffness[point] * phi[point]
-            own = 1.0
-        largest_term = own + stiffness * law.C[i, i]
+            diagonal_term = 1.0
+        largest_term = diagonal_term + stiffness * law.C[i, i]
         closed[i] = 1.0
         weight[i] = stiffness / largest_term
-        diagonal[i] = own / largest_term
+        diagonal[i] = diagonal_term / largest_term
     matrix = weight.reshape((size, 1)) * law.C * closed
     for i in range(size):
         matrix[i, i] += diagonal[i]

@@ -163,5 +163,5 @@ def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> tuple[elast
     fresh = np.append(True, np.diff(along[order]) > SAME_PLACE * problem.base_length)
     weights = np.zeros(np.count_nonzero(fresh))
     np.add.at(weights, np.cumsum(fresh) - 1, rule.weights[order])
-    kept = order[fresh]
-    return elasticity.Rule(rule.points[:, kept], rule.cells[kept], weights), weights
+    distinct = order[fresh]
+    return elasticity.Rule(rule.points[:, distinct], rule.cells[distinct], weights), weights

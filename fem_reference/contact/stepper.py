@@ -176,23 +176,23 @@ class ContactStepper:
         march = self.compiled or kernel.march
         fallback = None if self.compiled else kernel.fall_back
         arguments = (numbers, energies, losses)
-        done = 0
+        completed = 0
         solves = 0
         outcome = CONVERGED
-        while done < len(table) and outcome == CONVERGED:
-            rest = slice(done, None)
+        while completed < len(table) and outcome == CONVERGED:
+            rest = slice(completed, None)
             state, steps, solves, outcome = march(
                 block, law, state, base[rest], *arguments, table[rest], points[rest], fallback
             )
-            done += steps
+            completed += steps
             if outcome == UNSETTLED:
                 # A fallback is rare, and not compiled.
-                one = slice(done, done + 1)
+                one = slice(completed, completed + 1)
                 state, steps, solves, outcome = kernel.march(
                     block, law, state, base[one], *arguments, table[one], points[one], kernel.fall_back
                 )
-                done += steps
-        return Marched(state, done, solves, outcome)
+                completed += steps
+        return Marched(state, completed, solves, outcome)
 
     def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Marched]:
         """One step; the state at its end, or None where it has no contact."""

@@ -68,14 +68,14 @@ def pieces(units: Units, end: arb, touches: list[arb]) -> Iterator[Piece]:
         yield piece
         arrivals.append((start.time + 2, piece.rate.plus(-units.q)))
         arrival = arrivals[0][0]
-        left = (arrival if arrival.mid() < end.mid() else end) - start.time
+        remainder = (arrival if arrival.mid() < end.mid() else end) - start.time
         near: list[arb] = []
-        fall = (piece.gap * -1 if piece.closed else piece.gap).first_fall(left.upper(), near)
-        touches += [start.time + s for s in near if s > left * finest]  # the start itself is none
-        if fall is not None and left - fall.at > finest * left:
+        fall = (piece.gap * -1 if piece.closed else piece.gap).first_fall(remainder.upper(), near)
+        touches += [start.time + s for s in near if s > remainder * finest]  # the start itself is none
+        if fall is not None and remainder - fall.at > finest * remainder:
             start = _next(piece, fall.at, start.time + fall.at, start.incoming.shifted(fall.at), touching=True)
-        elif (start.time + left).mid() < end.mid():
-            start = _next(piece, left, *arrivals.popleft(), touching=fall is not None)
+        elif (start.time + remainder).mid() < end.mid():
+            start = _next(piece, remainder, *arrivals.popleft(), touching=fall is not None)
         else:
             break
 

@@ -311,10 +311,10 @@ def to_floats(matrix: arb_mat) -> Array:
 
 @cache
 def _term_count(angle: float, bits: int) -> int:
-    left, n = 0.0, 0
-    while left > -bits - 12 or n < 2 * angle:
+    logarithm, n = 0.0, 0
+    while logarithm > -bits - 12 or n < 2 * angle:
         n += 1
-        left += math.log2(angle / n)
+        logarithm += math.log2(angle / n)
     return n
 
 

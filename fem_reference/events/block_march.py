@@ -173,10 +173,10 @@ class March:
     def step(self, row_end: arb, span: float) -> None:
         """One step, up to a switch at most."""
         flow = self.flows[self.states]
-        left = difference(row_end, self.time)
+        remainder = difference(row_end, self.time)
         step = flow.step(span)
-        whole = bool(left < step.length * REACH)
-        length = left if whole else arb(step.length)
+        whole = bool(remainder < step.length * REACH)
+        length = remainder if whole else arb(step.length)
         radius = self.spread.hull()
         self._add_node(radius)
         share, width, doubtful = 1.0, 0.0, list[int]()
@@ -199,14 +199,14 @@ class March:
         if clear > 0:
             self._advance(flow, clear, None)
             radius = self.spread.hull()
-            left = difference(row_end, self.time)
+            remainder = difference(row_end, self.time)
         # Balls look at a part that is longer than the one in doubt, and where they have looked in vain at a longer one.
         length = arb(min(share + width * CELLS ** min(1 + self.misses, CUTS), 1) * step.length) - clear
-        length = length if length < left else left
+        length = length if length < remainder else remainder
         fall = self.first_fall(flow, length, doubtful, radius)
         if fall is None:
             self.misses += 1
-            self._advance(flow, length, step, row_end if bool(length == left) else None)
+            self._advance(flow, length, step, row_end if bool(length == remainder) else None)
         else:
             self._switch(flow, fall)
 

@@ -89,5 +89,7 @@ def _choices(model: BlockModel, c: int, state: int, z: arb_mat) -> list[int]:
         return [OPEN]
     closed = [STICKS]
     if model.tan is not None:
-        closed += [way for way in (RIGHT, LEFT) if is_blank((model.reserves[c, sigma(way)] * z)[0, 0])]
+        closed += [
+            direction for direction in (RIGHT, LEFT) if is_blank((model.reserves[c, sigma(direction)] * z)[0, 0])
+        ]
     return [*closed, OPEN] if touching else closed

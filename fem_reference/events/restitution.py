@@ -140,7 +140,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         If `omega` is not positive.
     """
     stiffness = scheme.response(omega)
-    found: list[Branch] = []
+    branches: list[Branch] = []
     pending: list[tuple[float, float, Line, Line, Line, int]] = [
         (0.0, scheme.gg, (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0), 0)
     ]
@@ -150,12 +150,12 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         size = max(map(abs, (*v, *A)))
         for part in _parts(predicted, low, high):
             if _at(predicted, sum(part) / 2) >= 0:
-                found.append(Branch(*part, *out))
+                branches.append(Branch(*part, *out))
             elif size < REST or steps >= LIMIT:
-                found.append(Branch(*part, 0.0, 0.0))
+                branches.append(Branch(*part, 0.0, 0.0))
             else:
                 pending.append((*part, predicted, v, A, steps + 1))
-    return tuple(sorted(found, key=lambda branch: branch.low))
+    return tuple(sorted(branches, key=lambda branch: branch.low))
 
 
 def _step(scheme: ContactScheme, stiffness: float, predicted: Line, v: Line, A: Line) -> tuple[Line, Line, Line, Line]:

@@ -111,12 +111,12 @@ class Bar:
         """The lowest modes, with the eigenvalues of the scheme's step from trace and determinant."""
         b = wave_numbers(self.kappa, count)
         weight = shares("load", b, self.kappa)
-        found = []
+        modes = []
         for i, w in enumerate(b / self.travel):
             pair = bar_scheme.roots(float(w) * scheme.step, scheme)
             pair = pair[np.argsort(-np.abs(pair), kind="stable")]
-            found.append(Mode(float(w), float(weight[i]), np.append(pair, 0.0)))
-        return tuple(found)
+            modes.append(Mode(float(w), float(weight[i]), np.append(pair, 0.0)))
+        return tuple(modes)
 
     def solve(
         self, scheme: Scheme, steps: int, columns: tuple[str, ...] = ("displacement", "contact_pressure")

@@ -115,9 +115,9 @@ def _turns(v: Array, amplitude: NDArray[np.complex128], times: Array) -> Array:
     offsets = times[:side] - times[0]
     total = np.zeros((len(rows), len(offsets)))
     for part in np.array_split(np.arange(len(v)), 1 + len(v) * side // BLOCK):
-        left = np.exp(1j * np.outer(rows, v[part])) * amplitude[part]
+        rotated = np.exp(1j * np.outer(rows, v[part])) * amplitude[part]
         right = np.exp(1j * np.outer(v[part], offsets))
-        total += left.real @ right.real - left.imag @ right.imag
+        total += rotated.real @ right.real - rotated.imag @ right.imag
     return total.ravel()[: len(times)]
 
 

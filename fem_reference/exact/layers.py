@@ -63,12 +63,14 @@ def amplitudes(
     free = dict(_descend(ground, heights, w2, (one, zero)))
     pressed = dict(_descend(ground, heights, w2, (zero, -one)))
     if ground.impedance is None:
-        given, left, kept = np.asarray(1 / (1j * w)), free[-1][0], pressed[-1][0]
+        excitation, free_residual, pressed_residual = np.asarray(1 / (1j * w)), free[-1][0], pressed[-1][0]
     else:
         z = ground.impedance
-        given = np.asarray(-2 * z * one)
-        left, kept = (np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1]))
-    by_base, by_top = given / left, -kept / left
+        excitation = np.asarray(-2 * z * one)
+        free_residual, pressed_residual = (
+            np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1])
+        )
+    by_base, by_top = excitation / free_residual, -pressed_residual / free_residual
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
 
@@ -95,19 +97,19 @@ def _descend(ground: Ground, heights: Sequence[float], w2: Complex, state: State
     yield -2, state
     level = total
     joints = sorted(ground.joints, reverse=True)
-    asked = sorted(((height, number) for number, height in enumerate(heights)), reverse=True)
+    requested = sorted(((height, number) for number, height in enumerate(heights)), reverse=True)
     bottoms = [float(top) - stratum.thickness for top, stratum in zip(ground.tops, ground.strata, strict=True)]
     for stratum, bottom in zip(reversed(ground.strata), reversed(bottoms), strict=True):
         end = bottom if bottom > NEAR * total else 0.0
         while True:
-            stop = max([end, *(joint[0] for joint in joints[:1]), *(height for height, _ in asked[:1])])
+            stop = max([end, *(joint[0] for joint in joints[:1]), *(height for height, _ in requested[:1])])
             state = through(stratum.modulus(ground.motion), stratum.density, max(level - stop, 0.0), w2, state)
             level = min(level, stop)
             crossing = joints and joints[0][0] >= level - NEAR * total and level > NEAR * total
             if crossing:
                 state = across(joints.pop(0)[1], state)
-            elif asked and asked[0][0] >= level - NEAR * total:
-                yield asked.pop(0)[1], state
+            elif requested and requested[0][0] >= level - NEAR * total:
+                yield requested.pop(0)[1], state
             elif level <= end + NEAR * total:
                 break
             level = max(level, end)
@@ -158,19 +160,19 @@ def solve_layers(
         raise ValueError(f"gg: {reason}")
     began = perf_counter()
     count, samples = 1, 0
-    found = _synthesis(ground, scheme, steps, drive, columns, heights, count)
+    histories = _synthesis(ground, scheme, steps, drive, columns, heights, count)
     error = math.inf
     while error > TOLERANCE and PERIODS * steps * 2 * count <= max(MOST_SAMPLES, 2 * PERIODS * steps):
         count *= 2
         samples = int(PERIODS * steps * count)
         finer = _synthesis(ground, scheme, steps, drive, columns, heights, count)
         largest = np.abs(finer).max(axis=1)
-        error = float(np.max(np.abs(finer - found).max(axis=1) / np.where(largest > 0, largest, 1.0)))
-        found = finer
+        error = float(np.max(np.abs(finer - histories).max(axis=1) / np.where(largest > 0, largest, 1.0)))
+        histories = finer
     ended = perf_counter()
     return Result(
         time=scheme.step * np.arange(1.0, steps + 1),
-        columns=dict(zip(columns, found, strict=True)),
+        columns=dict(zip(columns, histories, strict=True)),
         unknowns=0,
         nonzeros=0,
         factorisations=0,
@@ -202,9 +204,9 @@ def _synthesis(
     time = spacing * np.arange(samples)
     weight = np.exp(-shift * time)
     w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
-    given = drive(time)
+    excitation = drive(time)
     moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
-    velocity, pressure = rfft(weight * given.velocity), rfft(weight * given.pressure)
+    velocity, pressure = rfft(weight * excitation.velocity), rfft(weight * excitation.pressure)
     picked = count * np.arange(1, steps + 1)
-    found = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]
-    return np.asarray(np.array(found) / weight[picked])
+    histories = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]
+    return np.asarray(np.array(histories) / weight[picked])

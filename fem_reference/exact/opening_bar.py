@@ -177,11 +177,11 @@ class _Series:
 def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
     """x^2 of the scheme, and the image of a load that is one from t = 0 on, less r times the A_0 that it causes."""
     alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
-    kept = 1 - gg * z
-    b = ((0.5 - alpha) * z + alpha) * kept + gg * z * ((1 - delta) * z + delta)
-    x2 = (travel / scheme.step) ** 2 * (1 - z) * kept / b
+    denominator = 1 - gg * z
+    b = ((0.5 - alpha) * z + alpha) * denominator + gg * z * ((1 - delta) * z + delta)
+    x2 = (travel / scheme.step) ** 2 * (1 - z) * denominator / b
     if scheme.start == "consistent":
-        return x2, 1 / (1 - z) - (alpha * kept + gg * z * delta) / b
+        return x2, 1 / (1 - z) - (alpha * denominator + gg * z * delta) / b
     return x2, z / (1 - z)
 
 
@@ -208,10 +208,10 @@ def _small(x2: Array) -> tuple[Array, Array, Array]:
     2 / (x^2 + (n pi)^2) summed for the coth, with signs (-1)^n for the 1 / sinh, and that at x / 2 for the mid-height.
     """
     k = np.arange(TERMS)
-    own = 2.0 * (-1.0) ** k * zeta(2 * k + 2) / np.pi ** (2 * k + 2)
-    across = own * (2.0 ** -(2.0 * k + 1) - 1)
-    found = [np.polynomial.polynomial.polyval(x2, row) for row in (own, across, across / 4.0 ** (k + 1))]
-    return found[0], found[1], found[2]
+    coefficients = 2.0 * (-1.0) ** k * zeta(2 * k + 2) / np.pi ** (2 * k + 2)
+    across = coefficients * (2.0 ** -(2.0 * k + 1) - 1)
+    values = [np.polynomial.polynomial.polyval(x2, row) for row in (coefficients, across, across / 4.0 ** (k + 1))]
+    return values[0], values[1], values[2]
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,7 @@ class _Base:
     velocity: Array  # velocity of the centre of mass [m/s]
 
 
-def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
+def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Base:
     """Contact pressures step by step.
 
     Parameters
@@ -237,12 +237,12 @@ def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
     free
         What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).
     """
-    count, dt, alpha, delta, gg = len(own), scheme.step, scheme.alpha, scheme.delta, scheme.gg
+    count, dt, alpha, delta, gg = len(loaded), scheme.step, scheme.alpha, scheme.delta, scheme.gg
     surface, compliance = bar.density * bar.height, bar.width / bar.base_stiffness
     load = -bar.pressure / surface - bar.gravity
     D, V, A = 0.0, bar.velocity, load if scheme.start == "consistent" else 0.0
-    C = alpha * dt**2 / surface + own[0]
-    backwards = own[::-1].copy()
+    C = alpha * dt**2 / surface + loaded[0]
+    backwards = loaded[::-1].copy()
     rigid, N, gap, closed = np.zeros(count), np.zeros(count), np.full(count, bar.gap), np.zeros(count)
     speed = np.full(count, V)
     closed[0] = bar.gap == 0
@@ -267,5 +267,5 @@ def _stepped(bar: OpeningBar, scheme: Scheme, own: Array, free: Array) -> _Base:
 def _convolved(weights: Array, values: Array) -> Array:
     """Sum of weights[k] values[n - k], shape (steps + 1,)."""
     count = next_fast_len(2 * len(values), real=True)
-    found: Array = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
-    return found
+    convolved: Array = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
+    return convolved

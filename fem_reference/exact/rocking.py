@@ -160,10 +160,10 @@ class RockingMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        found = np.empty((2, len(t)))
+        motion = np.empty((2, len(t)))
         for i, here in by_pieces(t, [swing.start for swing in self.swings]):
-            found[:, here] = self.swings[i].values(t[here])
-        return found[0], found[1]
+            motion[:, here] = self.swings[i].values(t[here])
+        return motion[0], motion[1]
 
 
 def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STILL_BASE) -> RockingMotion:
@@ -205,11 +205,11 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
                 break
         side = _sign(angle) or _sign(rate) or -_sign(pulse.amplitude)
         last = pulse.duration if time < pulse.duration < end else end
-        done = _swing(block, pulse, side, (time, last), (angle, rate))
-        swings.append(Swing(time, done.sol))
-        time, angle, rate = float(done.t[-1]), float(done.y[0, -1]), float(done.y[1, -1])
-        fallen = len(done.t_events[1]) > 0
-        if len(done.t_events[0]):
+        swing = _swing(block, pulse, side, (time, last), (angle, rate))
+        swings.append(Swing(time, swing.sol))
+        time, angle, rate = float(swing.t[-1]), float(swing.y[0, -1]), float(swing.y[1, -1])
+        fallen = len(swing.t_events[1]) > 0
+        if len(swing.t_events[0]):
             impacts.append(time)
             angle, rate = 0.0, rate * block.ratio
     return RockingMotion(min(time, end), tuple(swings), tuple(impacts), fallen)

@@ -76,9 +76,9 @@ class SlidingBlock:
         """Acceleration of the base up the slope at which the mass begins to slide down, Y - g sin b [m/s2]."""
         return self.resistance - self.driving
 
-    def push(self, way: int) -> float:
+    def push(self, direction: int) -> float:
         """Acceleration towards +x of a mass that slides towards +x (1) or -x (-1) over a base at rest [m/s2]."""
-        return self.driving - way * self.resistance
+        return self.driving - direction * self.resistance
 
 
 @dataclass(frozen=True)
@@ -124,10 +124,10 @@ class Segment:
     def reaches(self, value: float) -> list[float]:
         """Times after the start at which the acceleration is a value [s], in their order, without the start."""
         length = self.end - self.start
-        found = [(value - self.a0) / self.a1] if self.a1 else []
+        crossings = [(value - self.a0) / self.a1] if self.a1 else []
         if self.amplitude:
-            found = list(self._swings(value, length))
-        return [s for s in found if NOISE * min(length, 1 / self.rate) < s <= length]
+            crossings = list(self._swings(value, length))
+        return [s for s in crossings if NOISE * min(length, 1 / self.rate) < s <= length]
 
     def _swings(self, value: float, length: float) -> Iterator[float]:
         ratio = value / self.amplitude
@@ -237,10 +237,10 @@ class SlidingMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        found = np.empty((2, len(t)))
+        motion = np.empty((2, len(t)))
         for i, here in by_pieces(t, [one.base.start for one in self.stretches]):
-            found[:, here] = self.stretches[i].at(t[here])
-        return found[0], found[1]
+            motion[:, here] = self.stretches[i].at(t[here])
+        return motion[0], motion[1]
 
     @property
     def switches(self) -> tuple[tuple[float, int], ...]:
@@ -274,35 +274,35 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
     """
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
-    slide, velocity, found = 0.0, 0.0, list[Stretch]()
+    slide, velocity, stretches = 0.0, 0.0, list[Stretch]()
     for segment in base:
-        left: Segment | None = replace(segment, end=min(segment.end, end))
-        while left is not None and left.start < left.end:
-            stretch = _begin(block, left, slide, velocity - left.jump)
-            found.append(stretch)
+        remainder: Segment | None = replace(segment, end=min(segment.end, end))
+        while remainder is not None and remainder.start < remainder.end:
+            stretch = _begin(block, remainder, slide, velocity - remainder.jump)
+            stretches.append(stretch)
             after = _change(block, stretch)
-            s = left.end - left.start if after is None else after
+            s = remainder.end - remainder.start if after is None else after
             slide, velocity = (float(x) for x in stretch.at(stretch.base.start + s))
             velocity = velocity if after is None else 0.0
-            left = None if after is None else left.after(s)
-    return SlidingMotion(block, float(end), tuple(found))
+            remainder = None if after is None else remainder.after(s)
+    return SlidingMotion(block, float(end), tuple(stretches))
 
 
 def _begin(block: SlidingBlock, base: Segment, slide: float, velocity: float) -> Stretch:
     """The mass from an instant on."""
-    way = int(np.sign(velocity)) or _yields(block, base)
-    if way < 0 and not block.two_way:
-        way, velocity = 0, 0.0
-    return Stretch(base, way, slide, velocity if way else 0.0, block.push(way))
+    direction = int(np.sign(velocity)) or _yields(block, base)
+    if direction < 0 and not block.two_way:
+        direction, velocity = 0, 0.0
+    return Stretch(base, direction, slide, velocity if direction else 0.0, block.push(direction))
 
 
 def _yields(block: SlidingBlock, base: Segment) -> int:
     """The way in which a mass at rest on its base begins to slide, 0 if it stays."""
     now = float(base.acceleration(0.0))
-    for way in (1, -1):
-        excess, size = way * (block.push(way) - now), block.gravity + abs(now)
-        if excess > NOISE * size or (abs(excess) <= NOISE * size and way * base.grows < 0):
-            return way
+    for direction in (1, -1):
+        excess, size = direction * (block.push(direction) - now), block.gravity + abs(now)
+        if excess > NOISE * size or (abs(excess) <= NOISE * size and direction * base.grows < 0):
+            return direction
     return 0
 
 
@@ -312,20 +312,20 @@ def _change(block: SlidingBlock, stretch: Stretch) -> float | None:
 
 
 def _slips(block: SlidingBlock, base: Segment) -> float | None:
-    found = []
-    for way in (1, -1) if block.two_way else (1,):
-        for s in base.reaches(block.push(way)):
-            if way * base.after(s).grows < 0:
-                found.append(s)
-    return min(found, default=None)
+    crossings = []
+    for direction in (1, -1) if block.two_way else (1,):
+        for s in base.reaches(block.push(direction)):
+            if direction * base.after(s).grows < 0:
+                crossings.append(s)
+    return min(crossings, default=None)
 
 
 def _sticks(stretch: Stretch) -> float | None:
     """The first root of the rate of the slide, which is monotone between the roots of its own rate."""
-    base, way = stretch.base, stretch.way
+    base, direction = stretch.base, stretch.way
 
     def rate(s: float) -> float:
-        return way * (stretch.velocity + stretch.push * s - float(base.velocity(s)))
+        return direction * (stretch.velocity + stretch.push * s - float(base.velocity(s)))
 
     bounds = [0.0, *base.reaches(stretch.push), base.end - base.start]
     for low, high in pairwise(bounds):

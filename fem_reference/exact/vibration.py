@@ -40,12 +40,12 @@ def response(
     half = np.exp(-0.5j * theta)
     middle = half * ((1 + whole) / 2 + bar.kappa / 2 * _sine(theta / 2, whole))
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = {
+        amplitudes = {
             "displacement": -bar.pressure * bar.height / bar.young * middle / below,
             "contact_pressure": bar.pressure * bar.kappa * whole / below,
             "horizontal_displacement": np.zeros_like(theta),
         }
-    return {name: factor * found[name] for name in columns}
+    return {name: factor * amplitudes[name] for name in columns}
 
 
 def _sine(theta: Complex, square: Complex) -> Complex:

@@ -32,14 +32,14 @@ def histories(times: Array, kappa: float, rate: float, lag: float, columns: tupl
     rate, lag
         c times the travel time, and a1 over it.
     """
-    count, found = FIRST, _summed(times, kappa, rate, lag, columns, FIRST)
+    count, histories = FIRST, _summed(times, kappa, rate, lag, columns, FIRST)
     while True:
         count *= 2
         finer = _summed(times, kappa, rate, lag, columns, count)
-        change = float(np.max(np.abs(finer - found)) / max(float(np.max(np.abs(finer))), np.finfo(float).tiny))
-        found = finer
+        change = float(np.max(np.abs(finer - histories)) / max(float(np.max(np.abs(finer))), np.finfo(float).tiny))
+        histories = finer
         if change <= TARGET or count >= LAST:
-            return found, change
+            return histories, change
 
 
 def _summed(times: Array, kappa: float, rate: float, lag: float, columns: tuple[str, ...], count: int) -> Array:

@@ -38,8 +38,8 @@ def run_open(request: Request) -> dict[str, Any]:
     failure = ""
     while len(rows) < request["steps"] and not failure:
         contact, failure = scheme.advance()
-        seen = {name: float(row.dot(scheme.D)) for name, row in block.observers.items()}
-        rows += [] if failure else [seen | dict(zip(OPENING, contact, strict=True))]
+        observed = {name: float(row.dot(scheme.D)) for name, row in block.observers.items()}
+        rows += [] if failure else [observed | dict(zip(OPENING, contact, strict=True))]
     return {
         "outcome": failure or "completed",
         "time": (request["step"] * np.arange(1, len(rows) + 1)).tolist(),
@@ -119,9 +119,9 @@ def next_line() -> str:
 
 def answers_only() -> IO[str]:
     """Keep standard output for answers: whatever a library writes there goes to standard error."""
-    kept = os.fdopen(os.dup(1), "w")
+    answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
-    return kept
+    return answers
 
 
 def main() -> None:
@@ -129,8 +129,8 @@ def main() -> None:
     out = answers_only()
     while line := next_line():
         request = json.loads(line)
-        found = answer(request)
+        result = answer(request)
         if COMM.rank == 0:
-            out.write(json.dumps({**found, "id": request.get("id")}) + "\n")
+            out.write(json.dumps({**result, "id": request.get("id")}) + "\n")
             out.flush()
         gc.collect()  # on every rank at the same place: matrices are freed together

@@ -154,8 +154,8 @@ class Block:
         o, request = self.outline, self.request
         perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
         top = self.ds((TOP, PRESSED))
-        found = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
-        for name, (measure, expected) in found.items():
+        measures = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
+        for name, (measure, expected) in measures.items():
             if abs(self._integral(measure) - expected) > 1e-9 * expected:
                 raise ValueError(f"mesh: outline must be the block's, but its {name} differs")
         low, high = pressed_part(request, o.side(o.top)[2])
@@ -194,15 +194,15 @@ class Block:
         self.pushes = [self._push(kn, kt, n, t, v, np.eye(2)[i]) for i in (0, 1)]
         self.pressure = self._vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))
 
-    def _push(self, kn: Any, kt: Any, n: Any, t: Any, v: Any, way: np.ndarray) -> Any:
+    def _push(self, kn: Any, kt: Any, n: Any, t: Any, v: Any, direction: np.ndarray) -> Any:
         """Load of a unit displacement of the base in one direction."""
-        across, along = (constant(self.mesh, float(axis @ way)) for axis in (self.normal, self.tangent))
-        found = self._vector((kn * across * ufl.dot(n, v) + kt * along * ufl.dot(t, v)) * self.ds(BASE))
+        across, along = (constant(self.mesh, float(axis @ direction)) for axis in (self.normal, self.tangent))
+        vector = self._vector((kn * across * ufl.dot(n, v) + kt * along * ufl.dot(t, v)) * self.ds(BASE))
         if self.request["foundation"] == "corner":
             for pair in self._corners():
-                found.setValues(pair.astype(np.int32), self._spring() @ way, addv=PETSc.InsertMode.ADD_VALUES)
-            found.assemble()
-        return found
+                vector.setValues(pair.astype(np.int32), self._spring() @ direction, addv=PETSc.InsertMode.ADD_VALUES)
+            vector.assemble()
+        return vector
 
     def _spring(self) -> np.ndarray:
         """Matrix of one corner spring."""
@@ -234,9 +234,9 @@ class Block:
         """Assemble a linear form into a vector of the matrices' layout."""
         ghosted = dolfinx.fem.petsc.assemble_vector(dolfinx.fem.form(form))
         ghosted.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-        found = self.K.createVecRight()
-        found.array[:] = ghosted.array
-        return found
+        vector = self.K.createVecRight()
+        vector.array[:] = ghosted.array
+        return vector
 
     def _rows(self) -> None:
         """Set the observers of the columns."""
@@ -254,8 +254,10 @@ class Block:
 
     def carried_pressure(self, moved: Any) -> np.ndarray:
         """Contact pressure of a displaced base where the block is held, for each (x, y)."""
-        found: np.ndarray = np.asarray(moved) @ self.normal * (2 * self.request["stiffness"] / self.outline.side(0)[2])
-        return found
+        pressure: np.ndarray = (
+            np.asarray(moved) @ self.normal * (2 * self.request["stiffness"] / self.outline.side(0)[2])
+        )
+        return pressure
 
     def _point_rows(self) -> tuple[Any, Any]:
         """Rows that give u and v at the centroid: the basis functions of its cell, each evaluated there."""

@@ -28,10 +28,10 @@ class Factor:
 
     def __call__(self, right: Any) -> Any:
         """Solve for one right-hand side."""
-        found = self.matrix.createVecRight()
-        self.ksp.solve(right, found)
+        solution = self.matrix.createVecRight()
+        self.ksp.solve(right, solution)
         Factor.solves += 1
-        return found
+        return solution
 
 
 class Newmark:

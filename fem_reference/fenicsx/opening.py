@@ -37,8 +37,8 @@ class Base:
     def __init__(self, block: Block, request: Request) -> None:
         self.normal, self.tangent = block.normal, block.tangent
         self.block, self.length = block, block.outline.side(0)[2]
-        found = COMM.allgather(self._owned(request))
-        numbers, along, share = (np.concatenate([part[i] for part in found]) for i in range(3))
+        parts = COMM.allgather(self._owned(request))
+        numbers, along, share = (np.concatenate([part[i] for part in parts]) for i in range(3))
         order = np.argsort(along)
         self.share = share[order]
         k, k_t = (2 * request[name] * self.share for name in ("stiffness", "shear_stiffness"))
@@ -62,14 +62,14 @@ class Base:
             for pair in block._corners():
                 share[pair[0] // 2 - first] = 0.5
         elif request["foundation"] == "distributed":
-            way = ufl.dot(constant(block.mesh, self.normal), ufl.TestFunction(block.space))
-            parts = block._vector(way * block.ds(BASE)).array.reshape(-1, 2) @ self.normal
+            functional = ufl.dot(constant(block.mesh, self.normal), ufl.TestFunction(block.space))
+            parts = block._vector(functional * block.ds(BASE)).array.reshape(-1, 2) @ self.normal
             share = np.where(parts > 1e-10 * self.length, parts / self.length, 0.0)
         else:
             raise Inapplicable(f"unilateral contact on a foundation {request['foundation']!r} is not in fenicsx")
-        kept = np.flatnonzero(share)
+        loaded = np.flatnonzero(share)
         places = block.space.tabulate_dof_coordinates()[: end - first, :2]
-        return kept + first, places[kept] @ self.tangent, share[kept]
+        return loaded + first, places[loaded] @ self.tangent, share[loaded]
 
     def moved(self, D: Any) -> tuple[np.ndarray, np.ndarray]:
         """Displacements of the nodes normal to the base and along it."""
@@ -79,12 +79,12 @@ class Base:
 
     def load(self, N: np.ndarray, T: np.ndarray) -> Any:
         """B' (N, T)."""
-        found = self.block.K.createVecRight()
+        vector = self.block.K.createVecRight()
         if COMM.rank == 0:
             values = np.outer(N, self.normal) + np.outer(T, self.tangent)
-            found.setValues(self._places, values.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-        found.assemble()
-        return found
+            vector.setValues(self._places, values.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+        vector.assemble()
+        return vector
 
 
 class Piece(NamedTuple):
@@ -114,9 +114,11 @@ class Opening:
         zero, gap = np.zeros(n), np.full(n, float(request["gap"]))
         self.contact = Start(gap, zero, zero, (gap == 0).astype(int), zero)
         self.N = self.T = zero
-        self.time, way = 0.0, self._way(0.0)
-        if np.any(way):
-            raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {way.tolist()} across and along")
+        self.time, displacement = 0.0, self._way(0.0)
+        if np.any(displacement):
+            raise ValueError(
+                f"motion: must be zero at t = 0 where contact opens, got {displacement.tolist()} across and along"
+            )
 
     def _way(self, time: float) -> np.ndarray:
         """Displacement of the base, normal to it and along it."""
@@ -144,9 +146,9 @@ class Opening:
 
     def advance(self) -> tuple[list[float], str]:
         """Take one step; return the entries of `COLUMNS` and, where it cannot be taken, why not."""
-        left = share = 1.0
+        remainder = share = 1.0
         solves = cuts = 0
-        while left > 0:
+        while remainder > 0:
             used, failure = self._try(self._piece(share))
             solves += used
             if failure:
@@ -155,8 +157,8 @@ class Opening:
                     return [], failure
                 share = max(self.request["cut"] * share, SHORTEST)
                 continue
-            left = left - share if left - share > 1e-9 else 0.0
-            share = min(share, left)
+            remainder = remainder - share if remainder - share > 1e-9 else 0.0
+            share = min(share, remainder)
         gap, length = self.contact.gap, self.base.length
         opened = float(self.base.share @ (gap > 0))
         sizes = [float(np.max(part, initial=0.0)) for part in (gap, -gap, np.abs(self.contact.slid))]
@@ -169,15 +171,15 @@ class Opening:
         residual = block.K.createVecRight()
         block.K.multAdd(-ahead, block.F, residual)
         w, s = self.base.moved(ahead + alpha * dt**2 * solve(residual))
-        way = self._way(self.time + dt)
-        small = Small(self.base.law, C, (w + self.request["gap"] - way[0], s - way[1]), self.contact)
-        found, count, failure = small.solve(self.request["solve_limit"])
-        if found is None:
+        displacement = self._way(self.time + dt)
+        small = Small(self.base.law, C, (w + self.request["gap"] - displacement[0], s - displacement[1]), self.contact)
+        forces, count, failure = small.solve(self.request["solve_limit"])
+        if forces is None:
             return count, failure
-        A = solve(residual + self.base.load(found.N, found.T))
+        A = solve(residual + self.base.load(forces.N, forces.T))
         self.D = ahead + alpha * dt**2 * A
         self.V = gg * self.V + dt * ((1 - self.delta) * self.A + self.delta * A)
-        self.A, self.N, self.T = A, found.N, found.T
-        self.contact = small.ended(found, self.base.moved(self.D)[1] - way[1])
+        self.A, self.N, self.T = A, forces.N, forces.T
+        self.contact = small.ended(forces, self.base.moved(self.D)[1] - displacement[1])
         self.time += dt
         return count, ""

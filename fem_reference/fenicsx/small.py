@@ -70,20 +70,20 @@ class Small:
         closing = (states == 1) & (self.start.states == 0) & self.sheared
         phi, relax, least = np.where(closing, 0.5, 1.0), 1.0, np.inf
         for _ in range(SWEEPS):
-            found = self._linear(states, phi)
-            miss = np.where(closing, self._passed(found.N) - phi, 0.0)
+            forces = self._linear(states, phi)
+            miss = np.where(closing, self._passed(forces.N) - phi, 0.0)
             worst = float(np.abs(miss).max())
             if worst < 1e-13:
-                return found
+                return forces
             relax, least = (relax, worst) if worst < least else (relax / 2, least)
             phi = phi + relax * miss
-        return found._replace(settled=False)
+        return forces._replace(settled=False)
 
     def _passed(self, N: np.ndarray) -> np.ndarray:
         """Share of the step that a closing node has been closed for."""
         depth = np.maximum(N, 0.0) / self.law.k
-        way = depth + np.maximum(self.start.gap, 0.0)
-        return np.asarray(np.divide(depth, way, out=np.ones(self.n), where=way > 0))
+        distance = depth + np.maximum(self.start.gap, 0.0)
+        return np.asarray(np.divide(depth, distance, out=np.ones(self.n), where=distance > 0))
 
     def _linear(self, states: np.ndarray, phi: np.ndarray) -> Forces:
         """Solve x + k (free + C lambda) = 0, lambda = P x + q, for the N of closed and the T of sticking nodes."""
@@ -107,31 +107,31 @@ class Small:
             T[:], s[:] = found[n:], moved[n:]
         return Forces(N, T, w, s, states)
 
-    def wanted(self, found: Forces) -> np.ndarray:
+    def wanted(self, forces: Forces) -> np.ndarray:
         """States that forces, gaps and slips ask for."""
-        states, law = found.states, self.law
-        closed = np.where(states != 0, found.N >= 0, found.w < 0)
+        states, law = forces.states, self.law
+        closed = np.where(states != 0, forces.N >= 0, forces.w < 0)
         if not self.rubs:
             return closed.astype(int)
-        N = np.where(states != 0, found.N, -law.k * np.minimum(found.w, 0.0))
+        N = np.where(states != 0, forces.N, -law.k * np.minimum(forces.w, 0.0))
         phi = np.where(self.start.states == 0, self._passed(N), 1.0)
-        holding = np.where(states == 1, found.T, -law.k_t * phi * found.s)
+        holding = np.where(states == 1, forces.T, -law.k_t * phi * forces.s)
         most = law.tan * np.maximum(N, 0.0) + law.c
         slides = np.abs(states) == 2
         goes_on = slides & (-np.sign(states) * holding >= (1 - SLACK) * most)
         begins = ~slides & (np.abs(holding) > most)  # one that turns is held first
-        way = np.where(goes_on, states, np.where(begins, -2 * np.sign(holding), 1))
-        return np.where(closed, way, 0).astype(int)
+        sliding = np.where(goes_on, states, np.where(begins, -2 * np.sign(holding), 1))
+        return np.where(closed, sliding, 0).astype(int)
 
     def solve(self, limit: int) -> tuple[Forces | None, int, str]:
         """Forces of consistent states, solutions used, and why there are none."""
         states = self.start.states
         for count in range(1, limit + 1):
-            found = self.forces(states)
-            wanted = self.wanted(found)
-            if found.settled and np.array_equal(wanted, states):
-                return found, count, ""
-            states = wanted
+            forces = self.forces(states)
+            following = self.wanted(forces)
+            if forces.settled and np.array_equal(following, states):
+                return forces, count, ""
+            states = following
         if not self.sheared:
             return self._least_index(states), limit + 1, ""
         choices = (0, 1, 2, -2) if self.rubs else (0, 1)
@@ -143,57 +143,57 @@ class Small:
     def _least_index(self, states: np.ndarray) -> Forces:
         """Change the first node that is wrong until none is, which ends for any such problem (Murty, 1974)."""
         while True:
-            found = self.forces(states)
-            wrong = np.flatnonzero(self.wanted(found) != states)
+            forces = self.forces(states)
+            wrong = np.flatnonzero(self.wanted(forces) != states)
             if not len(wrong):
-                return found
+                return forces
             states = states.copy()
             states[wrong[0]] = 1 - states[wrong[0]]
 
     def _by_turns(self, states: np.ndarray, used: int) -> tuple[Forces | None, int, str]:
         """Change the first node that is wrong, so many times at most."""
         for count in range(used + 1, used + TURNS * self.n + 1):
-            found = self.forces(states)
-            wanted = self.wanted(found)
-            wrong = np.flatnonzero(wanted != states)
+            forces = self.forces(states)
+            following = self.wanted(forces)
+            wrong = np.flatnonzero(following != states)
             if not len(wrong):
-                return (found, count, "") if found.settled else (None, count, NONE)
+                return (forces, count, "") if forces.settled else (None, count, NONE)
             states = states.copy()
-            states[wrong[0]] = wanted[wrong[0]]
+            states[wrong[0]] = following[wrong[0]]
         return None, count, NONE
 
     def _consistent(self, choices: tuple[int, ...]) -> list[Forces]:
         """All sets of states that hold, those with equal forces once."""
-        kept: list[Forces] = []
-        for found in self._holding(choices):
-            if not any(alike(found, other) for other in kept):
-                kept.append(found)
-        return kept
+        solutions: list[Forces] = []
+        for forces in self._holding(choices):
+            if not any(alike(forces, other) for other in solutions):
+                solutions.append(forces)
+        return solutions
 
     def _holding(self, choices: tuple[int, ...]) -> Iterator[Forces]:
         for choice in itertools.product(choices, repeat=self.n):
-            found = self.forces(np.array(choice))
-            if found.settled and np.array_equal(self.wanted(found), choice):
-                yield found
+            forces = self.forces(np.array(choice))
+            if forces.settled and np.array_equal(self.wanted(forces), choice):
+                yield forces
 
-    def ended(self, found: Forces, slip: np.ndarray) -> Start:
+    def ended(self, forces: Forces, slip: np.ndarray) -> Start:
         """The nodes at the end of the step, which are at `slip`."""
         law, start = self.law, self.start
-        unstrained = slip + np.divide(found.T, law.k_t, out=np.zeros(self.n), where=law.k_t > 0)
-        was, slides = start.states != 0, np.abs(found.states) == 2
+        unstrained = slip + np.divide(forces.T, law.k_t, out=np.zeros(self.n), where=law.k_t > 0)
+        was, slides = start.states != 0, np.abs(forces.states) == 2
         stuck = np.where(was & ~slides, start.reference, unstrained)
-        crossing = start.slip + (1 - self._passed(found.N)) * (slip - start.slip)
-        gone = unstrained - np.where(was, start.reference, crossing)
+        crossing = start.slip + (1 - self._passed(forces.N)) * (slip - start.slip)
+        reference = unstrained - np.where(was, start.reference, crossing)
         return Start(
-            gap=np.where(found.states != 0, -found.N / law.k, found.w),
-            reference=np.where(found.states != 0, stuck, slip),
+            gap=np.where(forces.states != 0, -forces.N / law.k, forces.w),
+            reference=np.where(forces.states != 0, stuck, slip),
             slip=slip,
-            states=found.states,
-            slid=start.slid + np.where(slides & (gone * found.states > 0), gone, 0.0),
+            states=forces.states,
+            slid=start.slid + np.where(slides & (reference * forces.states > 0), reference, 0.0),
         )
 
 
 def alike(one: Forces, other: Forces) -> bool:
     """Whether two sets of states are one contact: a node without forces has several names for its state."""
-    parts = [np.concatenate([found.N, found.T]) for found in (one, other)]
+    parts = [np.concatenate([forces.N, forces.T]) for forces in (one, other)]
     return bool(np.abs(parts[0] - parts[1]).max() <= 1e-9 * np.abs(parts).max())

@@ -92,7 +92,7 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:
     """Return all columns, shape (columns, steps), the discounts and the energy taken, for a load of unit size."""
     rows = np.array([model.observers[name] for name in COLUMNS])
-    history, discount, taken = np.empty((len(COLUMNS), steps)), np.ones(steps), np.zeros(steps)
+    history, discount, loss = np.empty((len(COLUMNS), steps)), np.ones(steps), np.zeros(steps)
     M, K, F = stepper.M, stepper.K, stepper.F
     before = energy = 0.0
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
@@ -101,9 +101,9 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
         for n in range(steps):
             if energy < before:
                 discount[n] = max(floor, math.sqrt(energy / before))
-                taken[n] = (1 - discount[n] ** 2) * energy
+                loss[n] = (1 - discount[n] ** 2) * energy
             scheme = replace(stepper.scheme, gg=float(discount[n]))
             state = advance(state, F, scheme, lambda x: M @ x, lambda x: K @ x, stepper.solve)
             history[:, n] = rows @ state.D
             before, energy = energy, float(state.V @ (M @ state.V)) / 2
-    return history, discount, np.cumsum(taken)
+    return history, discount, np.cumsum(loss)

@@ -73,7 +73,7 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
         return "few steps"
     space = KrylovSpace(stepper.M, stepper.S, stepper.F, stepper.solve, capacity)
     duals = np.sqrt([row @ stepper.solve(row) for row in rows])
-    found: list[Array] = []
+    histories: list[Array] = []
     changes: list[float] = []
     size = 0
     while size < capacity:
@@ -82,13 +82,13 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
         modes = modes_of(space, stepper, rows, steps)
         if stepper.scheme.start == "consistent" and np.min(modes.inertia) < LIGHTEST:
             return "a consistent start needs digits of the inertia that a small space loses in long steps"
-        found = [*found[-1:], history(modes, stepper.scheme, steps)]
-        changes += [_change(*found)] if len(found) == 2 else []
-        held = len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding
-        if (space.closed or held) and _cancelled(modes, found[-1], duals, stepper.scheme) > CANCELLED:
+        histories = [*histories[-1:], history(modes, stepper.scheme, steps)]
+        changes += [_change(*histories)] if len(histories) == 2 else []
+        converged = len(changes) > 1 and changes[-1] <= TOLERANCE + modes.rounding
+        if (space.closed or converged) and _cancelled(modes, histories[-1], duals, stepper.scheme) > CANCELLED:
             return "rounding in a small space is too large for a column that has hardly moved, or under a stiff spring"
-        if space.closed or held:
-            return Reduced(found[-1], len(space), modes.rounding + (0.0 if space.closed else changes[-1]))
+        if space.closed or converged:
+            return Reduced(histories[-1], len(space), modes.rounding + (0.0 if space.closed else changes[-1]))
         if capacity < len(stepper.F) and 2 * size >= capacity and min(changes, default=1.0) > HALFWAY:
             break
     return f"{len(space)} Krylov vectors do not represent the history"
@@ -204,7 +204,7 @@ def _squared(one: Extended, levels: int) -> list[Array]:
 
 def _doubled(start: Array, maps: list[Array]) -> Array:
     """The start and its products with all maps made of those of 1, 2, 4, ... steps, along the second axis."""
-    made = start
+    powers = start
     for power in maps:
-        made = np.concatenate([made, made @ power], axis=1)
-    return made
+        powers = np.concatenate([powers, powers @ power], axis=1)
+    return powers

@@ -70,10 +70,10 @@ def response(
     W2, factor = answering(frequencies, scheme, exact)
     F = problem.load_size * model.F if along is None else model.base_force @ np.asarray(along, float)
     rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(F))
-    found = dict(zip(columns, observed(model, F, rows, W2) * factor, strict=True))
-    if along is not None and "contact_pressure" in found:
-        found["contact_pressure"] = found["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
-    return found
+    amplitudes = dict(zip(columns, observed(model, F, rows, W2) * factor, strict=True))
+    if along is not None and "contact_pressure" in amplitudes:
+        amplitudes["contact_pressure"] = amplitudes["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
+    return amplitudes
 
 
 def observed(model: Model, F: Array, rows: Array, W2: Complex) -> Complex:
@@ -84,10 +84,10 @@ def observed(model: Model, F: Array, rows: Array, W2: Complex) -> Complex:
     width = int(max(np.max(np.abs(K.row - K.col)), np.max(np.abs(M.row - M.col))))
     if len(F) * width**2 <= NARROW:
         return np.stack([rows @ _eliminated(K, M, F, complex(w2), width) for w2 in W2], axis=1)
-    found, settled = _in_space(model, F, rows, W2)
+    amplitudes, settled = _in_space(model, F, rows, W2)
     for i in np.flatnonzero(~settled):
-        found[:, i] = rows @ splu(csc_array(model.K - W2[i] * model.M)).solve(F.astype(complex))
-    return found
+        amplitudes[:, i] = rows @ splu(csc_array(model.K - W2[i] * model.M)).solve(F.astype(complex))
+    return amplitudes
 
 
 def _eliminated(K: coo_array, M: coo_array, F: Array, w2: complex, width: int) -> Complex:
@@ -109,9 +109,9 @@ def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex
     space = KrylovSpace(model.M * unit, model.K, F, solve, min(LARGEST, len(F)))
     while True:
         space.grow(min(len(space) + ADDED, LARGEST))
-        found, remains, rounding = _projected(space, rows, W2 / unit)
+        amplitudes, remains, rounding = _projected(space, rows, W2 / unit)
         if space.closed or len(space) >= LARGEST or np.all(remains <= SMALL):
-            return found, np.asarray((remains <= SMALL) & (rounding <= CANCELLED))
+            return amplitudes, np.asarray((remains <= SMALL) & (rounding <= CANCELLED))
 
 
 def _projected(space: KrylovSpace, rows: Array, W2: Complex) -> tuple[Complex, Array, Array]:
@@ -122,8 +122,8 @@ def _projected(space: KrylovSpace, rows: Array, W2: Complex) -> tuple[Complex, A
     out = 0.0 if space.closed else space.beside[-1]
     response = np.minimum(space.load, np.linalg.norm(y, axis=0))
     remains = out * np.abs(W2) * np.abs(shapes[-1] @ y) / response
-    seen = rows @ space.vectors[:size].T @ shapes
-    found = seen @ y
+    observers = rows @ space.vectors[:size].T @ shapes
+    amplitudes = observers @ y
     with np.errstate(divide="ignore", invalid="ignore"):
-        rounding = np.finfo(float).eps * np.max(np.abs(seen) @ np.abs(y) / np.abs(found), axis=0)
-    return found, remains, np.nan_to_num(rounding)
+        rounding = np.finfo(float).eps * np.max(np.abs(observers) @ np.abs(y) / np.abs(amplitudes), axis=0)
+    return amplitudes, remains, np.nan_to_num(rounding)

@@ -191,19 +191,21 @@ def _march(
     stepper: ContactStepper, state: ContactState, contact: Unilateral, table: Array, points: Array
 ) -> tuple[int, str]:
     """Fill the rows of the steps; return how many are complete, and the outcome."""
-    done = 0
+    completed = 0
     # A scheme beyond its limit grows until it overflows; the outcome says so.
     with np.errstate(over="ignore", invalid="ignore"):
-        while done < len(table):
-            marched = stepper.march(state, table[done:], points[done:])
-            done += marched.steps
+        while completed < len(table):
+            marched = stepper.march(state, table[completed:], points[completed:])
+            completed += marched.steps
             if marched.outcome != CONVERGED:
-                marched = cut_step(stepper, marched, contact, table[done : done + 1], points[done : done + 1])
+                marched = cut_step(
+                    stepper, marched, contact, table[completed : completed + 1], points[completed : completed + 1]
+                )
                 if marched.outcome != CONVERGED:
-                    return done, OUTCOMES[marched.outcome]
-                done += 1
+                    return completed, OUTCOMES[marched.outcome]
+                completed += 1
             state = marched.state
-    return done, OUTCOMES[CONVERGED]
+    return completed, OUTCOMES[CONVERGED]
 
 
 def cut_step(
@@ -229,9 +231,9 @@ def cut_step(
     """
     solves = marched.solves
     cuts = 0
-    left = 1.0
+    remainder = 1.0
     trial = 1.0
-    while left > 0 and marched.outcome != OVERFLOW:
+    while remainder > 0 and marched.outcome != OVERFLOW:
         if marched.outcome != CONVERGED:
             cuts += 1
             if trial <= contact.shortest:
@@ -241,8 +243,8 @@ def cut_step(
         solves += marched.solves
         if marched.outcome == CONVERGED:
             # What rounding leaves over is no piece.
-            left = left - trial if left - trial > 1e-9 else 0.0
-            trial = min(trial, left)
+            remainder = remainder - trial if remainder - trial > 1e-9 else 0.0
+            trial = min(trial, remainder)
     for name, value in (("solves", solves), ("cuts", cuts)):
         if name in stepper.columns:
             row[0, stepper.columns.index(name)] = value

@@ -40,8 +40,8 @@ def prolongation(problem: Problem, model: Model, basis: Basis) -> csr_array:
     span = 10 * float(np.ptp(basis.mesh.p))
     tree = cKDTree(np.vstack([model.places[:2], span * model.places[2:]]).T)
     distance, nearest = tree.query(np.vstack([x, y, span * component]).T)
-    held = distance > 1e-9 * span
-    data = np.where(held, 0.0, sign)
+    coincident = distance > 1e-9 * span
+    data = np.where(coincident, 0.0, sign)
     return csr_array((data, (np.arange(basis.N), nearest)), shape=(basis.N, len(model.F)))
 
 

@@ -116,14 +116,14 @@ def from_file(problem: Problem) -> TaggedMesh:
 
 
 def _read(path: str) -> Mesh:
-    said = io.StringIO()  # meshio prints and exits where no reader of it takes the file
+    messages = io.StringIO()  # meshio prints and exits where no reader of it takes the file
     try:
-        with redirect_stdout(said), redirect_stderr(said):
+        with redirect_stdout(messages), redirect_stderr(messages):
             data = meshio.read(path)
             data.points = data.points[:, :2]
             mesh = from_meshio(data)
     except (Exception, SystemExit) as error:  # its readers raise anything at a file that is not whole
-        words = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+        words = " ".join(messages.getvalue().split()) or f"{type(error).__name__}: {error}"
         raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {words}") from error
     if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
         raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {type(mesh).__name__} in {path!r}")

@@ -216,15 +216,15 @@ def _plus(left: csr_array, right: csr_array) -> csr_array:
 
 def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:
     """The model with the unknowns of `keep` only, the others held at zero."""
-    kept = np.flatnonzero(keep)
+    unknowns = np.flatnonzero(keep)
     return replace(
         model,
-        M=model.M[kept][:, kept],
-        K=model.K[kept][:, kept],
-        F=model.F[kept],
-        base_force=model.base_force[kept],
-        observers={name: row[kept] for name, row in model.observers.items()},
-        places=model.places[:, kept],
+        M=model.M[unknowns][:, unknowns],
+        K=model.K[unknowns][:, unknowns],
+        F=model.F[unknowns],
+        base_force=model.base_force[unknowns],
+        observers={name: row[unknowns] for name, row in model.observers.items()},
+        places=model.places[:, unknowns],
     )
 
 

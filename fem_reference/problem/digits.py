@@ -19,16 +19,16 @@ INCOMPRESSIBLE = 1e4
 
 def warnings(problem: Problem) -> tuple[str, ...]:
     """Say in words where nine correct digits are not promised."""
-    found = []
+    messages = []
     ratio = problem.stiffness / problem.young
     if not SOFTEST <= ratio <= STIFFEST:
-        found.append(f"nine digits are kept only for p/E from {SOFTEST:g} to {STIFFEST:g}, here p/E = {ratio:.3g}")
+        messages.append(f"nine digits are kept only for p/E from {SOFTEST:g} to {STIFFEST:g}, here p/E = {ratio:.3g}")
     if problem.lame > INCOMPRESSIBLE * problem.shear_modulus:
-        found.append(
+        messages.append(
             f"nine digits are kept only for lam/G up to {INCOMPRESSIBLE:g}, here lam/G = "
             f"{problem.lame / problem.shear_modulus:.3g}: nearly incompressible"
         )
-    return tuple(found)
+    return tuple(messages)
 
 
 def front(problem: Problem, step: float) -> tuple[str, ...]:

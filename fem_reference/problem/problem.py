@@ -115,8 +115,8 @@ class Problem:
         _finite("shear_stiffness", self.shear_stiffness)
         _require(self.stiffness > 0, "stiffness", "must be positive", self.stiffness)
         _require(self.shear_stiffness >= 0, "shear_stiffness", "must not be negative", self.shear_stiffness)
-        known = self.foundation in FOUNDATIONS
-        _require(known, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
+        is_known = self.foundation in FOUNDATIONS
+        _require(is_known, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
         _require(self.cells in CELLS, "cells", f"must be one of {CELLS}", self.cells)
         w = self.patch_width
         if self.foundation == "patch":

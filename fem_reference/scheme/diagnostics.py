@@ -49,5 +49,5 @@ def _frequencies(problem: Problem, model: Model) -> Array:
         squares: Array = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)
     else:
         squares = np.append(lowest(model, 6)[0], highest_frequency(problem, model=model) ** 2)
-    found: Array = np.sqrt(np.abs(squares))
-    return found
+    frequencies: Array = np.sqrt(np.abs(squares))
+    return frequencies

@@ -48,18 +48,18 @@ def rates(frequencies: Array, scheme: Scheme, exact: bool = False) -> Complex:
 
 def _stepped(turn: Array, scheme: Scheme) -> Complex:
     """W2 dt^2 for w dt = `turn`; where the load moves nothing at all, as large as rounding lets it be."""
-    away, left, determinant = _cramer(turn, scheme)
-    return np.asarray(-away * left / determinant)
+    away, velocity_difference, determinant = _cramer(turn, scheme)
+    return np.asarray(-away * velocity_difference / determinant)
 
 
 def _cramer(turn: Array, scheme: Scheme) -> tuple[Complex, Complex, Complex]:
     """Z - 1, z - gg and the determinant, kept off zero."""
     # z - 1 = (cos - 1) + i sin, the real part as a square: no digit of a slow load is lost
     away = -2 * np.sin(turn / 2) ** 2 + 1j * np.sin(turn)
-    left = away + (1 - scheme.gg)
-    determinant = scheme.gg * (1 + scheme.delta * away) + left * (0.5 + scheme.alpha * away)
+    velocity_difference = away + (1 - scheme.gg)
+    determinant = scheme.gg * (1 + scheme.delta * away) + velocity_difference * (0.5 + scheme.alpha * away)
     least = np.finfo(float).eps
-    return away, left, np.where(abs(determinant) < least, least, determinant)
+    return away, velocity_difference, np.where(abs(determinant) < least, least, determinant)
 
 
 def answering(frequencies: Array, scheme: Scheme, exact: bool = False) -> tuple[Complex, Complex]:

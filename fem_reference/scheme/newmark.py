@@ -116,11 +116,13 @@ def _advance_damped(
     def C(x: Array) -> Array:
         return scheme.mass_damping * M(x) + scheme.stiffness_damping * K(x)
 
-    dt, way = scheme.step, predicted - state.D
+    dt, displacement = scheme.step, predicted - state.D
     slowed = scheme.gg * state.V + dt * (1 - scheme.delta) * state.A
-    held = F - C(slowed)
-    D = state.D + solve(M(way) + scheme.delta * dt * C(way) + scheme.alpha * dt**2 * (held - K(state.D)))
-    A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(held - K(D))
+    resisted = F - C(slowed)
+    D = state.D + solve(
+        M(displacement) + scheme.delta * dt * C(displacement) + scheme.alpha * dt**2 * (resisted - K(state.D))
+    )
+    A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(resisted - K(D))
     return State(D, velocity(state, A, scheme), A)
 
 

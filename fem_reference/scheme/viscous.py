@@ -36,8 +36,8 @@ def _roots(one: float, square: float, e: float | Array, scheme: Scheme) -> NDArr
     alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
     middle = square * (0.5 - alpha + gg * (delta - alpha)) + e * (1 - 2 * delta) - one * (1 + gg)
     last = one * gg + gg * square * (0.5 - delta + alpha) - e * (1 - delta)
-    found = np.roots([float(one + alpha * square + delta * e), float(middle), float(last)])
-    return np.asarray(np.resize(found if len(found) else 0.0, 2), complex)
+    roots = np.roots([float(one + alpha * square + delta * e), float(middle), float(last)])
+    return np.asarray(np.resize(roots if len(roots) else 0.0, 2), complex)
 
 
 def applicable(scheme: Scheme) -> str | None:
@@ -56,15 +56,15 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     """Sum over modes of weights times w^2 D under a unit load, at steps 1 to `steps`, shape (quantities, steps)."""
     k = omega * omega
     e = _viscosity(k, scheme)
-    left = 1 + scheme.delta * e + scheme.alpha * k
+    denominator = 1 + scheme.delta * e + scheme.alpha * k
     y, p = np.zeros_like(omega), np.zeros_like(omega)
     q = k.copy() if scheme.start == "consistent" else np.zeros_like(omega)  # dt^2 w^2 A
-    found = np.empty((len(weights), steps))
+    responses = np.empty((len(weights), steps))
     for n in range(steps):
         y, p = y + scheme.gg * p + (0.5 - scheme.alpha) * q, scheme.gg * p + (1 - scheme.delta) * q
-        q = (k * (1 - y) - e * p) / left
+        q = (k * (1 - y) - e * p) / denominator
         y, p = y + scheme.alpha * q, p + scheme.delta * q
         total = weights @ y
         rounding = ROUNDING * (np.abs(weights) @ np.abs(y))
-        found[:, n] = np.where(np.abs(total) <= rounding, 0.0, total)  # before a wave has come there is nothing
-    return found
+        responses[:, n] = np.where(np.abs(total) <= rounding, 0.0, total)  # before a wave has come there is nothing
+    return responses
