@@ -328,7 +328,10 @@ def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene: Scen
 
 def test_a_scene_that_is_not_for_the_solver_is_not_run(scene: Scene) -> None:
     run = completed(get_solver("plain_dda:sound"), scene.with_values({"block.poisson": 0.2}))
-    assert run.outcome is Outcome.NOT_APPLICABLE and "rectangle of Poisson's ratio 0 under a centred load only" in run.notes[0]
+    assert (
+        run.outcome is Outcome.NOT_APPLICABLE
+        and "rectangle of Poisson's ratio 0 under a centred load only" in run.notes[0]
+    )
 
 
 def test_the_time_limit_grows_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
