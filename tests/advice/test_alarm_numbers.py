@@ -17,6 +17,7 @@ from validation.report.appendix import alarms as appendix_alarms
 from validation.report.chapters import damping as chapters_damping
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
+from validation.theory import spectra
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
@@ -233,7 +234,7 @@ def test_a_budget_of_a_rate_takes_the_discount_of_each_step() -> None:
 )
 def test_a_wave_crosses_the_height_and_not_the_width(changes: dict[str, Any], speed: float) -> None:
     scene = oblong(**changes)
-    assert budget.transit(scene) == pytest.approx(3.0 / speed, rel=1e-12)
+    assert spectra.transit(scene) == pytest.approx(3.0 / speed, rel=1e-12)
     (found,) = budget.budgets([scene])
     assert found["limits"]["wave transit"] == pytest.approx(3.0 / speed, rel=1e-3)
 

@@ -21,6 +21,7 @@ from validation.report.front import closed, decisions, first
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.registry import get_solver
+from validation.theory import spectra, statics
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 OTHER = PAPER.with_values(
@@ -39,7 +40,7 @@ FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the pa
 @pytest.mark.parametrize("scene", [PAPER, OTHER])
 def test_a_damping_ratio_is_that_of_the_schemes_own_formulas(scene: Scene, values: dict[str, float]) -> None:
     changed = scene.with_values(values)
-    frequency, t = closed.spectra.dda_frequency(changed), changed.time
+    frequency, t = spectra.dda_frequency(changed), changed.time
     wanted = float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
     assert closed.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
     assert math.isnan(closed.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
@@ -68,7 +69,7 @@ def test_what_a_discount_does_is_what_the_scheme_does() -> None:
     rate = closed.rate_for(PAPER, 0.05)
     held = light.with_values({"time.gg": 1.0}).with_values({"time.gg_rate": rate, "time.step": 1e-5})
     assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
-    assert closed.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
+    assert spectra.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
     assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
 
 
@@ -76,7 +77,7 @@ def test_a_wave_runs_through_the_height_and_the_load_stands_on_the_width() -> No
     data = PAPER.definition()
     del data["block"]["side"]
     oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
-    assert closed.transit(oblong) == pytest.approx(1.25 / math.sqrt(1e9 / 2700))
+    assert spectra.transit(oblong) == pytest.approx(1.25 / math.sqrt(1e9 / 2700))
     assert closed.penetration(oblong) == pytest.approx(3.0 * 5e6 / (2 * 1e9))
 
 
@@ -275,7 +276,7 @@ def test_the_table_of_discounts_is_that_of_the_scheme() -> None:
 def test_the_rule_on_springs_names_a_step_below_which_the_contact_does_not_flip() -> None:
     """4 / w of the contact mode, w = 8658 rad/s at p = 100E: 0.462 ms, as the table says."""
     stiff = closed.stiffer(PAPER, 100.0)
-    w = closed.spectra.contact_frequency(stiff)
+    w = spectra.contact_frequency(stiff)
     below, above = (spectral.eigenvalues(w * step, 0.5, 1.0, 1.0) for step in (0.46e-3, 0.4625e-3))
     assert np.abs(np.imag(below)).max() > 0 and np.abs(np.imag(above)).max() == 0
 
@@ -291,14 +292,14 @@ def test_how_far_springs_give_way_depends_on_the_shape(width: float, height: flo
     scene = closed.stiffer(parse_scene(data | {"block": data["block"] | {"width": width, "height": height}}, "s"), 10)
     q, p, E = 5e6, 1e10, 1e9
     springs, block = width * q / (2 * p), height * q / (2 * E)
-    assert closed.statics.static_displacement(scene) == pytest.approx(-springs - block)
+    assert statics.static_displacement(scene) == pytest.approx(-springs - block)
     assert closed.spring_share(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
 
 
 @pytest.mark.parametrize("ratio", [10.0, 100.0])
 def test_the_contact_flips_each_step_beyond_four_over_its_frequency_and_not_before(ratio: float) -> None:
     scene = closed.stiffer(PAPER, ratio)
-    w, limit = closed.spectra.contact_frequency(scene), closed.sign_change_step(scene)
+    w, limit = spectra.contact_frequency(scene), closed.sign_change_step(scene)
     for step, flips in ((0.99 * limit, False), (1.01 * limit, True), (2e-3, True)):
         root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
         nearest = root[np.argmin(np.real(root))]

@@ -13,14 +13,14 @@ from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
-from validation.theory import landing
+from validation.theory import landing, spectra
 
 UNLOADED = (
     load_scene("impact")
     .expand()[0]
     .with_values({"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0})
 )
-TRANSIT = landing.transit(UNLOADED)
+TRANSIT = spectra.transit(UNLOADED)
 SCHEMES = (
     {"time.alpha": 0.5, "time.delta": 1.0},
     {"time.alpha": 0.25, "time.delta": 0.5},

@@ -20,7 +20,7 @@ from validation.runs.history import Array
 from validation.runs.modes import contact_index
 from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
-from validation.theory import spectra, statics
+from validation.theory import spectra
 
 POINTS = 161
 LOWEST = 1e-3  # w dt of the first axial mode at which the range of dt begins
@@ -120,15 +120,8 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
         limits["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])
     if total[0] >= 1 and (total < 1).any():
         limits["overdamped below"] = float(fine[int(np.argmax(total < 1))])
-    limits["wave transit"] = transit(scene)
+    limits["wave transit"] = spectra.transit(scene)
     return {name: float(f"{value:.4g}") for name, value in limits.items()}
-
-
-def transit(scene: Scene) -> float:
-    """Time h / c of an axial wave through the block's height [s], c = sqrt(E' / rho)."""
-    E, _ = statics.moduli(scene)
-    height = np.ptp([y for _, y in scene.block.outline])
-    return float(height) / math.sqrt(E / scene.block.density)
 
 
 def _floor(scene: Scene, first: float) -> float | None:

@@ -14,7 +14,7 @@ from typing import Any
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.events import rectangle
-from validation.theory import landing, statics
+from validation.theory import landing, spectra, statics
 
 RAISES = 8  # of p, at most, until the exact block stays above the requested penetration
 LEAST_RAISE = 1.2  # factor on p
@@ -64,7 +64,7 @@ def restitution(
     ratio = landing.stiffness_ratio(scene, stiffness)
     if step is None:
         step = scene.time.step
-    return landing.stepped_landing(scheme, ratio, step, landing.transit(scene))
+    return landing.stepped_landing(scheme, ratio, step, spectra.transit(scene))
 
 
 def hidden_from(scene: Scene) -> float | None:
@@ -78,12 +78,12 @@ def hidden_from(scene: Scene) -> float | None:
     """
     t = scene.time
     load = scene.load
-    height = landing.height(scene)
+    height = statics.height(scene)
     weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
     from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
     if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
         return None
-    free = landing.transit(scene) / math.sqrt(6 * t.alpha)
+    free = spectra.transit(scene) / math.sqrt(6 * t.alpha)
     return free * math.sqrt((1 - weight / 2) / (1 + weight))
 
 
@@ -164,7 +164,7 @@ def allowed_steps(scene: Scene, error: float, stiffness: float | None = None) ->
     ratio = landing.stiffness_ratio(scene, stiffness)
     if scheme is None or math.isinf(ratio):
         return None
-    return landing.allowed_steps(scheme, ratio, landing.transit(scene), error)
+    return landing.allowed_steps(scheme, ratio, spectra.transit(scene), error)
 
 
 def as_dict(needs: Needed) -> dict[str, Any]:

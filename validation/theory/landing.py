@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
-from validation.theory import statics
+from validation.theory import spectra, statics
 
 PHASES = np.linspace(0.0, 1.0, 33)
 """Landings within a step: e is continuous in the phase and made of straight lines, so that ends and kinks count."""
@@ -65,22 +65,11 @@ def whole_mass_frequency(scene: Scene, stiffness: float | None = None) -> float:
     return quarter_mass_frequency(scene, stiffness) / 2
 
 
-def transit(scene: Scene) -> float:
-    """Return the time h / c of a wave through the height of the block [s]."""
-    modulus, _ = statics.moduli(scene)
-    return height(scene) * math.sqrt(scene.block.density / modulus)
-
-
-def height(scene: Scene) -> float:
-    """Return the height of the block [m]."""
-    return float(np.ptp([y for _, y in scene.block.outline]))
-
-
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
     """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
     modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
-    return 2 * p * height(scene) / (modulus * scene.block.base_length)
+    return 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
 
 
 # ---- the block's own landing --------------------------------------------------------------------------------------
@@ -239,7 +228,7 @@ def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
     ratio = stiffness_ratio(scene, stiffness)
     if math.isinf(ratio):
         return math.inf
-    return math.pi / own_landing(ratio).duration / transit(scene)
+    return math.pi / own_landing(ratio).duration / spectra.transit(scene)
 
 
 # ---- the landing of a time step ------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ import numpy as np
 
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
-from validation.theory.statics import moduli, size
+from validation.theory.statics import height, moduli, size
 
 EPS = 2.0**-52
 
@@ -102,6 +102,12 @@ def mesh_frequency_error(scene: Scene) -> float:
     b = bar_frequency(scene) * size(scene)[1] / math.sqrt(E / scene.block.density)
     wave, turn = b / scene.fem.per_side, math.sin(2 * b) / (2 * b)
     return wave**2 / 24 if scene.fem.degree == 1 else wave**4 / 1440 * (1 - turn) / (1 + turn)
+
+
+def transit(scene: Scene) -> float:
+    """Return the time h / c of a wave through the height of the block [s]."""
+    modulus, _ = moduli(scene)
+    return height(scene) * math.sqrt(scene.block.density / modulus)
 
 
 def elements_per_front(scene: Scene) -> float:

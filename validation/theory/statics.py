@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from validation.scenes.scene import Scene
 
 
@@ -18,6 +20,11 @@ def size(scene: Scene) -> tuple[float, float]:
     """Width and height of the rectangle [m]."""
     (x0, y0), (x1, _), (_, y2), _ = scene.block.outline
     return x1 - x0, y2 - y0
+
+
+def height(scene: Scene) -> float:
+    """Return the height of the block [m]."""
+    return float(np.ptp([y for _, y in scene.block.outline]))
 
 
 def static_displacement(scene: Scene) -> float:

@@ -99,12 +99,6 @@ def overdamped_below(scene: Scene) -> float | None:
     return float(brentq(swings, middle / 4, 4 * middle))
 
 
-def transit(scene: Scene) -> float:
-    """Return the time [s] that a wave takes from the top to the base."""
-    E, _ = statics.moduli(scene)
-    return statics.size(scene)[1] / math.sqrt(E / scene.block.density)
-
-
 def contact_radius(scene: Scene) -> float:
     """Return |lambda| of the contact mode over one step."""
     return spectra.spectral_radius(scene, spectra.contact_frequency(scene))

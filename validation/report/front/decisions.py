@@ -53,7 +53,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     ]
     greatest = max(float(np.nanmax(line.y)) for line in lines)
     turn = closed.most_damped(scenes[0])
-    transit = 1e3 * closed.transit(paper)
+    transit = 1e3 * spectra.transit(paper)
     chart = Chart(
         "Damping ratio of the first axial mode [%], constant acceleration",
         ("time step dt [ms]", ""),

@@ -132,12 +132,16 @@ class AtRest:
         return abs(self.value - expected) <= self.half_width
 
 
+def misread_displacement(scene: Scene, misreading: Misreading) -> float:
+    """Return where the centroid rests in the scene that such a solver takes for this one [m]."""
+    return displacement_at_rest(scene.with_values(misreading.values(scene)))
+
+
 def is_misread(scene: Scene, misreading: Misreading) -> bool:
     """Whether a misreading changes where a scene rests, so that its gates may fail for no other reason."""
     if scene.block.vertices is not None or scene.load.pressure == 0:
         return False
-    expected = displacement_at_rest(scene.with_values(misreading.values(scene)))
-    return not math.isclose(expected, displacement_at_rest(scene), rel_tol=ROUNDED)
+    return not math.isclose(misread_displacement(scene, misreading), displacement_at_rest(scene), rel_tol=ROUNDED)
 
 
 def misreadings(measured: Sequence[AtRest]) -> dict[Misreading, list[str]]:
@@ -152,7 +156,7 @@ def misreadings(measured: Sequence[AtRest]) -> dict[Misreading, list[str]]:
         shows, holds = [], True
         for one in measured:
             scene = by_name[one.scene]
-            expected = displacement_at_rest(scene.with_values(misreading.values(scene)))
+            expected = misread_displacement(scene, misreading)
             if not math.isclose(expected, displacement_at_rest(scene), abs_tol=one.half_width):
                 shows.append(one.scene)
                 holds = holds and one.is_at(expected)
