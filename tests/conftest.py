@@ -1,5 +1,6 @@
 """Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
 
+import copy
 import gc
 import importlib
 import io
@@ -8,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
@@ -21,7 +23,7 @@ if rewriting := [finder for finder in sys.meta_path if hasattr(finder, "_must_re
     rewriting[0]._must_rewrite -= {"dda", "fem_reference", "validation"}
 
 from validation.runs.results import Results
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene, load_scene, parse_scene
 
 SCENE = """\
 title = "A small scene"
@@ -286,6 +288,15 @@ def scene_file(tmp_path: Path) -> Path:
 @pytest.fixture
 def scene(scene_file: Path) -> Scene:
     return load_scene(scene_file)
+
+
+def scene_of(**changes: object) -> Scene:
+    """Return the small scene with other values, each named by its section, two underscores and its key."""
+    data = copy.deepcopy(tomllib.loads(SCENE))
+    for name, value in changes.items():
+        section, _, key = name.partition("__")
+        data.setdefault(section, {})[key] = value
+    return parse_scene(data, "x.toml")
 
 
 def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:

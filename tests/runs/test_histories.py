@@ -1,0 +1,41 @@
+"""Histories, their files and modes of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from validation.runs.files import read_csv, write_csv
+from validation.runs.history import History
+from validation.runs.modes import Mode, contact_index
+
+
+def test_a_history_until_an_instant_has_its_step_however_it_is_rounded() -> None:
+    history = History(0.1 * np.arange(1, 11), {"displacement": np.arange(10.0)})  # 0.1 * 3 is above 0.3
+    for end, count in ((0.3, 3), (0.6, 6), (0.65, 6), (0.05, 0), (2.0, 10)):
+        until = history.until(end)
+        assert len(until.time) == len(until.displacement) == count
+
+
+def test_a_history_is_written_to_the_last_bit(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    history = History(
+        np.arange(1.0, 9.0) / 3, {"displacement": rng.standard_normal(8) * 1e-7, "rotation": 1 / rng.random(8)}
+    )
+    write_csv(history, tmp_path / "h.csv")
+    read = read_csv(tmp_path / "h.csv")
+    assert np.array_equal(read.time, history.time) and list(read.columns) == ["displacement", "rotation"]
+    assert all(np.array_equal(read.columns[name], values) for name, values in history.columns.items())
+    assert (tmp_path / "h.csv").read_text().startswith("time,displacement,rotation\n")
+
+
+def mode(share: float | None, *eigenvalues: complex) -> Mode:
+    first, second = eigenvalues or (1.0, 0.5)
+    return Mode(1.0, 1.0, (complex(first), complex(second)), share)
+
+
+def test_radius_and_contact_mode() -> None:
+    assert mode(None, 0.3, -0.9).spectral_radius == 0.9 and mode(None, 0.6 + 0.8j, 0.1).spectral_radius == 1.0
+    assert contact_index([mode(0.9), mode(0.1), mode(-0.4), mode(0.3)]) == 2
+    assert contact_index([mode(0.9)]) is None and contact_index([mode(None), mode(0.1)]) is None

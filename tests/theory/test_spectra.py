@@ -1,0 +1,158 @@
+"""Closed forms of block, bar and elements against eigenvalues and stepped modes of their own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from validation.scenes.scene import Scene, load_scene
+from validation.theory import spectra as expected
+from validation.theory import statics
+
+OBLONG = {"block.width": 0.7, "block.height": 3.1, "contact.stiffness": 4e8, "block.young": 6e8}
+
+
+@pytest.fixture
+def oblong(scene: Scene) -> Scene:
+    return scene.with_values(OBLONG)
+
+
+def two_unknowns(scene: Scene) -> np.ndarray:
+    """Return the frequencies of (v, ey): the springs' stretch is v - h ey / 2."""
+    w, h = statics.size(scene)
+    m, p, E = scene.block.density * w * h, scene.contact.stiffness, scene.block.young
+    K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
+    return np.sqrt(eigh(K, m * np.diag([1, h * h / 12]), eigvals_only=True))
+
+
+def test_both_frequencies_of_an_oblong_block(oblong: Scene) -> None:
+    first, second = two_unknowns(oblong)
+    assert expected.dda_frequency(oblong) == pytest.approx(first, rel=1e-12)
+    assert expected.contact_frequency(oblong) == pytest.approx(second, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "delta", "gg", "limit"),
+    [
+        (0.0, 0.5, 1.0, 2.0),  # central differences
+        (1 / 6, 0.5, 1.0, 2 * math.sqrt(3)),  # linear acceleration
+        (1 / 12, 0.5, 1.0, math.sqrt(6)),  # Fox-Goodwin
+        (0.0, 0.7, 1.0, 1 / math.sqrt(0.35)),
+        (0.0, 0.7, 0.9, math.sqrt(3.8 / (0.5 + 0.9 * 0.9))),
+        (0.25, 0.5, 1.0, math.inf),
+        (0.5, 1.0, 0.95, math.inf),
+    ],
+)
+def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(
+    scene: Scene, alpha: float, delta: float, gg: float, limit: float
+) -> None:
+    case = scene.with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
+    assert expected.critical_omega(case) == pytest.approx(limit, rel=1e-12)
+    if math.isfinite(limit):
+        for factor, stable in ((0.9999, True), (1.0001, False)):
+            frequency = factor * limit / case.time.step
+            assert (expected.spectral_radius(case, frequency) <= 1 + 1e-12) is stable
+
+
+def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
+    case = oblong.with_values({"time.steps": 7, "time.gg": 0.9})
+    radii = []
+    for w in two_unknowns(case):
+        h = (w * case.time.step) ** 2 / (1 + 0.5 * (w * case.time.step) ** 2)
+        radii.append(np.max(np.abs(np.roots([1, -(1 - h / 2 + 0.9 * (1 - h)), 0.9 * (1 - h / 2)]))))
+    assert expected.remaining_motion(case) == pytest.approx(max(radii) ** 7, rel=1e-10)
+
+
+def bar_matrices(scene: Scene, n: int, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return M and K of n linear or quadratic bar elements on the base spring 2 p."""
+    w, h = statics.size(scene)
+    rho, E, length = scene.block.density, scene.block.young, h / n
+    if degree == 1:
+        mass, stiff = np.array([[2, 1], [1, 2]]) / 6, np.array([[1, -1], [-1, 1]])
+    else:
+        mass = np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30
+        stiff = np.array([[7, -8, 1], [-8, 16, -8], [1, -8, 7]]) / 3
+    M, K = np.zeros((2, degree * n + 1, degree * n + 1))
+    for i in range(n):
+        part = slice(degree * i, degree * (i + 1) + 1)
+        M[part, part] += rho * w * length * mass
+        K[part, part] += E * w / length * stiff
+    K[0, 0] += 2 * scene.contact.stiffness
+    return M, K
+
+
+@pytest.mark.parametrize(("degree", "n", "band"), [(1, 20, 0.02), (2, 6, 0.05)])
+def test_elements_overestimate_the_first_frequency_as_predicted(
+    oblong: Scene, degree: int, n: int, band: float
+) -> None:
+    """The leading term of the error; the next one is (b / n)^2 of it."""
+    case = oblong.with_values({"fem.elements": n, "fem.degree": degree})
+    M, K = bar_matrices(case, n, degree)
+    error = math.sqrt(eigh(K, M, eigvals_only=True)[0]) / expected.bar_frequency(case) - 1
+    assert expected.mesh_frequency_error(case) == pytest.approx(error, rel=band)
+
+
+def test_elements_that_the_front_passes_in_a_step(oblong: Scene) -> None:
+    """It is c dt n / h with c = sqrt(E / rho)."""
+    case = oblong.with_values({"fem.elements": 12})
+    assert expected.elements_per_front(case) == pytest.approx(math.sqrt(6e8 / 2700) * 0.002 * 12 / 3.1, rel=1e-12)
+
+
+def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:
+    w, h = statics.size(oblong)
+    b = expected.bar_modes(oblong, 4000)
+    ratio = 2 * 4e8 * h / (6e8 * w)
+    assert np.abs(b[:50] * np.tan(b[:50]) / ratio - 1).max() <= 1e-11
+    assert np.all((b > np.pi * np.arange(4000)) & (b < np.pi * (np.arange(4000) + 0.5)))
+    # static values: the displacement's shares fall as 1 / b^2, the pressure's alternate as 1 / b
+    assert expected.bar_shares(oblong, "displacement", b).sum() == pytest.approx(1.0, abs=1e-4)
+    pressure = np.cumsum(expected.bar_shares(oblong, "contact_pressure", b))
+    assert (pressure[-1] + pressure[-2]) / 2 == pytest.approx(1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+def test_the_response_of_a_mode_is_the_scheme_s(scene: Scene, start: str) -> None:
+    case = scene.with_values({"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.97, "time.start": start})
+    omega, t = np.array([0.1, 1.0, 7.0]), case.time
+    found = expected.bar_response(case, omega)
+    D, V = np.zeros(3), np.zeros(3)
+    A = omega**2 if start == "consistent" else np.zeros(3)
+    for n in range(t.steps):
+        ahead = D + t.discount * V + (0.5 - t.alpha) * A
+        new = omega**2 * (1 - ahead) / (1 + t.alpha * omega**2)
+        D = ahead + t.alpha * new
+        V, A = t.discount * V + (1 - t.delta) * A + t.delta * new, new
+        np.testing.assert_allclose(found[n], D, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "pressure"])
+@pytest.mark.parametrize("name", ["figure-8[time.alpha=0.25,time.delta=0.5]", "figure-9[time.gg=0.95]"])
+def test_the_predicted_error_of_quadratic_elements_is_theirs(name: str, quantity: str) -> None:
+    """Own quadratic elements, mode by mode, against the bar, where motion lasts and its phase is what is wrong.
+
+    The prediction has the leading term of each mode alone, and not the error of its share.
+    """
+    case = next(case for case in load_scene(name.partition("[")[0]).expand() if case.name == name)
+    n, t = case.fem.per_side, case.time
+    M, K = bar_matrices(case, n, 2)
+    squares, shapes = eigh(K, M)
+    w, h = statics.size(case)
+    F = np.zeros(len(M))
+    F[-1] = -case.load.pressure * w
+    row = np.zeros(len(M))
+    if quantity == "displacement":
+        row[n] = 1.0  # 2 n + 1 nodes: the middle one
+    else:
+        row[0] = -2 * case.contact.stiffness / w
+    weights = (row @ shapes) * (shapes.T @ F) / squares
+    mesh = expected.bar_response(case, np.sqrt(squares) * t.step) @ weights
+    b = expected.bar_modes(case, 40 * n)
+    static = row @ np.linalg.solve(K, F)
+    shares = expected.bar_shares(case, quantity, b)
+    speed = math.sqrt(case.block.young / case.block.density)
+    bar = static * (expected.bar_response(case, b / h * speed * t.step) @ shares + (1 - shares.sum()))
+    error = np.linalg.norm(mesh - bar) / np.linalg.norm(bar)
+    assert expected.mesh_error(case)[quantity] == pytest.approx(error, rel=0.2)
