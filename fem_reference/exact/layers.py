@@ -110,9 +110,8 @@ def _descend(ground: Ground, heights: Sequence[float], w2: Complex, state: State
                 state = across(joints.pop(0)[1], state)
             elif requested and requested[0][0] >= level - NEAR * total:
                 yield requested.pop(0)[1], state
-            elif level <= end + NEAR * total:
-                break
-            level = max(level, end)
+            else:
+                break  # the layer's bottom is reached
     if joints:
         state = across(joints.pop(0)[1], state)
     yield -1, state
