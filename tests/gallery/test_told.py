@@ -13,6 +13,7 @@ import pytest
 from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.errors import InputError
+from validation.gallery import cases as cases_of_gallery
 from validation.gallery import chapters, judged, pages, scene_data, verdicts, work
 from validation.gallery.calculators import BLOCK, CALCULATORS, Control
 from validation.gallery.cases import GalleryCase, GalleryScene, GalleryStudy, studies_and_scenes
@@ -33,6 +34,18 @@ CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 
 def test_a_thinned_history_is_drawn_at_the_begin_and_the_middle_of_each_part() -> None:
     sampling = Sampling(1000, 20)  # ten parts of a hundred steps
     assert sampling.times(np.arange(1000.0)).tolist() == [i * 50.0 for i in range(20)]
+
+
+def test_no_two_pages_share_a_file_whatever_the_letters_case() -> None:
+    page = cases_of_gallery._pages()
+    titles = ["Figure 7", "figure 7", "Figure/7", "..", "x" * 200]
+    assert [page("scene", title) for title in titles] == [
+        "scene-Figure-7.html",
+        "scene-figure-7-2.html",
+        "scene-Figure-7-3.html",
+        "scene-unnamed.html",
+        f"scene-{'x' * 94}.html",
+    ]
 
 
 # ---- verdicts -----------------------------------------------------------------------------------------------------

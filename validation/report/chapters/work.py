@@ -73,7 +73,8 @@ def floor_sentence(runs: Sequence[Point]) -> str:
     p = floor(runs, "contact pressure", "continuum")
     if v is None or p is None:
         return "DDA was not run."
-    window = " to ".join(sorted({short(run.scene.time.duration, 3) for run in runs}))
+    durations = [run.scene.time.duration for run in runs]
+    window = " to ".join(dict.fromkeys(short(end, 3) for end in (min(durations), max(durations))))
     return (
         f"At the finest step DDA is {percent(v)} from the continuum in displacement and {percent(p)} in contact "
         f"pressure (relative L2 over {window}\u00a0s): its model form, which no finer step removes."
