@@ -14,8 +14,9 @@ from conftest import SCENE
 from validation import solve
 from validation.cli.entry import app
 from validation.scenes.scene import parse_scene
+from validation.solvers.names import check_names
 from validation.solvers.registry import BUILT_IN
-from validation.studies.catalogue import STUDIES, check_words
+from validation.studies.catalogue import STUDIES
 
 ROOT = Path(__file__).parents[2]
 PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
@@ -53,7 +54,7 @@ def test_tables_of_scenes_load(page: str, tmp_path: Path) -> None:
         for name, table in tomllib.loads(text.replace('"record.csv"', f"'{tmp_path}/record.csv'")).items():
             data[name] = {**data.get(name, {}), **table} if isinstance(table, dict) else table
         scene = parse_scene(data, page)
-        check_words(scene, page)
+        check_names(scene, page)
         run = solve(scene.expand()[0], "dda")
         assert run.history is not None and set(scene.run.columns) == set(run.history.columns)
 

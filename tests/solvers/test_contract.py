@@ -21,9 +21,9 @@ from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers import registry
 from validation.solvers.contract import Role, Solver
+from validation.solvers.names import check_names
 from validation.solvers.registry import by_role, get_solver, role, solver_names
 from validation.studies import Study
-from validation.studies.catalogue import check_words
 
 JOINTS = "rusty joints"
 OWN = (  # a solver that is added leaves the roles of these as they are
@@ -90,9 +90,9 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Sce
     gate = {"pair": ["jointed"], "metric": "mode1.frequency", "band": [0.0, 1e9], "reason": "a test"}
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
     with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
-        check_words(asked, "mine.toml")
+        check_names(asked, "mine.toml")
     swept = parse_scene(asked.definition() | {"sweep": {"block.density": [7.0, 8.0]}}, "mine.toml")
-    check_words(swept, "mine.toml")  # one of its cases is linear
+    check_names(swept, "mine.toml")  # one of its cases is linear
 
 
 def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:

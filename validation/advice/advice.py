@@ -171,14 +171,16 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     [0.000584]
     """
     if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
-        raise InputError(f"damping: must be a damping ratio of at least 0, got {damping!r}")
+        raise InputError("must be a damping ratio of at least 0", field="damping", value=repr(damping))
     if damping > LARGEST_RATIO:
         raise InputError(
-            f"damping: must be a damping ratio from 0 to {LARGEST_RATIO:g}, where 1 is critical, got {damping:g}; "
-            f"{damping:g} % is {damping / 100:g}"
+            f"must be a damping ratio from 0 to {LARGEST_RATIO:g}, where 1 is critical",
+            field="damping",
+            value=f"{damping:g}",
+            advice=f"{damping:g} % is {damping / 100:g}",
         )
     if solve_for not in KINDS:
-        raise InputError(f"solve_for: must be one of {', '.join(KINDS)}, got {solve_for!r}")
+        raise InputError(f"must be one of {', '.join(KINDS)}", field="solve_for", value=repr(solve_for))
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
     highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only

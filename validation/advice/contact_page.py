@@ -75,8 +75,11 @@ def scenes(scene: Scene) -> dict[str, Scene]:
     features.refuse_column(scene, "contact")
     if features.UNILATERAL not in features.of(scene):
         raise InputError(
-            f"{scene.name}: contact.law: must be unilateral for the command contact, got locked, which neither opens "
-            "nor lands; unlock it with --set contact.law=unilateral"
+            "must be unilateral for the command contact",
+            source=scene.name,
+            field="contact.law",
+            value="locked, which neither opens nor lands",
+            advice="unlock it with --set contact.law=unilateral",
         )
     along = ["horizontal_displacement"] if features.FRICTION in features.of(scene) else []
     plain = scene.with_values({"run.columns": ["displacement", "contact_pressure", *along]})

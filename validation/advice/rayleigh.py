@@ -84,13 +84,15 @@ def scheme_of(values: Mapping[str, float]) -> Stepping:
         The step is absent, or a number is out of range.
     """
     if "step" not in values:
-        raise InputError("dt: is required, got none; name a scene or give --dt")
+        raise InputError("is required", field="dt", value="none", advice="name a scene or give --dt")
     for name, value in values.items():
         low_open = name == "step"
         if not (math.isfinite(value) and value >= 0 and not (low_open and value == 0)):
-            raise InputError(f"{name}: must be finite and {'positive' if low_open else 'not negative'}, got {value:g}")
+            raise InputError(
+                f"must be finite and {('positive' if low_open else 'not negative')}", field=name, value=f"{value:g}"
+            )
     if values.get("gg", 1.0) > 1:
-        raise InputError(f"gg: must be from 0 to 1, got {values['gg']:g}")
+        raise InputError("must be from 0 to 1", field="gg", value=f"{values['gg']:g}")
     return Stepping(**values)
 
 
@@ -106,14 +108,16 @@ def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Poi
     if both and texts:
         raise InputError("--ratio and --a0, --a1 exclude each other, got both")
     if not both and len(texts) != 2:
-        raise InputError(f"--ratio: must be given twice, got {len(texts)} of them")
+        raise InputError("must be given twice", field="--ratio", value=f"{len(texts)} of them")
     pairs = []
     for text in texts:
         parts = text.split("=")
         try:
             f, xi = map(float, parts)
         except ValueError:
-            raise InputError(f"--ratio: must be a frequency and a ratio, as in 5=0.02, got {text!r}") from None
+            raise InputError(
+                "must be a frequency and a ratio, as in 5=0.02", field="--ratio", value=repr(text)
+            ) from None
         pairs.append((f, xi))
     return pairs
 
@@ -124,7 +128,7 @@ def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayle
         return Rayleigh.through(points[0], points[1])
     target = Rayleigh(a0 or 0.0, a1 or 0.0)
     if not (math.isfinite(target.a0) and math.isfinite(target.a1)):
-        raise InputError(f"damping: a0 and a1 must be finite, got {target.a0:g} and {target.a1:g}")
+        raise InputError("a0 and a1 must be finite", field="damping", value=f"{target.a0:g} and {target.a1:g}")
     return target
 
 
@@ -146,8 +150,11 @@ def check_sampled(frequency: float, step: float, field: str) -> None:
     limit = 0.5 / step
     if frequency > limit * (1 + 1e-12):
         raise InputError(
-            f"{field}: must be at most {limit:.6g} Hz, 1 / (2 dt) of the time step {step:g} s, beyond which the steps "
-            f"see an alias, got {frequency:g}; take a lower frequency or a smaller step"
+            f"must be at most {limit:.6g} Hz, 1 / (2 dt) of the time step {step:g} s, "
+            "beyond which the steps see an alias",
+            field=field,
+            value=f"{frequency:g}",
+            advice="take a lower frequency or a smaller step",
         )
 
 
@@ -190,8 +197,9 @@ def settings(target: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
     if target.a0 < 0 or target.a1 < 0:
         part = "mass" if target.a0 < 0 else "stiffness"
         raise InputError(
-            f"damping: to leading order in w dt no scheme hides a negative {part} part, got a0 = {target.a0:g}, "
-            f"a1 = {target.a1:g}"
+            f"to leading order in w dt no scheme hides a negative {part} part",
+            field="damping",
+            value=f"a0 = {target.a0:g}, a1 = {target.a1:g}",
         )
     if keep_step:
         delta = 0.5 + target.a1 / scheme.step
@@ -200,8 +208,9 @@ def settings(target: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
         stepping = scheme  # any step does
     elif target.a1 == 0 or scheme.delta <= 0.5:
         raise InputError(
-            f"delta: {scheme.delta:g} hides, to leading order, no a1 = {target.a1:g} s at any step; "
-            "keep dt and vary delta"
+            f"{scheme.delta:g} hides, to leading order, no a1 = {target.a1:g} s at any step",
+            field="delta",
+            advice="keep dt and vary delta",
         )
     else:
         stepping = replace(scheme, step=target.a1 / (scheme.delta - 0.5))
@@ -209,7 +218,8 @@ def settings(target: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
     gg = (1 - half) / (1 + half)
     if gg <= 0:
         raise InputError(
-            f"damping: a0 = {target.a0:g} 1/s takes more than the whole velocity in a step of {stepping.step:g} s"
+            f"a0 = {target.a0:g} 1/s takes more than the whole velocity in a step of {stepping.step:g} s",
+            field="damping",
         )
     return replace(stepping, gg=gg)
 
@@ -258,7 +268,9 @@ def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: boo
         if misfit(edge, first, second) <= WRITTEN:
             return edge
         fixed = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
-        raise InputError(f"damping: no scheme with {fixed} has these two ratios; ask for smaller or closer ones")
+        raise InputError(
+            f"no scheme with {fixed} has these two ratios", field="damping", advice="ask for smaller or closer ones"
+        )
     return min(solutions, key=lambda solution: (solution.delta, solution.step))
 
 
@@ -334,8 +346,8 @@ def _check_points(*points: Point) -> None:
     """Refuse frequencies and ratios out of range."""
     for f, xi in points:
         if not (math.isfinite(f) and f > 0):
-            raise InputError(f"damping: a frequency must be finite and positive, got {f:g}")
+            raise InputError("a frequency must be finite and positive", field="damping", value=f"{f:g}")
         if not (math.isfinite(xi) and 0 <= xi < 1):
-            raise InputError(f"damping: a ratio must be from 0 to below 1, got {xi:g}")
+            raise InputError("a ratio must be from 0 to below 1", field="damping", value=f"{xi:g}")
     if len({f for f, _ in points}) < len(points):
-        raise InputError(f"damping: two frequencies must differ, got {points[0][0]:g} twice")
+        raise InputError("two frequencies must differ", field="damping", value=f"{points[0][0]:g} twice")

@@ -105,15 +105,18 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     check_scene(scene)
     if scene.column is not None and scene.column.impedance is not None and not np.all(f > 0):
         raise InputError(
-            f"{scene.name}: frequencies: must be above 0 on a transmitting base, which has no static stiffness, got 0"
+            "must be above 0 on a transmitting base, which has no static stiffness",
+            source=scene.name,
+            field="frequencies",
+            value="0",
         )
     chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):
-        raise InputError(f"{scene.name}: solver {chosen.name} does not apply: {reason}")
+        raise InputError(f"solver {chosen.name} does not apply: {reason}", source=scene.name)
     try:
         amplitudes = chosen.prepare(scene).response(f, exact)
     except NotReported as error:
-        raise InputError(f"{scene.name}: solver {chosen.name}: {error}") from None
+        raise InputError(f"solver {chosen.name}: {error}", source=scene.name) from None
     base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
     columns = {name: amplitudes[name] for name in (DISPLACEMENT, PRESSURE)}
     return Response(scene.name, chosen.name, exact, base, f, columns)
@@ -129,8 +132,8 @@ def _checked(frequencies: ArrayLike) -> Array:
     """Return frequencies as an array, or refuse them."""
     f = np.atleast_1d(np.asarray(frequencies, float))
     if f.ndim != 1 or f.size == 0:
-        raise InputError(f"frequencies: must be a list of numbers, got shape {f.shape}")
+        raise InputError("must be a list of numbers", field="frequencies", value=f"shape {f.shape}")
     wrong = f[~(np.isfinite(f) & (f >= 0))]
     if wrong.size:
-        raise InputError(f"frequencies: must be finite and not negative, got {wrong[0]:g}")
+        raise InputError("must be finite and not negative", field="frequencies", value=f"{wrong[0]:g}")
     return f

@@ -220,7 +220,12 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
     points = b.outline
     upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
     if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
-        raise InputError(f"{scene.name}: block: must be an upright rectangle on its lower edge for a wave, got another")
+        raise InputError(
+            "must be an upright rectangle on its lower edge for a wave",
+            source=scene.name,
+            field="block",
+            value="another",
+        )
     width, height = statics.size(scene)
     modulus, _ = statics.moduli(scene)
     if b.subdivide is None:
@@ -406,10 +411,10 @@ def _advised(scene: Scene, advised: Passage | None, height: str, largest: _Large
 def _check(frequency: float, loss: float, wavelengths: float | None, phase_error: float) -> None:
     """Refuse numbers out of range."""
     if not (math.isfinite(frequency) and frequency > 0):
-        raise InputError(f"--fmax: must be finite and positive, got {frequency:g}")
+        raise InputError("must be finite and positive", field="--fmax", value=f"{frequency:g}")
     if not 0 < loss < 1:
-        raise InputError(f"--loss: must be above 0 and below 1, got {loss:g}")
+        raise InputError("must be above 0 and below 1", field="--loss", value=f"{loss:g}")
     if wavelengths is not None and not (math.isfinite(wavelengths) and wavelengths > 0):
-        raise InputError(f"--wavelengths: must be finite and positive, got {wavelengths:g}")
+        raise InputError("must be finite and positive", field="--wavelengths", value=f"{wavelengths:g}")
     if not 0 < phase_error < 1:
-        raise InputError(f"--phase-error: must be above 0 and below 1, got {phase_error:g}")
+        raise InputError("must be above 0 and below 1", field="--phase-error", value=f"{phase_error:g}")

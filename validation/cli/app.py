@@ -103,10 +103,10 @@ def one_case(source: str, assignments: list[str] | None) -> Scene:
     """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
     from validation.scenes import features
     from validation.scenes.scene import load_scene, parse_assignment
-    from validation.studies.catalogue import check_words
+    from validation.solvers.names import check_names
 
     scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
-    check_words(scene, source)
+    check_names(scene, source)
     features.refuse_sweep(scene, source)
     return scene
 
@@ -126,7 +126,7 @@ def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
     if ended.outcome is Outcome.REFUSED:
         raise InputError(why)
     if ended.outcome is Outcome.NOT_APPLICABLE:
-        raise InputError(f"{scene}: solver {solver} does not apply: {why}")
+        raise InputError(f"solver {solver} does not apply: {why}", source=scene)
 
 
 @contextmanager

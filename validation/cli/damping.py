@@ -143,7 +143,7 @@ def claims(
 
     rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
     if not rows:
-        raise InputError(f"{results}: no results of the study paper; run it first: dda-validate run paper")
+        raise InputError("no results of the study paper", source=results, advice="run it first: dda-validate run paper")
     measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
     for claim in CLAIMS:
         verdict = measured.get(claim.id)

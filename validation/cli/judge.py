@@ -81,10 +81,15 @@ def _judge_target(
 
     if solver is not None:
         if scene is not None:
-            raise InputError(f"--scene: goes with a submission, got it with --solver {solver}; name the scene first")
+            raise InputError(
+                "goes with a submission",
+                field="--scene",
+                value=f"it with --solver {solver}",
+                advice="name the scene first",
+            )
         return _judge_solver(target, solver, assignments, progress)
     if assignments and scene is None:
-        raise InputError("--set: goes with --scene or --solver, got it with a problem of the pack")
+        raise InputError("goes with --scene or --solver", field="--set", value="it with a problem of the pack")
     scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
     progress(0, 3, "reading, and the exact motion")
     submission = read_submission(Path(target), scene_problem)
@@ -140,7 +145,7 @@ def _completed_history(run: Run, case: str, solver: str) -> History:
 
     why = "; ".join(run.notes)
     if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-        raise InputError(f"{case}: solver {solver} does not apply: {why}")
+        raise InputError(f"solver {solver} does not apply: {why}", source=case)
     if run.outcome is Outcome.NOT_RUN:
         raise InputError(f"NOT RUN: {why}")
     if run.outcome is not Outcome.COMPLETED or run.history is None:
@@ -187,7 +192,9 @@ def _write_page(judged: Judged, program: str, place: Path, progress: Any) -> lis
     try:
         place.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"--out: cannot be made: {place}: {error.strerror}; choose another place") from None
+        raise InputError(
+            f"cannot be made: {place}: {error.strerror}", field="--out", advice="choose another place"
+        ) from None
     return write_judged(judged, program, place)
 
 

@@ -28,7 +28,7 @@ def report(
     from validation.runs.results import Results
 
     if out.suffix.lower() != ".pdf":
-        raise InputError(f"--out: must end in .pdf, got {str(out)!r}")
+        raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
     store = Results(results)
     page = build(store, out)
     print_unread(store)

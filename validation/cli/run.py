@@ -64,7 +64,7 @@ def list_command(
     from validation.errors import InputError
 
     if what is not None and what not in LISTS:
-        raise InputError(f"list: must be one of {', '.join(sorted(LISTS))}, got {what!r}")
+        raise InputError(f"must be one of {', '.join(sorted(LISTS))}", field="list", value=repr(what))
     if what is not None:
         echo(in_columns(LISTS[what](), terminal_width()))
         return
@@ -122,7 +122,7 @@ def run(
     output_options = {"--verbose": verbose, "--json": as_json, "--quiet": quiet}
     exclusive = [option for option, is_set in output_options.items() if is_set]
     if len(exclusive) > 1:
-        raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other, got both")
+        raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other", value="both")
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     store = Results(results)
@@ -131,9 +131,11 @@ def run(
     adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
     for name in required:
         if not is_solver(name) and name not in adapters:
-            raise InputError(f"--require: must be among {', '.join(solver_names())}, or module:attribute, got {name!r}")
+            raise InputError(
+                f"must be among {', '.join(solver_names())}, or module:attribute", field="--require", value=repr(name)
+            )
     if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
-        raise InputError(f"--summary: must be a file in an existing directory, got {str(summary)!r}")
+        raise InputError("must be a file in an existing directory", field="--summary", value=repr(str(summary)))
     store.check()
     before = None if baseline is None else read_verdicts(baseline)
 
@@ -242,12 +244,12 @@ def solve(
     adapter = get_solver(solver)
     if ranks > 1:
         if not adapter.distributed:
-            raise InputError(f"--ranks: goes with {', '.join(distributed())}, got {solver!r}")
+            raise InputError(f"goes with {', '.join(distributed())}", field="--ranks", value=repr(solver))
         adapter = adapter.option(str(ranks))
         solver = f"{solver}:{ranks}"
     case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
-        raise InputError(f"--fields: must end in .xdmf or .vtu, got {str(fields)!r}")
+        raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
     ended = _run_case(adapter, case, full or solver.endswith(FULL), fields)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
@@ -280,7 +282,7 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> R
         if run.outcome is not Outcome.COMPLETED:
             raise _Abandoned
         if part.stat().st_size == 0:
-            raise InputError(f"--fields: {solver.name} has written none, got {str(fields)!r}")
+            raise InputError(f"{solver.name} has written none", field="--fields", value=repr(str(fields)))
     return run
 
 

@@ -21,10 +21,10 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
     from validation.cli.printing import scene_page
     from validation.cli.printing.output import terminal_width
     from validation.scenes.scene import load_scene, parse_assignment
-    from validation.studies.catalogue import check_words
+    from validation.solvers.names import check_names
 
     stated = load_scene(scene).with_values(dict(map(parse_assignment, assignments or [])))
-    check_words(stated, scene)
+    check_names(stated, scene)
     if as_json:
         echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
     else:

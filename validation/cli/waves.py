@@ -67,7 +67,7 @@ def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Arr
     if not (math.isfinite(low) and math.isfinite(high) and 0 <= low <= high):
         raise InputError(f"--from, --to: must be finite, not negative and in this order, got {low:g} and {high:g}")
     if logarithmic and low == 0:
-        raise InputError("--from: must be greater than 0 with --log, got 0")
+        raise InputError("must be greater than 0 with --log", field="--from", value="0")
     spaced = np.geomspace if logarithmic else np.linspace
     return np.asarray(spaced(low, high, points), dtype=np.float64)
 
@@ -77,7 +77,7 @@ def check_figure(path: Path | None) -> None:
     from validation.errors import InputError
 
     if path is not None and path.suffix.lower() not in FigureEndings:
-        raise InputError(f"--figure: must end in {', '.join(FigureEndings)}, got {path.name!r}")
+        raise InputError(f"must end in {', '.join(FigureEndings)}", field="--figure", value=repr(path.name))
 
 
 def _write(response: Response, path: Path) -> None:

@@ -24,7 +24,7 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
 
     store = Results(results)
     if study not in store.studies():
-        raise InputError(f"{study}: no results in {results}; run it first: dda-validate run {study}")
+        raise InputError(f"no results in {results}", source=study, advice=f"run it first: dda-validate run {study}")
     return table(store, store.whole(study))
 
 
@@ -67,7 +67,7 @@ def plot(
     from validation.report.figures.histories import save
 
     if out.suffix.lower() != ".svg":
-        raise InputError(f"--out: must end in .svg, got {str(out)!r}")
+        raise InputError("must end in .svg", field="--out", value=repr(str(out)))
     lines = _table(study, results)
     series: dict[str, list[tuple[float, float]]] = {}
     for line in lines:
@@ -93,7 +93,10 @@ def _refuse_unknown(axes: dict[str, str], columns: list[str], study: str) -> Non
             alike = difflib.get_close_matches(name, columns, n=3, cutoff=0.4) or columns[:3]
             every = f"dda-validate rows {study} --csv rows.csv writes all {len(columns)}"
             raise InputError(
-                f"{option}: must be a column of the table, such as {', '.join(alike)}, got {name!r}; {every}"
+                f"must be a column of the table, such as {', '.join(alike)}",
+                field=option,
+                value=repr(name),
+                advice=every,
             )
 
 
@@ -117,7 +120,9 @@ def record(
     from validation.studies.work.study import WORK_PRECISION, study_cases
 
     if update and not reason.strip():
-        raise InputError('--reason: must say why the record changes, got nothing; add --reason "..."')
+        raise InputError(
+            "must say why the record changes", field="--reason", value="nothing", advice='add --reason "..."'
+        )
     recorded = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
     promise_rows()
     finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
@@ -128,7 +133,7 @@ def record(
     try:
         ratios = work_record.compare(finished, study_cases(), recorded)
     except ValueError as error:
-        raise InputError(f"{work_record.PATH}: {error}") from None
+        raise InputError(str(error), source=work_record.PATH) from None
     listed_ratios = ", ".join(f"{part} {value:.3f}" for part, value in ratios.items())
     echo(f"worst ratio to the record: {listed_ratios}")
     if not all(value <= 1 + work_record.SLACK[part] for part, value in ratios.items()):

@@ -87,7 +87,7 @@ def _file_digest(path: Path, role: str) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise InputError(f"{path}: {role} cannot be read: {error.strerror}") from None
+        raise InputError(f"{role} cannot be read: {error.strerror}", source=path) from None
 
 
 @functools.cache
@@ -95,7 +95,7 @@ def source_digest(module: str) -> str:
     """Hash of a module's file, or of all files of a package, without importing it."""
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
-        raise InputError(f"{module}: its source cannot be found, so that its results cannot be kept")
+        raise InputError("its source cannot be found, so that its results cannot be kept", source=module)
     origin = Path(spec.origin)
     root = origin.parent
     files = sorted(root.rglob("*.py")) if origin.name == "__init__.py" else [origin]

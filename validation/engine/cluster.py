@@ -28,12 +28,14 @@ def executor(address: str | None) -> Iterator[Executor | None]:
     try:
         from distributed import Client
     except ImportError:
-        raise InputError("--scheduler: needs the package distributed; pip install 'dda-validation[cluster]'") from None
+        raise InputError(
+            "needs the package distributed", field="--scheduler", advice="pip install 'dda-validation[cluster]'"
+        ) from None
     try:
         client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
         raise InputError(
-            f"--scheduler: must be the address of a running Dask scheduler, got {address!r}: {error}"
+            "must be the address of a running Dask scheduler", field="--scheduler", value=f"{address!r}: {error}"
         ) from None
     with client:
         yield client.get_executor(pure=False)

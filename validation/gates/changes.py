@@ -87,7 +87,7 @@ def read_verdicts(source: Path | str) -> list[BaselineVerdict]:
     try:
         found: list[BaselineVerdict] = strict.read(path, Baseline, ADVICE, "a list of verdicts")
     except FileNotFoundError:
-        raise InputError(f"{path}: cannot be read: there is no such file; {ADVICE}") from None
+        raise InputError("cannot be read: there is no such file", source=path, advice=ADVICE) from None
     return found
 
 

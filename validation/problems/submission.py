@@ -22,7 +22,7 @@ from validation.problems.pack import TEMPLATE, TIME
 from validation.problems.problem import PROBLEMS, Problem, problem
 from validation.runs.history import Array, History
 from validation.runs.regular import regular
-from validation.scenes.scene import one_line
+from validation.scenes.scene import first_defect
 from validation.solvers.user import UNITS, factor
 
 FILE = "submission.json"
@@ -68,7 +68,7 @@ def _data(path: Path) -> SubmissionData:
     try:
         data = SubmissionData.model_validate(stated)
     except ValidationError as error:
-        raise InputError(one_line(error, str(path))) from None
+        raise first_defect(error, str(path)) from None
     for field in ("program", "version", "settings", "who"):
         if getattr(data, field) == TEMPLATE[field]:
             raise InputError(f"{path}: {field}: must be filled in, got {getattr(data, field)!r}")

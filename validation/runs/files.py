@@ -39,7 +39,9 @@ def atomic_path(path: Path) -> Iterator[Path]:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
         if isinstance(error, OSError):
-            raise InputError(f"{path}: cannot be written: {error.strerror}; choose another place") from None
+            raise InputError(
+                f"cannot be written: {error.strerror}", source=path, advice="choose another place"
+            ) from None
         raise
 
 
@@ -70,7 +72,7 @@ def atomic_directory(out: Path) -> Iterator[Path]:
                 os.replace(old, target)
             raise
     except OSError as error:
-        raise InputError(f"{out}: cannot be written: {error.strerror}; choose another place") from None
+        raise InputError(f"cannot be written: {error.strerror}", source=out, advice="choose another place") from None
     finally:
         if temporary is not None:
             shutil.rmtree(temporary, ignore_errors=True)
@@ -131,9 +133,9 @@ def read_table(path: Path) -> tuple[list[str], Array]:
             lines = [line for line in stream if line.strip()]
             table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from None
     except (ValueError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: must be a table of numbers under a header: {error}") from None
+        raise InputError(f"must be a table of numbers under a header: {error}", source=path) from None
     if not names or names[0] != "time" or table.shape[1] != len(names):
-        raise InputError(f"{path}: header must begin with time and name every column, got {','.join(names)!r}")
+        raise InputError("header must begin with time and name every column", source=path, value=repr(",".join(names)))
     return names, table

@@ -30,6 +30,6 @@ def regular(path: Path, largest: float = math.inf) -> None:
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
         kind = next((name for is_kind, name in KINDS if is_kind(status.st_mode)), "something else")
-        raise InputError(f"{path}: must be a regular file, got a {kind}")
+        raise InputError("must be a regular file", source=path, value=f"a {kind}")
     if status.st_size > largest:
-        raise InputError(f"{path}: must be at most {largest:.0f} bytes, got {status.st_size}")
+        raise InputError(f"must be at most {largest:.0f} bytes", source=path, value=status.st_size)

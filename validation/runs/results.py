@@ -44,7 +44,7 @@ class Results:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(
-                f"{path.parent}: cannot be made: {error.strerror}; choose another place with --results"
+                f"cannot be made: {error.strerror}", source=path.parent, advice="choose another place with --results"
             ) from None
         return path
 
@@ -54,11 +54,13 @@ class Results:
         if not path.exists():
             return {}
         if not path.is_file():
-            raise InputError(f"{path}: cannot be read: not a file; choose another place with --results")
+            raise InputError("cannot be read: not a file", source=path, advice="choose another place with --results")
         try:
             parsed = map(_parsed, path.read_text(encoding="utf-8", errors="replace").splitlines())
         except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}; choose another place with --results") from None
+            raise InputError(
+                f"cannot be read: {error.strerror}", source=path, advice="choose another place with --results"
+            ) from None
         return {row.key: row for row in parsed if row is not None}
 
     def append(self, row: Row, history: History | None) -> None:
@@ -79,8 +81,9 @@ class Results:
                 os.close(handle)
         except OSError as error:
             raise InputError(
-                f"{path}: cannot be written: {error.strerror}; finished rows are kept, "
-                "choose another place with --results"
+                f"cannot be written: {error.strerror}",
+                source=path,
+                advice="finished rows are kept, choose another place with --results",
             ) from None
 
     def _save_history(self, key: str, history: History) -> None:
@@ -109,7 +112,7 @@ class Results:
         owner, columns = _read_columns(path)
         defect = "belongs to another case" if owner != key else _defect(columns)
         if defect:
-            raise InputError(f"{path}: {defect}; {ADVICE}")
+            raise InputError(defect, source=path, advice=ADVICE)
         return History(columns.pop("time"), columns)
 
     def sound(self, row: Row, steps: int, columns: Iterable[str]) -> bool:
@@ -165,7 +168,7 @@ class Results:
         if manifest is None:
             return {"study": study}
         if manifest["study"] != study:
-            raise InputError(f"{self.directory / name}: holds the study {manifest['study']!r}; {ADVICE}")
+            raise InputError(f"holds the study {manifest['study']!r}", source=self.directory / name, advice=ADVICE)
         return manifest
 
     def whole(self, study: str, histories: bool = False) -> Manifest:
@@ -187,7 +190,9 @@ class Results:
             else:
                 continue
             raise InputError(
-                f"{self.directory}: the {part} of {case['scene']} {case['solver']} is missing; run {study} again"
+                f"the {part} of {case['scene']} {case['solver']} is missing",
+                source=self.directory,
+                advice=f"run {study} again",
             )
         return manifest
 
@@ -200,7 +205,7 @@ class Results:
             Rows or verdicts cannot be read.
         """
         if self.directory.is_file():  # what is in it is not said to be damaged, nor to be deleted
-            raise InputError(f"--results: must be a directory, got the file {str(self.directory)!r}")
+            raise InputError("must be a directory", field="--results", value=f"the file {str(self.directory)!r}")
         self.rows()
         self.verdicts()
 
@@ -246,7 +251,9 @@ class Results:
         try:
             handle = os.open(path, os.O_WRONLY | os.O_CREAT, 0o666)
         except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror}; choose another place") from None
+            raise InputError(
+                f"cannot be written: {error.strerror}", source=path, advice="choose another place"
+            ) from None
         try:
             fcntl.flock(handle, fcntl.LOCK_EX)
             yield
@@ -264,7 +271,7 @@ def _read_columns(path: Path) -> tuple[str, dict[str, Array]]:
                     columns[name.removesuffix(".npy")] = np.lib.format.read_array(file, allow_pickle=False)
             return archive.comment.decode(errors="replace"), columns
     except Exception:  # what a damaged file may raise is no closed list
-        raise InputError(f"{path}: cannot be read as a history; {ADVICE}") from None
+        raise InputError("cannot be read as a history", source=path, advice=ADVICE) from None
 
 
 def _defect(columns: dict[str, Array]) -> str | None:

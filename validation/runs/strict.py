@@ -44,13 +44,13 @@ def read(path: Path, kind: Any, advice: str, content: str = "what a run writes")
     except FileNotFoundError:
         raise
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; {advice}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path, advice=advice) from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not; {advice}") from None
+        raise InputError("must be UTF-8 text", source=path, value="bytes that are not", advice=advice) from None
     except ValueError as error:
-        raise InputError(f"{path}: must be JSON: {error}; {advice}") from None
+        raise InputError(f"must be JSON: {error}", source=path, advice=advice) from None
     if defect := defect_of(data, kind):
-        raise InputError(f"{path}: must be {content}: {defect}; {advice}")
+        raise InputError(f"must be {content}: {defect}", source=path, advice=advice)
     return data
 
 

@@ -84,11 +84,11 @@ def read_signal(path: Path, at: str) -> Signal:
     allowed = ("velocity", "acceleration") if at == "base" else ("pressure",)
     if len(names) != 2 or names[1] not in allowed:
         headers = " or ".join(f"time,{name}" for name in allowed)
-        raise InputError(f"{path}: header must be {headers}, got {','.join(names)!r}")
+        raise InputError(f"header must be {headers}", source=path, value=repr(",".join(names)))
     if len(table) < 2 or not np.all(np.isfinite(table)):
-        raise InputError(f"{path}: must hold at least two rows of finite numbers, got {len(table)} rows")
+        raise InputError("must hold at least two rows of finite numbers", source=path, value=f"{len(table)} rows")
     if np.any(np.diff(table[:, 0]) <= 0):
-        raise InputError(f"{path}: time must increase from row to row, got another order")
+        raise InputError("time must increase from row to row", source=path, value="another order")
     return partial(recorded, table[:, 0], table[:, 1], ORDERS[names[1]])
 
 

@@ -92,7 +92,12 @@ def refuse_sweep(scene: Scene, source: str = "") -> None:
     """
     if scene.sweep:
         fields = ", ".join(field for field in scene.sweep if field != "mode")
-        raise InputError(f"{source or scene.name}: sweep: one value must be picked for {fields}; use --set KEY=VALUE")
+        raise InputError(
+            f"one value must be picked for {fields}",
+            source=source or scene.name,
+            field="sweep",
+            advice="use --set KEY=VALUE",
+        )
 
 
 def refuse_nonlinear(scene: Scene, what: str) -> None:
@@ -104,7 +109,7 @@ def refuse_nonlinear(scene: Scene, what: str) -> None:
         The motion is not linear.
     """
     if not linear(scene):
-        raise InputError(f"{scene.name}: {what} for linear scenes only, got one with {', '.join(of(scene))}")
+        raise InputError(f"{what} for linear scenes only", source=scene.name, value=f"one with {', '.join(of(scene))}")
 
 
 def refuse_damping(scene: Scene, what: str) -> None:
@@ -116,7 +121,7 @@ def refuse_damping(scene: Scene, what: str) -> None:
         The scene has mass or stiffness damping.
     """
     if scene.damping.present:
-        raise InputError(f"{scene.name}: {what} takes scenes without damping tables only, got one with them")
+        raise InputError(f"{what} takes scenes without damping tables only", source=scene.name, value="one with them")
 
 
 def refuse_column(scene: Scene, what: str) -> None:
@@ -128,4 +133,4 @@ def refuse_column(scene: Scene, what: str) -> None:
         The scene has a column.
     """
     if scene.column is not None:
-        raise InputError(f"{scene.name}: {what} takes scenes of a block only, got one with a column")
+        raise InputError(f"{what} takes scenes of a block only", source=scene.name, value="one with a column")

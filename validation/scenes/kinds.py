@@ -62,7 +62,7 @@ class SceneTables(Section):
     def _present(self, field: str, table: Table | None) -> Table:
         if table is None:
             kind = "column" if self.column is not None else "block"
-            raise InputError(f"{self.name}: {field}: is needed for what is asked, got a scene of a {kind}")
+            raise InputError("is needed for what is asked", source=self.name, field=field, value=f"a scene of a {kind}")
         return table
 
     @model_validator(mode="before")

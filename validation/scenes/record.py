@@ -43,14 +43,16 @@ def read_record(path: Path) -> Record:
     """
     names, table = read_table(path)
     if names not in HEADERS:
-        raise InputError(f"{path}: header must be time,x or time,y or time,x,y, got {','.join(names)!r}")
+        raise InputError("header must be time,x or time,y or time,x,y", source=path, value=repr(",".join(names)))
     columns = dict(zip(names, table.T, strict=True))
     time = columns["time"]
     if not np.all(np.isfinite(table)):
-        raise InputError(f"{path}: must hold finite numbers, got others")
+        raise InputError("must hold finite numbers", source=path, value="others")
     if np.any(np.diff(time) <= 0):
         late = int(np.argmax(np.diff(time) <= 0)) + 1
-        raise InputError(f"{path}: time must increase from row to row, got {time[late]:g} after {time[late - 1]:g}")
+        raise InputError(
+            "time must increase from row to row", source=path, value=f"{time[late]:g} after {time[late - 1]:g}"
+        )
     still = np.zeros_like(time)
     return Record(time, columns.get("x", still), columns.get("y", still))
 
@@ -67,9 +69,11 @@ def direction(record: Record) -> tuple[float, float]:
     moved = moved / (np.max(np.abs(moved)) or 1.0)
     _, sizes, lines = np.linalg.svd(moved, full_matrices=False)
     if sizes[0] == 0:
-        raise InputError("load.base_motion: must move for a response to it, got a base at rest")
+        raise InputError("must move for a response to it", field="load.base_motion", value="a base at rest")
     if len(sizes) > 1 and sizes[1] > STRAIGHT * sizes[0]:
-        raise InputError("load.base_motion: must run along one straight line for a response to it, got another path")
+        raise InputError(
+            "must run along one straight line for a response to it", field="load.base_motion", value="another path"
+        )
     line = np.where(np.abs(lines[0]) > STRAIGHT, lines[0], 0.0)
     x, y = (line * np.sign(line[np.argmax(np.abs(line))])).tolist()
     return x + 0.0, y + 0.0

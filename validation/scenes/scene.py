@@ -139,7 +139,7 @@ class Scene(SceneTables):
         for row in rows:
             case = self.with_values(dict(zip(lists, row, strict=True)), label=True)
             if case.name in names:
-                raise InputError(f"{self.name}: sweep: must not repeat a case, got {case.name} twice")
+                raise InputError("must not repeat a case", source=self.name, field="sweep", value=f"{case.name} twice")
             names.add(case.name)
             yield case
 
@@ -156,7 +156,7 @@ class Scene(SceneTables):
         data = self.definition()
         for field, value in values.items():
             if both := [other for other in _EXCLUSIVE.get(field, ()) if other in values]:
-                raise InputError(f"{self.name}: {field} and {both[0]} exclude each other, got both")
+                raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
             _set_dotted(data, field, value, self.name)
         gone = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
         sweep = {f: v for f, v in self.sweep.items() if f not in gone}
@@ -187,10 +187,10 @@ def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> 
     if not key:
         section, key = "", section
     if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
-        raise InputError(f"{where}: {field}: must be a key as in time.step=0.001, got {field!r}")
+        raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
     table = data.setdefault(section, {}) if section else data
     if not isinstance(table, dict):
-        raise InputError(f"{where}: {field}: must be section.key, got {field!r}")
+        raise InputError("must be section.key", source=where, field=field, value=repr(field))
     for partner in _EXCLUSIVE.get(field, ()):
         table.pop(partner.partition(".")[2], None)
     table[key] = value
@@ -230,30 +230,40 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
-        raise InputError(one_line(error, source)) from None
+        raise first_defect(error, source) from None
     except RecursionError:
-        raise InputError(f"{source}: scene: must not be nested so deeply, got too many levels") from None
+        raise InputError(
+            "must not be nested so deeply", source=source, field="scene", value="too many levels"
+        ) from None
 
 
-def one_line(error: ValidationError, source: str) -> str:
-    """Return the first defect of a pydantic report as ``source: field: rule, got value``."""
+def first_defect(error: ValidationError, source: str) -> InputError:
+    """Return the first defect of a pydantic report as the error of bad input."""
     first = error.errors(include_url=False)[0]
-    field = ".".join(str(part) for part in first["loc"])
-    where = f"{source}: {field}" if field else source  # a rule on the whole scene begins with its field
     message = first["msg"].replace("a valid tuple", "a list")
-    rule = message.removeprefix("Value error, ").removeprefix("Input should be ")
+    rule, _, value = message.removeprefix("Value error, ").partition(", got ")
     if first["type"] == "extra_forbidden":
         rule = "unknown key"
     elif first["type"] == "missing":
-        return f"{where}: is required, got nothing"
-    elif rule == message.removeprefix("Input should be ") and "Input should be" in message:
-        rule = f"must be {rule}"
+        rule = "is required"
+        value = "nothing"
+    elif "Input should be" in message:
+        rule = f"must be {rule.removeprefix('Input should be ')}"
     elif first["type"].endswith(("too_short", "too_long")):
         rule = f"must{rule.partition('should')[2].partition(' after')[0]}"
-    if ", got " not in rule:
-        rule = f"{rule}, got {_clip(first['input'])}"
+    field = ".".join(str(part) for part in first["loc"])
+    if not field:  # a rule on the whole scene begins with its field
+        first_word, _, remainder = rule.partition(": ")
+        if remainder and " " not in first_word:
+            field = first_word
+            rule = remainder
     more = error.error_count() - 1
-    return f"{where}: {rule}" + (f" (and {more} more)" if more else "")
+    return InputError(
+        rule,
+        source=source,
+        field=field or None,
+        value=(value or _clip(first["input"])) + (f" (and {more} more)" if more else ""),
+    )
 
 
 def _clip(value: object, width: int = 60) -> str:
@@ -287,7 +297,7 @@ def load_scene(source: str | Path) -> Scene:
         path = SCENE_DIRECTORY / f"{source}.toml"
     data = _read_toml(path)
     if "name" in data:
-        raise InputError(f"{path.name}: name: unknown key, got {_clip(data['name'])}")
+        raise InputError("unknown key", source=path.name, field="name", value=_clip(data["name"]))
     _beside(path.parent, data)
     return parse_scene({"name": path.stem} | data, path.name)
 
@@ -315,16 +325,15 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise
     except FileNotFoundError:
         near = ", ".join(difflib.get_close_matches(path.stem, scene_names(), cutoff=0.5))
-        meant = f" did you mean {near}?" if near else ""
-        raise InputError(
-            f"{path}: no such scene file;{meant} dda-validate list scenes names the built-in ones"
-        ) from None
+        meant = f"did you mean {near}? " if near else ""
+        advice = f"{meant}dda-validate list scenes names the built-in ones"
+        raise InputError("no such scene file", source=path, advice=advice) from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not") from None
+        raise InputError("must be UTF-8 text", source=path, value="bytes that are not") from None
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
-        raise InputError(f"{path}: must be TOML: {' '.join(str(error).split())}") from None
+        raise InputError(f"must be TOML: {' '.join(str(error).split())}", source=path) from None
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
@@ -337,7 +346,7 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     """
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
-        raise InputError(f"--set: must be key=value, got {text!r}")
+        raise InputError("must be key=value", field="--set", value=repr(text))
     try:
         parsed = tomllib.loads(f"value = {value}")["value"]
     except (tomllib.TOMLDecodeError, RecursionError):

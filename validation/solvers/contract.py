@@ -155,7 +155,7 @@ class Solver:
         InputError
             The solver takes no option, or not this one.
         """
-        raise InputError(f"solver: {self.name} takes no option, got {text!r}")
+        raise InputError(f"{self.name} takes no option", field="solver", value=repr(text))
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why this solver cannot run the scene, apart from features that it does not handle."""
@@ -187,7 +187,7 @@ class Solver:
             The scene has a feature that the solver does not handle: nothing is asked of it as if that were absent.
         """
         if unknown := self.unhandled(scene):
-            raise InputError(f"{scene.name}: solver {self.name} does not handle {', '.join(unknown)}")
+            raise InputError(f"solver {self.name} does not handle {', '.join(unknown)}", source=scene.name)
         return self.build(scene, full)
 
     def build(self, scene: Scene, full: bool) -> Prepared:

@@ -234,7 +234,7 @@ class DDA(Solver):
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
-            raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+            raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         if scene.column is not None:
             from validation.solvers.columns.blocks import BlockColumn
 

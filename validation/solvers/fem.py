@@ -312,7 +312,7 @@ class FiniteElements(Solver):
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
         if reason := self.applicable(scene):
-            raise InputError(f"{scene.name}: solver {self.name}: {reason}")
+            raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         if scene.column is not None:
             from validation.solvers.columns.elements import LineColumn
 

@@ -152,7 +152,7 @@ class FEniCSx(Solver):
     def option(self, text: str) -> Solver:
         """Return the solver for ``fenicsx:N``, N ranks."""
         if not text.isdecimal() or int(text) < 1:
-            raise InputError(f"solver: fenicsx:N takes a number of ranks from 1 on, got {text!r}")
+            raise InputError("fenicsx:N takes a number of ranks from 1 on", field="solver", value=repr(text))
         self.ranks = int(text)
         if self.ranks > 1:
             self.name = f"fenicsx:{self.ranks}"
@@ -217,7 +217,7 @@ class RemoteMesh(Prepared):
         if missing := self.solver.missing():
             return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:
-            raise InputError(f"{scene.name}: {self.answer['refused']}")
+            raise InputError(self.answer["refused"], source=scene.name)
         if "raised" in self.answer:
             return Run(Outcome.RAISED, notes=(str(self.answer["raised"]),))
         if "inapplicable" in self.answer:
@@ -319,10 +319,12 @@ def _mesh_of(scene: Scene) -> dict[str, Any]:
     try:
         data = meshio.read(path)
     except (OSError, KeyError, meshio.ReadError, SystemExit) as error:
-        raise InputError(f"{scene.name}: fem.mesh: must be a readable mesh, {path!r}: {error}") from None
+        raise InputError(f"must be a readable mesh, {path!r}: {error}", source=scene.name, field="fem.mesh") from None
     kinds = [kind for kind in ("triangle", "quad") if kind in data.cells_dict]
     if len(kinds) != 1:
-        raise InputError(f"{scene.name}: fem.mesh: must hold straight triangles or quadrilaterals, got {kinds}")
+        raise InputError(
+            "must hold straight triangles or quadrilaterals", source=scene.name, field="fem.mesh", value=kinds
+        )
     cells = data.cells_dict[kinds[0]]
     used, local = np.unique(cells, return_inverse=True)
     return {"points": data.points[used, :2].tolist(), "cells": local.reshape(cells.shape).tolist()}

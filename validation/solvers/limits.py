@@ -48,10 +48,20 @@ def check_step(scene: Scene, limit: StepLimit) -> None:
     advice = "choose 2 alpha >= delta >= 1/2, or set allow_unstable = true"
     if largest_step == 0:
         where = "on a rigid stop (stiffness = inf)" if math.isinf(frequency) else "without damping"
-        raise InputError(f"{scene.name}: time.step: no step of {scheme} is stable {where}, got {t.step:g}; {advice}")
+        raise InputError(
+            f"no step of {scheme} is stable {where}",
+            source=scene.name,
+            field="time.step",
+            value=f"{t.step:g}",
+            advice=advice,
+        )
     raise InputError(
-        f"{scene.name}: time.step: must not exceed {largest_step:.6g} s, the stability limit of {scheme} "
-        f"at the largest frequency {frequency:.6g} rad/s, got {t.step:g}; make it smaller, {advice}"
+        f"must not exceed {largest_step:.6g} s, the stability limit of {scheme} at the largest frequency "
+        f"{frequency:.6g} rad/s",
+        source=scene.name,
+        field="time.step",
+        value=f"{t.step:g}",
+        advice=f"make it smaller, {advice}",
     )
 
 

@@ -75,8 +75,11 @@ def check(scene: Scene, solver: Solver) -> None:
         section, _, key = field.partition(".")
         value = getattr(getattr(scene, section), key)
         raise InputError(
-            f"{scene.name}: {field}: {REFUSED}, {solver.name} needs about {required_bytes / GIGABYTE:.3g} GB and "
-            f"{available_bytes / GIGABYTE:.3g} GB are available, got {value}"
+            f"{REFUSED}, {solver.name} needs about {required_bytes / GIGABYTE:.3g} GB and "
+            f"{available_bytes / GIGABYTE:.3g} GB are available",
+            source=scene.name,
+            field=field,
+            value=value,
         )
 
 

@@ -75,7 +75,9 @@ def get_solver(name: str) -> Solver:
         user: Solver = _imported(USERS)(name, entry_points().get(name, name))
         return user
     if plain not in BUILT_IN:
-        raise InputError(f"solver: must be one of {', '.join(solver_names())}, or module:attribute, got {name!r}")
+        raise InputError(
+            f"must be one of {', '.join(solver_names())}, or module:attribute", field="solver", value=repr(name)
+        )
     solver: Solver = _imported(BUILT_IN[plain])()
     return solver.option(option) if colon else solver
 
@@ -137,7 +139,7 @@ def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
     adapter = get_solver(solver) if isinstance(solver, str) else solver
     features.refuse_sweep(scene)
     if reason := adapter.refusal(scene):
-        raise InputError(f"{scene.name}: solver {adapter.name} does not apply: {reason}")
+        raise InputError(f"solver {adapter.name} does not apply: {reason}", source=scene.name)
     memory.check(scene, adapter)
     with one_thread(), np.errstate(all="ignore"):  # what overflows is named by `checked`, not warned of
         return checked(adapter.solve(scene, full=full), scene)

@@ -106,7 +106,7 @@ def _base_motion(scene: Scene, time: float) -> float:
 def _reach_of_column(scene: Scene) -> float:
     column = scene.column
     if column is None:
-        raise InputError(f"{scene.name}: column: is needed, got a scene of a block")
+        raise InputError("is needed", source=scene.name, field="column", value="a scene of a block")
     mass = max(sum(layer.thickness * layer.density for layer in column.layer), TINY)  # kg/m2
     speeds = [math.sqrt(max(column.modulus(layer), TINY) / layer.density) for layer in column.layer]
     travel = sum(layer.thickness / speed for layer, speed in zip(column.layer, speeds, strict=True))

@@ -85,7 +85,7 @@ def naming(scene: Scene) -> Iterator[None]:
     except InputError:
         raise
     except ValueError as error:
-        raise InputError(f"{scene.name}: {error}") from None
+        raise InputError(str(error), source=scene.name) from None
 
 
 def tension_note(history: History) -> tuple[str, ...]:
@@ -107,7 +107,12 @@ def check_columns(scene: Scene, solver_columns: tuple[str, ...]) -> None:
     """
     unknown = [name for name in scene.run.columns if name not in solver_columns]
     if unknown:
-        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(solver_columns)}, got {unknown[0]!r}")
+        raise InputError(
+            f"must be among {', '.join(solver_columns)}",
+            source=scene.name,
+            field="run.columns",
+            value=repr(unknown[0]),
+        )
 
 
 def no_fields(name: str, scene: Scene, fields: Path | None) -> None:
@@ -119,4 +124,4 @@ def no_fields(name: str, scene: Scene, fields: Path | None) -> None:
         A file for the fields is asked for.
     """
     if fields is not None:
-        raise InputError(f"{scene.name}: --fields: needs the solver fem, which has a mesh, got {name}")
+        raise InputError("needs the solver fem, which has a mesh", source=scene.name, field="--fields", value=name)

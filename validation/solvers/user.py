@@ -145,7 +145,9 @@ class UserScene(Prepared):
         values = {str(name): float(value) for name, value in dict(self._answer["static"]).items()}
         for name, value in values.items():
             if value != 0 and not sys.float_info.min <= abs(value) <= sys.float_info.max:
-                raise InputError(f"static: must be zero or a normal number, got {value!r} for {one_line(name)}")
+                raise InputError(
+                    "must be zero or a normal number", field="static", value=f"{value!r} for {one_line(name)}"
+                )
         return values
 
     def assumed_static(self) -> Mapping[str, float]:

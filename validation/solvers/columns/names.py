@@ -36,9 +36,11 @@ def column_of(scene: Scene) -> ColumnSection:
         The scene has a block, or asks for the history of a height that it does not give.
     """
     if scene.column is None:
-        raise InputError(f"{scene.name}: column: is needed for what is asked, got a scene of a block")
+        raise InputError("is needed for what is asked", source=scene.name, field="column", value="a scene of a block")
     column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(scene.column.heights)))
     unknown = [name for name in scene.run.columns if name not in column_names]
     if unknown:
-        raise InputError(f"{scene.name}: run.columns: must be among {', '.join(column_names)}, got {unknown[0]!r}")
+        raise InputError(
+            f"must be among {', '.join(column_names)}", source=scene.name, field="run.columns", value=repr(unknown[0])
+        )
     return scene.column

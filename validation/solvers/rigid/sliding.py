@@ -50,11 +50,15 @@ def rigid_motion(scene: Scene, smooth: bool = False) -> SlidingMotion:
     record = base_record(scene)
     load = scene.load
     if scene.contact.friction is None:
-        raise InputError(f"{scene.name}: contact.friction is required for a sliding block, got none")
+        raise InputError("contact.friction is required for a sliding block", source=scene.name, value="none")
     if load.pressure or load.traction:
-        raise InputError(f"{scene.name}: load must be weight and base motion for a sliding block, got another one")
+        raise InputError(
+            "load must be weight and base motion for a sliding block", source=scene.name, value="another one"
+        )
     if record is not None and np.any(record.y):
-        raise InputError(f"{scene.name}: load.base_motion must be along x for a sliding block, got a motion in y")
+        raise InputError(
+            "load.base_motion must be along x for a sliding block", source=scene.name, value="a motion in y"
+        )
     if record is None:
         base = moved([0.0], [0.0])
     else:

@@ -117,7 +117,7 @@ class PreciseMesh(_StepsOnly, Mesh):
         model = self.model
         scene = self.scene
         if reason := _too_large(len(model.F)):
-            raise InputError(f"{scene.name}: fem.elements: {reason}, got {scene.fem.per_side} a side")
+            raise InputError(reason, source=scene.name, field="fem.elements", value=f"{scene.fem.per_side} a side")
         rows = {name: model.observers[name] for name in scene.run.columns}
         return _run(scene, lambda: matrices.history(scene, model.M, model.K, model.F, rows, self.problem.load_size))
 

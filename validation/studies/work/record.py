@@ -51,7 +51,7 @@ def load() -> dict[str, Any]:
     try:
         record: dict[str, Any] = strict.read(PATH, _Record, "write it with --update-record", "a record")
     except FileNotFoundError as error:
-        raise InputError(f"{PATH}: the record of errors and work cannot be read: {error.strerror}") from None
+        raise InputError(f"the record of errors and work cannot be read: {error.strerror}", source=PATH) from None
     return record
 
 
@@ -144,12 +144,14 @@ def update(finished: Finished, cases: Sequence[tuple[str, str]], reason: str) ->
         The reason is missing, or a case that did not complete has nothing to record.
     """
     if not reason.strip():
-        raise InputError("--reason: must say why the record changes, got nothing")
+        raise InputError("must say why the record changes", field="--reason", value="nothing")
     reasons = [*(load()["reasons"] if PATH.exists() else []), reason.strip()]
     entries = measured(finished, cases)
     for name, entry in entries.items():
         if not entry["work"] or any(isinstance(value, str) for value in entry["errors"].values()):
-            raise InputError(f"{name}: must have completed with errors and work that are numbers; nothing was written")
+            raise InputError(
+                "must have completed with errors and work that are numbers", field=name, advice="nothing was written"
+            )
     data = {"reasons": reasons, "cases": entries}
     text = json.dumps(data, indent=1, sort_keys=True) + "\n"
     write_atomically(PATH, lambda stream: stream.write(text.encode()))
