@@ -313,12 +313,12 @@ def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProc
 
 def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, where not the process is the point: no start-up, no workers unasked."""
-    from validation.cli import main
+    from validation.cli import main, run
 
     said, complained, words = io.StringIO(), io.StringIO(), [str(argument) for argument in arguments]
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):
         patch.setattr(sys, "argv", ["dda-validate", *words])
-        patch.setattr(os, "cpu_count", lambda: 1)
+        patch.setattr(run, "default_jobs", lambda: 1)
         patch.setenv("COLUMNS", "160")
         patch.chdir(cwd or Path.cwd())
         with pytest.raises(SystemExit) as stopped:

@@ -49,6 +49,11 @@ from validation.cli.signals import promise_rows
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
+def default_jobs() -> int:
+    """Return how many cases run at once unless it is said: one a processor."""
+    return os.cpu_count() or 1
+
+
 @app.command("list")
 def list_command(
     what: Annotated[
@@ -139,7 +144,7 @@ def run(
     store.check()
     before = None if baseline is None else read_verdicts(baseline)
 
-    machine = Machine(full, ranks, jobs or os.cpu_count() or 1, scheduler)
+    machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
     runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(store.verdicts, names)))
