@@ -5,11 +5,12 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DOCS := $(VENV)/.docs
 PEERS := $(VENV)/.peers
+MUTANTS := $(VENV)/.mutants
 export OMP_NUM_THREADS ?= 1
 # Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all field gallery test test-all gates lint portable docs api bench clean
+.PHONY: report report-all field gallery test test-all gates lint portable docs api bench mutants clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -53,6 +54,9 @@ api: docs  ## the former name: the reference is a part of the site
 bench: $(READY)  ## speed, as ratios in one run against named rivals
 	$(BIN)/python reports/bench.py
 
+mutants: $(MUTANTS)  ## a seeded sample of changed code against the short tests of its room; minutes. SAMPLE='--rooms dda' says which
+	$(BIN)/python .ci/mutants $(SAMPLE)
+
 clean:
 	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/*.pdf
 
@@ -68,4 +72,8 @@ $(DOCS): $(READY)
 
 $(PEERS): $(READY) examples/peers/pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable 'examples/peers[pypi]' --constraint constraints.txt
+	@touch $@
+
+$(MUTANTS): $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[mutants]' --constraint constraints.txt
 	@touch $@

@@ -177,7 +177,7 @@ class Block:
         u, v = ufl.TrialFunction(self.space), ufl.TestFunction(self.space)
         t = self.outline.side(0)[1]
         self.tangent, self.normal = t, np.array([-t[1], t[0]])
-        spread = 0.0 if r["foundation"] == "corner" else 2 / self.carried
+        spread = 2 / self.carried  # over edges of the base; where springs stand at its corners no edge is marked
         kn, kt = (constant(mesh, spread * r[name]) for name in ("stiffness", "shear_stiffness"))
         lam, shear = (constant(mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
         n, t = constant(mesh, self.normal), constant(mesh, self.tangent)

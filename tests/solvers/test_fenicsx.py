@@ -252,7 +252,7 @@ WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is
     "fenicsx: start forgotten": ('request["start"] == "consistent"', "False"),
     "fenicsx: plane strain as plane stress": ('hypothesis == "plane strain"', "False"),
     "fenicsx: quadrature one point short": ('2 * self.request["degree"] + 1', '2 * self.request["degree"] - 1'),
-    "fenicsx: springs p/2": ("else 2 / self.carried", "else 1 / self.carried"),
+    "fenicsx: springs p/2": ("spread = 2 / self.carried", "spread = 1 / self.carried"),
     "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
 }
 OTHER_FAULTS = [

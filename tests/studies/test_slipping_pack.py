@@ -11,6 +11,8 @@ from oracles.pages import table
 
 from validation import load_scene, solve
 from validation.runs.files import read_csv
+from validation.runs.modes import Switch
+from validation.studies.contact import slipping_pack
 from validation.studies.contact.slipping_pack import CASES, HALF, slipping_cases, write_slipping_pack
 
 pytestmark = pytest.mark.long  # the motions themselves are tested in the short set
@@ -144,3 +146,11 @@ def test_rigid_blocks(place: Path) -> None:
     assert 26.56 < HALF < 26.57
     readme = (place / "README.md").read_text()
     assert all(word in readme for word in ("numbers.csv", "newmark.csv", "rocking.csv", "uncertainties", "creep"))
+
+
+@pytest.mark.parametrize(
+    ("opens", "slips", "word"),
+    [(True, None, "opens"), (False, None, "closes"), (None, True, "slips"), (None, False, "sticks")],
+)
+def test_a_switch_is_called_by_what_its_corner_begins_to_do(opens: bool | None, slips: bool | None, word: str) -> None:
+    assert slipping_pack.kind(Switch(0.1, "first", opens, slips)) == word
