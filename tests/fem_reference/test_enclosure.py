@@ -12,7 +12,17 @@ from oracles.friction_oracle import slipping_problem
 from fem_reference.events import bar_events, block_events, block_march
 from fem_reference.events.bar_model import BarProblem
 from fem_reference.events.block_events import solve
-from fem_reference.events.block_flow import ANGLE, CELLS, CUTS, FLOAT_TERMS, REACH, ROUNDING, SIZE, Flow, total
+from fem_reference.events.block_flow import (
+    ANGLE,
+    CELLS,
+    CUTS,
+    EXPONENTIAL_ERROR,
+    FLOAT_TERMS,
+    FREQUENT,
+    ROUNDING,
+    SIZE,
+    Flow,
+)
 from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, BlockProblem
 from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, is_blank, precision
 from fem_reference.events.enclosure import polynomial as smooth
@@ -110,20 +120,40 @@ def test_a_number_of_which_little_is_known_counts_as_zero() -> None:
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
 def test_a_flow_is_the_exponential_of_its_matrix(states: tuple[int, int]) -> None:
-    """By its series, by the halvings of a step that are kept, and by a step of nearly this length."""
+    """By its series, by exp(G s) of powers of two, and by that of nearly this length, which are kept once frequent."""
     with precision(bits_of(50)):
         flow, z = Flow(BlockModel(ROUGH), states), state(3)
         length = ANGLE / flow.rate
         exact = (flow.G * arb(length)).exp() * z
-        step = flow.step(length)
-        by_step = flow.advance(z, arb(length), flow.step(length * (1 + 1e-10)))[0]
-        by_halves, J = flow.advance(z, arb(length))
-        for moved in (total(flow.series(z, arb(length))), step.matrix * z, by_halves, by_step):
+        by_series = flow.advance(z, arb(length))
+        for i in range(FREQUENT):
+            flow.advance(z, arb(length * (0.4 + i / 100)))
+        by_powers = flow.advance(z, arb(length))
+        for _ in range(FREQUENT):
+            flow.advance(z, arb(length * (1 + 1e-10)))
+        by_exponential = flow.advance(z, arb(length))
+        for moved in (flow.series(z, arb(length)), by_series, by_powers, by_exponential):
             for i in range(SIZE):
                 assert moved[i, 0].overlaps(exact[i, 0])
                 assert float(moved[i, 0].rad()) < 1e-40 * float(abs(exact[i, 0]) + 1)
-        powers = np.array([float(x) for x in (flow.G * arb(length)).exp().entries()]).reshape(SIZE, SIZE)
-        assert np.abs(J - powers).max() < 1e-12 * np.abs(powers).max()
+        assert len(flow._powers) > 3
+        assert len(flow._exponentials) == 1
+
+
+@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
+@pytest.mark.parametrize("kept", [False, True])
+def test_floats_of_an_exponential_are_as_good_as_is_counted_on(states: tuple[int, int], kept: bool) -> None:
+    with precision(bits_of(50)):
+        flow, z = Flow(BlockModel(replace(ROUGH, stiffness=1e13)), states), state(3)
+        units = flow.units[None, :] / flow.units[:, None]
+        for angle in (0.01, 1.0, ANGLE):
+            length = arb(angle / flow.rate)
+            for _ in range(2 * FREQUENT if kept else 0):
+                flow.advance(z, length * (1 + arb("1e-10")))
+            J = flow.sensitivity(length)
+            exact = np.array([float(x) for x in flow._exp(length).entries()]).reshape(SIZE, SIZE)
+            assert np.abs((J - exact) * units).max() < EXPONENTIAL_ERROR / 4 * np.abs(exact * units).max()
+        assert len(flow._exponentials) == (3 if kept else 0)
 
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
@@ -144,23 +174,25 @@ def test_floats_prove_no_more_than_holds(states: tuple[int, int], seed: int) -> 
     """As far as floats say that all functions are positive they are, and the first that is not falls soon after."""
     with precision(bits_of(50)):
         flow = Flow(BlockModel(ROUGH), states)
-        step = flow.step(ANGLE / flow.rate)
+        length = ANGLE / flow.rate
         z = state(seed, 1e-3)
         for watched in flow.watched:
             if (watched * z)[0, 0] < 0:
                 z = z * -1
         z[14, 0] = 1
         positive = all((watched * z)[0, 0] > 0 for watched in flow.watched)
-        share, width, doubtful = step.clear(z, np.zeros(SIZE), [0] * len(flow.watched))
+        share, width, doubtful = flow.clear(z, np.zeros(SIZE), [0] * len(flow.watched), length)
         assert positive or share == 0.0
-        reach = step.length * REACH
         for part in np.linspace(0.0, share, 9)[: 9 if positive else 0]:
-            at = flow.advance(z, arb(part * reach))[0]
+            at = flow.advance(z, arb(part * length))
             assert all((watched * at)[0, 0] > -arb("1e-30") for watched in flow.watched)
         if doubtful and positive:
             assert width == CELLS**-CUTS
-            near = flow.advance(z, arb((share + 2 * width) * reach))[0]
-            sizes = [step.sizes[i].sum() for i in doubtful]
+            before = flow.advance(z, arb(share * length))
+            near = flow.advance(z, arb((share + 2 * width) * length))
+            falls = [(flow.watched[i] * near)[0, 0] < (flow.watched[i] * before)[0, 0] for i in doubtful]
+            sizes = [sum(abs(float(x)) for x in flow.leading(z, FLOAT_TERMS)[i]) for i in doubtful]
+            assert any(falls)
             assert any((flow.watched[i] * near)[0, 0] < 1e-3 * size for i, size in zip(doubtful, sizes, strict=True))
 
 
