@@ -132,10 +132,17 @@ class Flow:
         (u, v, r, ex, ey, gxy), gaps, stretches and slides, the rates of these, and the references.
         """
         half = arb(1) / 2
-        columns = [{0: 1}, {1: 1}, {4: half, 3: -half}, {2: 1}, {5: 1}, {3: 1, 4: 1}]
-        rows = [row([column.get(i, 0) for i in range(6)]) for column in columns]
+        zero, one = arb(0), arb(1)
+        rows = [
+            row([one, zero, zero, zero, zero, zero]),
+            row([zero, one, zero, zero, zero, zero]),
+            row([zero, zero, zero, -half, half, zero]),
+            row([zero, zero, one, zero, zero, zero]),
+            row([zero, zero, zero, zero, zero, one]),
+            row([zero, zero, zero, one, one, zero]),
+        ]
         rows += [*self.model.gaps, *self.stretches, *self.model.slides]
-        return arb_mat([part.entries() for part in (*rows, *(one * self.G for one in rows), *self.references)])
+        return arb_mat([part.entries() for part in (*rows, *(part * self.G for part in rows), *self.references)])
 
     def step_length(self, span: float) -> float:
         """The longest step of at most `ANGLE` radians that divides a span [s]."""
@@ -267,12 +274,12 @@ class Flow:
     @cached_property
     def _pull(self) -> Array:
         """What references do to the rates, in units."""
-        return np.abs(self.G_floats[6:12, 12:14]) / self.units[6:12, None] / self.rate
+        return np.asarray(np.abs(self.G_floats[6:12, 12:14]) / self.units[6:12, None] / self.rate)
 
     @cached_property
     def _largest(self) -> Array:
         """(u, v, r, ex, ey, gxy) of unknowns of norm one."""
-        return np.abs(to_floats(self.outputs)[:6, :6]) @ self.units[:6]
+        return np.asarray(np.abs(to_floats(self.outputs)[:6, :6]) @ self.units[:6])
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
