@@ -28,7 +28,7 @@ from fem_reference.events.block_march import March, Node
 from fem_reference.events.block_model import OPEN, RIGHT, BlockModel, BlockProblem, Course
 from fem_reference.events.block_switching import Flows
 from fem_reference.events.enclosure import bits_of, precision, radius_of
-from fem_reference.events.switches import LostDigitsError, Switch
+from fem_reference.events.switches import ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -79,7 +79,7 @@ class BlockHistory:
 
 
 @dataclass(frozen=True)
-class BlockMotion:
+class BlockMotion(ProvenMotion):
     """Exact motion of a block from t = 0 to `end`."""
 
     problem: BlockProblem
@@ -90,11 +90,6 @@ class BlockMotion:
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
     flows: Flows = field(repr=False, compare=False)  # of the states of the corners
-
-    @property
-    def radius(self) -> float:
-        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
-        return max((switch.radius for switch in self.switches), default=0.0)
 
     @property
     def simultaneous(self) -> tuple[float, ...]:
@@ -213,26 +208,13 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 30:
         raise ValueError(f"digits: must be at least 30, got {digits!r}")
-    while True:
-        try:
-            with precision(bits_of(digits)):
-                march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
-                march.run(problem.velocity)
-        except LostDigitsError:
-            if digits >= MOST_DIGITS:
-                raise
-        else:
-            if max((switch.radius for switch in march.switches), default=0.0) <= PROMISED * end:
-                break
-            if digits >= MOST_DIGITS:
-                raise LostDigitsError(_last_good(march), f"{len(march.switches)} switches have cost the digits")
-        digits = min(2 * digits, max(digits, MOST_DIGITS))
-    start = (march.closed_at_start[0], march.closed_at_start[1])
-    touches, nodes = tuple(march.touches), tuple(march.nodes)
-    return BlockMotion(problem, float(end), digits, start, tuple(march.switches), touches, nodes, march.flows)
 
+    def motion_in(digits: int) -> BlockMotion:
+        with precision(bits_of(digits)):
+            march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
+            march.run(problem.velocity)
+        start = march.closed_at_start[0], march.closed_at_start[1]
+        switches, touches, nodes = tuple(march.switches), tuple(march.touches), tuple(march.nodes)
+        return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows)
 
-def _last_good(march: March) -> float:
-    """The last switch that is enclosed as promised [s]."""
-    good = [switch.time for switch in march.switches if switch.radius <= PROMISED * march.end]
-    return good[-1] if good else 0.0
+    return with_enough_digits(motion_in, digits, MOST_DIGITS, PROMISED * end)

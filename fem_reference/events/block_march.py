@@ -25,7 +25,7 @@ from fem_reference.events.switches import (
 from fem_reference.problem.problem import Array
 
 STEPS = 60_000
-"""Greatest number of steps of `ANGLE` radians, about twenty seconds and 200 MB."""
+"""Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB."""
 IDLE = 500
 """Steps without a switch after which a motion that would take too many steps is given up."""
 REGULAR = 8

@@ -1,15 +1,16 @@
 """Ball arithmetic of the exact motions: first falls that must not be missed, flows, and enclosures that hold."""
 
+import math
 from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
 from conftest import thinned
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat, arb_poly, ctx
 from oracles.friction_oracle import slipping_problem
 
-from fem_reference.events import bar_events, block_events, block_march
+from fem_reference.events import bar_events, block_events, block_flow, block_march
 from fem_reference.events.bar_model import BarProblem
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_flow import (
@@ -70,6 +71,15 @@ def test_the_first_fall_of_a_polynomial(seed: int) -> None:
     if fall is not None:
         assert 0 <= float(fall.at) - grid[below[0] + 1] <= grid[1]
         assert not fall.grazing
+
+
+def test_what_bends_down_beyond_the_middle_is_seen() -> None:
+    """0.01 + y^2 - 8 y^3 with y from the middle: there it is positive, level and bends up, and yet it falls."""
+    with precision(bits_of(50)):
+        function = arb_poly([arb("0.01"), 0, 1, -8])(arb_poly([arb(-0.5), 1])).coeffs()
+        fall = first_fall(polynomial(function), arb(1))
+        assert fall is not None
+        assert float(fall.at) == pytest.approx(0.5 + 0.1688, abs=1e-3)
 
 
 @pytest.mark.parametrize("depth", ["1e-3", "1e-8", "1e-14", "1e-20"])
@@ -169,6 +179,23 @@ def test_the_coefficients_of_what_is_watched_hold_it(states: tuple[int, int]) ->
                 assert float(value.rad()) < 1e-40 * max(float(abs(part).upper()) for part in c)
 
 
+@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
+def test_what_a_short_series_leaves_out_is_enclosed(states: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    """With as few terms as the bound allows the rest of the series is no rounding, and must lie in the ball."""
+    monkeypatch.setattr(block_flow, "term_count", lambda angle: math.ceil(2 * angle) + 3)
+    with precision(bits_of(50)):
+        flow, z = Flow(BlockModel(ROUGH), states), state(5, 1e-3)
+        for angle in (0.3, 1.0, 5.0):
+            later = (flow.G * (arb(angle) / flow.rate)).exp() * z
+            moved = flow.series(z, arb(angle) / flow.rate)
+            assert all(moved[i, 0].overlaps(later[i, 0]) for i in range(SIZE))
+            assert max(float(moved[i, 0].rad()) for i in range(SIZE)) > 1e-12
+            for i, watched in enumerate(flow.watched):
+                c = flow.coefficients(i, z, arb_mat(SIZE, 1), angle)
+                value = sum((part * arb(angle) ** k for k, part in enumerate(c)), arb(0))
+                assert value.overlaps((watched * later)[0, 0])
+
+
 @pytest.mark.parametrize(("states", "seed"), thinned([(states, i) for states in STATES for i in range(6)], 6))
 def test_floats_prove_no_more_than_holds(states: tuple[int, int], seed: int) -> None:
     """As far as floats say that all functions are positive they are, and the first that is not falls soon after."""
@@ -194,6 +221,18 @@ def test_floats_prove_no_more_than_holds(states: tuple[int, int], seed: int) -> 
             sizes = [sum(abs(float(x)) for x in flow.leading(z, FLOAT_TERMS)[i]) for i in doubtful]
             assert any(falls)
             assert any((flow.watched[i] * near)[0, 0] < 1e-3 * size for i, size in zip(doubtful, sizes, strict=True))
+
+
+def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> None:
+    """A block in flight, a micrometre above the springs and on its way up: clear, but not if it may be lower."""
+    with precision(bits_of(50)):
+        flow = Flow(BlockModel(replace(ROUGH, pressure=0.0)), (OPEN, OPEN))
+        for height, off, clear in ((1e-6, 0.0, True), (1e-6, 0.9e-6, True), (1e-6, 1.1e-6, False), (1e-22, 0.0, False)):
+            z = arb_mat(SIZE, 1, [0, height, *[0] * 5, 1, *[0] * 6, 1])
+            radius = np.zeros(SIZE)
+            radius[1] = off
+            share, _, doubtful = flow.clear(z, radius, [0] * len(flow.watched), 1e-3)
+            assert (share, doubtful) == ((1.0, []) if clear else (0.0, [0, 1]))
 
 
 def test_what_floats_leave_out_is_below_their_rounding() -> None:
