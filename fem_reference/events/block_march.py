@@ -113,8 +113,8 @@ class March:
         self.slipped = [arb(0), arb(0)]
         self.released, self.friction, self.work = arb(0), arb(0), arb(0)
 
-    def run(self, velocity: float) -> None:
-        """Find the motion.
+    def run(self, velocity: float | arb) -> None:
+        """Find the motion from a velocity of the block at t = 0 [m/s], which may be a ball.
 
         Raises
         ------
