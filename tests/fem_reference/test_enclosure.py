@@ -27,7 +27,7 @@ from fem_reference.events.block_flow import (
 from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, BlockProblem, Course
 from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, is_blank, precision
 from fem_reference.events.enclosure import polynomial as smooth
-from fem_reference.events.switches import LostDigitsError, TooMuchWorkError
+from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -110,6 +110,18 @@ def test_a_touch_is_named_and_counts_as_none() -> None:
         assert first_fall(touching, arb(1), touches) is None
         assert touches
         assert all(abs(float(touch) - 1 / 3) < 1e-15 for touch in touches)
+
+
+def test_a_touch_is_told_by_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    def grazing(_function: Smooth, end: arb, touches: list[arb]) -> None:
+        touches.append(end / 2)
+
+    monkeypatch.setattr(block_march, "first_fall", grazing)
+    with precision(bits_of(50)):
+        march = block_march.March(BlockModel(PAPER), Course(None), 0.0, 0.0033, 100)
+        with pytest.raises(NoContactStateError):  # open corners that have gone through the base
+            march.run(0.0)
+    assert march.touches[0] == pytest.approx(0.0032525750597312, rel=1e-3)
 
 
 @pytest.mark.parametrize("late", ["1e-3", "1e-12", "1e-16"])
