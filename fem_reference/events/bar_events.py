@@ -26,7 +26,13 @@ from numpy.typing import ArrayLike
 from fem_reference.events.bar_march import Piece, pieces
 from fem_reference.events.bar_model import BarProblem, Units
 from fem_reference.events.enclosure import bits_of, precision, radius_of
-from fem_reference.events.switches import LostDigitsError, Switch, TooManySwitchesError, TooMuchWorkError
+from fem_reference.events.switches import (
+    ProvenMotion,
+    Switch,
+    TooManySwitchesError,
+    TooMuchWorkError,
+    with_enough_digits,
+)
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -65,7 +71,7 @@ class BarFields:
 
 
 @dataclass(frozen=True)
-class BarMotion:
+class BarMotion(ProvenMotion):
     """Exact motion of a bar from t = 0 to `end`."""
 
     problem: BarProblem
@@ -75,11 +81,6 @@ class BarMotion:
     switches: tuple[Switch, ...]  # openings and closings of the base, ``corner`` being ``"base"``, in the order of time
     pieces: tuple[Piece, ...]  # the pieces of the motion in the order of time
     touches: tuple[float, ...] = ()  # instants at which a switch was neither proven nor excluded; none was taken [s]
-
-    @property
-    def radius(self) -> float:
-        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
-        return max((switch.radius for switch in self.switches), default=0.0)
 
     def at(self, times: ArrayLike) -> BarHistory:
         """The motion at instants in any order.
@@ -212,17 +213,9 @@ def solve(problem: BarProblem, end: float, digits: int = DIGITS, limit: int = 10
     if digits < 50:
         raise ValueError(f"digits: must be at least 50, got {digits!r}")
     digits += math.ceil(2.5 * max(0.0, -math.log10(problem.kappa)))  # integration divides by kappa, twice a piece
-    while True:
-        try:
-            motion = _solved(problem, float(end), digits, limit)
-            if motion.radius <= PROMISED * end:
-                return motion
-            lost = LostDigitsError(motion.switches[0].time, f"{len(motion.switches)} switches have cost the digits")
-        except LostDigitsError as error:
-            lost = error
-        if digits >= MOST_DIGITS:
-            raise lost
-        digits = max(digits, min(2 * digits, MOST_DIGITS))
+    return with_enough_digits(
+        lambda digits: _solved(problem, float(end), digits, limit), digits, MOST_DIGITS, PROMISED * end
+    )
 
 
 def _solved(problem: BarProblem, end: float, digits: int, limit: int) -> BarMotion:

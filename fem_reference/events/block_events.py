@@ -24,11 +24,11 @@ from flint import arb, arb_mat
 from numpy.typing import ArrayLike
 
 from fem_reference.events.block_flow import to_floats
-from fem_reference.events.block_march import March, Node, difference, radii_of
+from fem_reference.events.block_march import March, Node
 from fem_reference.events.block_model import OPEN, RIGHT, BlockModel, BlockProblem, Course
 from fem_reference.events.block_switching import Flows
-from fem_reference.events.enclosure import bits_of, precision
-from fem_reference.events.switches import LostDigitsError, Switch
+from fem_reference.events.enclosure import bits_of, precision, radius_of
+from fem_reference.events.switches import ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -39,9 +39,11 @@ MOST_DIGITS = 240
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 _UNKNOWNS = np.zeros((6, 6))
-"""From (u, v, ux, uy, vx, vy) to (u, v, r, ex, ey, gxy)."""
-_UNKNOWNS[range(6), [0, 1, 4, 2, 5, 3]] = [1, 1, 0.5, 1, 1, 1]
-_UNKNOWNS[[2, 5], [3, 4]] = -0.5, 1
+"""From (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)."""
+_UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
+_UNKNOWNS[[3, 4], 2] = -1, 1
+REPORT_DIGITS = 40
+"""Decimal digits in which the motion is evaluated where it is reported."""
 ROUNDING = 4 * np.finfo(float).eps
 """Part of a displacement by which floats round it."""
 
@@ -77,7 +79,7 @@ class BlockHistory:
 
 
 @dataclass(frozen=True)
-class BlockMotion:
+class BlockMotion(ProvenMotion):
     """Exact motion of a block from t = 0 to `end`."""
 
     problem: BlockProblem
@@ -88,11 +90,6 @@ class BlockMotion:
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
     flows: Flows = field(repr=False, compare=False)  # of the states of the corners
-
-    @property
-    def radius(self) -> float:
-        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
-        return max((switch.radius for switch in self.switches), default=0.0)
 
     @property
     def simultaneous(self) -> tuple[float, ...]:
@@ -111,21 +108,32 @@ class BlockMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        nodes = np.searchsorted([float(node.start) for node in self.nodes], t, side="right") - 1
-        with precision(bits_of(self.digits)):
-            reports = [self._report(self.nodes[node], arb(time)) for node, time in zip(nodes, t.tolist(), strict=True)]
-            model = self.flows.model
-            mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
-        rows = np.array(reports).reshape(len(t), 38).T
-        x, rate, radius, slipped, losses, states = np.split(rows, [12, 24, 30, 32, 36])
+        order = np.argsort(t, kind="stable")
+        begun = np.searchsorted([float(node.start) for node in self.nodes], t, side="right") - 1
+        reports = np.empty((39, len(t)))
+        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
+            last = -1
+            for i in order.tolist():
+                if begun[i] != last:
+                    last = begun[i]
+                    node = self.nodes[last]
+                    time, z = node.start, node.z
+                flow, instant = self.flows[node.states], arb(float(t[i]))
+                time, z = instant, flow.advance(z, instant - time)
+                reports[:, i] = self._report(node, time, z)
+        x, rate, _, radius, slipped, losses, states = np.split(reports, [12, 24, 26, 32, 34, 37])
+        released, friction, work = losses
         p, ps = self.problem.stiffness, self.problem.shear_stiffness
         closed = np.asarray(states != OPEN, dtype=float)
         N = -p * x[6:8] if self.problem.locked else closed * np.maximum(0.0, -p * x[6:8])
         T = 0.0 - ps * x[8:10]
+        model = self.flows.model
+        mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
+        strains, elastic = x[3:6], to_floats(arb_mat(model.elastic))[np.ix_([2, 5, 3], [2, 5, 3])]
         return BlockHistory(
             time=t,
-            displacement=_UNKNOWNS @ x[:6],
-            velocity=_UNKNOWNS @ rate[:6],
+            displacement=x[:6],
+            velocity=rate[:6],
             gap=x[6:8],
             gap_velocity=rate[6:8],
             normal_force=N,
@@ -135,38 +143,37 @@ class BlockMotion:
             states=states,
             closed=closed,
             contact_pressure=N.sum(axis=0) / self.problem.width,
-            kinetic=mass @ rate[:6] ** 2 / 2,
-            strain=losses[3],
+            kinetic=mass @ (_UNKNOWNS @ rate[:6]) ** 2 / 2,
+            strain=(strains * (elastic @ strains)).sum(axis=0) / 2,
             springs=(N**2 / p - T * x[8:10]).sum(axis=0) / 2,
-            load=-load @ x[:6] - losses[2],
-            released=losses[0],
-            friction=losses[1],
-            displacement_radius=abs(_UNKNOWNS) @ radius,
+            load=-load @ (_UNKNOWNS @ x[:6]) - work,
+            released=released,
+            friction=friction,
+            displacement_radius=radius,
         )
 
-    def _report(self, node: Node, time: arb) -> list[float]:
-        """What is reported at an instant that follows a node: `Flow.outputs`, radii, slips, losses and states."""
-        flow = self.flows[node.states]
-        s = difference(time, node.start)
-        z, J = flow.advance(node.z, s)
+    def _report(self, node: Node, time: arb, z: arb_mat) -> list[float]:
+        """What is reported at an instant that follows a node.
+
+        `Flow.outputs`, radii of the displacements, slips, energies released, lost by friction and gained from the base,
+        and the states.
+        """
+        flow, base = self.flows[node.states], node.base
+        passed, after = time - node.start, time - node.row_time
         outputs = (flow.outputs * z).entries()
-        values = [float(entry) for entry in outputs]
-        base, passed = node.base, time - node.row_time
         for i, (place, rate) in enumerate(((base.x, base.vx), (base.y - self.problem.gap, base.vy))):
-            values[i] = float(outputs[i] + place + rate * passed)
-            values[12 + i] = float(outputs[12 + i] + rate)
-        radius = (np.abs(J) @ node.radius + radii_of(z))[:6] + ROUNDING * np.abs(values[:6])
-        slipped = [
-            float(node.slipped[c] + (flow.references[c] * z)[0, 0] - node.z[12 + c, 0])
-            if abs(node.states[c]) == RIGHT
-            else float(node.slipped[c])
-            for c in (0, 1)
-        ]
+            outputs[i] += place + rate * after
+            outputs[12 + i] += rate
+        radius = flow.growth(node.radius, flow.rate * float(passed))
+        radius += [radius_of(value) + ROUNDING * abs(float(value)) for value in outputs[:6]]
+        slipped = list(node.slipped)
+        for c in (0, 1):
+            if abs(node.states[c]) == RIGHT:
+                slipped[c] += outputs[24 + c] - node.z[12 + c, 0]
         friction = node.friction + flow.energy(node.z) - flow.energy(z) if flow.dissipates else node.friction
-        work = node.work + flow.model.base_work(node.base, node.z, z, s)
-        x = arb_mat([z.entries()[:6]])
-        strain = (x * (arb_mat(flow.model.elastic) * x.transpose()))[0, 0] / 2
-        return [*values, *radius, *slipped, *map(float, (node.released, friction, work, strain)), *node.states]
+        work = node.work + flow.model.base_work(base, node.z, z, passed)
+        numbers = [*map(float, outputs)], radius, [*map(float, (*slipped, node.released, friction, work))]
+        return [*numbers[0], *numbers[1], *numbers[2], *node.states]
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
@@ -201,26 +208,13 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 30:
         raise ValueError(f"digits: must be at least 30, got {digits!r}")
-    while True:
-        try:
-            with precision(bits_of(digits)):
-                march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
-                march.run(problem.velocity)
-        except LostDigitsError:
-            if digits >= MOST_DIGITS:
-                raise
-        else:
-            if max((switch.radius for switch in march.switches), default=0.0) <= PROMISED * end:
-                break
-            if digits >= MOST_DIGITS:
-                raise LostDigitsError(_last_good(march), f"{len(march.switches)} switches have cost the digits")
-        digits = min(2 * digits, max(digits, MOST_DIGITS))
-    start = (march.closed_at_start[0], march.closed_at_start[1])
-    touches, nodes = tuple(march.touches), tuple(march.nodes)
-    return BlockMotion(problem, float(end), digits, start, tuple(march.switches), touches, nodes, march.flows)
 
+    def motion_in(digits: int) -> BlockMotion:
+        with precision(bits_of(digits)):
+            march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
+            march.run(problem.velocity)
+        start = march.closed_at_start[0], march.closed_at_start[1]
+        switches, touches, nodes = tuple(march.switches), tuple(march.touches), tuple(march.nodes)
+        return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows)
 
-def _last_good(march: March) -> float:
-    """The last switch that is enclosed as promised [s]."""
-    good = [switch.time for switch in march.switches if switch.radius <= PROMISED * march.end]
-    return good[-1] if good else 0.0
+    return with_enough_digits(motion_in, digits, MOST_DIGITS, PROMISED * end)

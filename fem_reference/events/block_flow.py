@@ -2,8 +2,7 @@
 
 z = (x, x', r, 1) holds the six unknowns, their rates, the references of both corners and a one, so that every function
 that is watched or reported is a row over z, and its rate is that row times G. G may have any eigenvalues where a corner
-slips: a power series does not care. A long time is a step of at most `ANGLE` radians of the greatest rate that G can
-give, or a sum of halvings of one, whose exp(G s) are kept; what is left of it needs a few terms of the series.
+slips: a power series does not care. A step has at most `ANGLE` radians of the greatest rate that G can give.
 
 Floats prove for most steps that nothing switches: the Bernstein forms of the watched functions bound them from below.
 """
@@ -11,13 +10,15 @@ Floats prove for most steps that nothing switches: the Bernstein forms of the wa
 from __future__ import annotations
 
 import math
+from collections import Counter
 from functools import cache, cached_property
 
 import numpy as np
 from flint import arb, arb_mat, ctx
+from scipy.linalg import expm
 
 from fem_reference.events.block_model import OPEN, RIGHT, STICKS, BlockModel, States, row, sigma
-from fem_reference.events.enclosure import ball
+from fem_reference.events.enclosure import ball, precision, radius_of
 from fem_reference.problem.problem import Array
 
 SIZE = 15
@@ -32,33 +33,42 @@ CELLS = 8
 """Parts into which the first part that cannot be proven is cut, time and again."""
 CUTS = 5
 """Times that it is cut: a fall is left in 1/32768 of a step."""
+TABLE_BITS = 128
+"""Bits in which the terms of the watched functions are computed before floats take them."""
 ROUNDING = 400 * np.finfo(float).eps
 """Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms of 15 products may be wrong after all cuts."""
 DERIVATIVES = 10
 """Terms of a function's series after which it counts as zero for ever."""
 FEW = 4
 """Terms that are looked at first: most functions show at once where they go."""
-REACH = 1 + 1e-6
-"""Part of a step for which nothing must switch: the last step to a row is longer than others by rounding."""
 UNIT = np.eye(SIZE)
-LEVELS = 16
-"""Halvings of a step whose exp(G s) are kept."""
-NEGLIGIBLE = 1e-13
-"""Angle over which floats of exp(G s) are those of a one [rad]."""
+FREQUENT = 20
+"""Times that a time is passed before its exp(G s) is kept, which costs as much as twenty series."""
+OTHER_LENGTHS = 1
+"""Where times are counted whose exp(G s) is not kept."""
+SHORT_ANGLE = 0.1
+"""Angle that is left to the series where exp(G s) of powers of two are kept [rad]."""
+EXPONENTIAL_ERROR = 1e-13
+"""Part of the greatest entry of exp(G s), in the units of the flow, by which floats of it may be wrong."""
 
 
 class Flow:
     """The block in one state of its corners."""
 
     def __init__(self, model: BlockModel, states: States) -> None:
-        self.model, self.states = model, states
+        self.model = model
+        self.states = states
         self.G = model.generator(states)
         self.G_floats = to_floats(self.G)
         B = -self.G_floats[6:12, :6]
         scale = np.sqrt([float(m) for m in model.mass])
         scaled = scale[:, None] * B / scale
         self.rate = math.sqrt(float(np.linalg.norm(scaled, 2))) * (1 + 1e-9)  # bound of the rates of the motion [rad/s]
-        self.norm = [*(1 / (scale * self.rate)).tolist(), *(1 / scale).tolist()]  # of unknowns and rates of norm one
+        self.minus_B = arb_mat([line[:6] for line in self.G.tolist()[6:12]]) * (1 / arb(self.rate) ** 2)
+        # unknowns and rates of norm one, in which G has the norm `rate`; references and the one change them as slowly
+        self.units = np.array([*(1 / (scale * self.rate)), *(1 / scale), *[1 / (scale[0] * self.rate)] * 2, 1.0])
+        load = np.abs(self.G_floats[6:12, 14] * scale).max() / self.rate
+        self.units[14] = 1 / load if load else 1.0
         self.stretches: list[arb_mat] = []  # s - r of each corner, which is -T / p_s [m]
         self.references: list[arb_mat] = []  # r of each corner that does not stick [m]
         self.watched: list[arb_mat] = []  # positive, or zero for ever, as long as both corners stay in their states
@@ -66,8 +76,9 @@ class Flow:
             self._add_corner(corner)
         self._lines: list[list[arb]] = []
         self._derivatives: dict[tuple[int, int | None], arb_mat] = {}
-        self._steps: dict[int, Step] = {}
-        self.units = [2.0 ** (math.ceil(math.log2(ANGLE / self.rate)) - level) for level in range(1, LEVELS + 1)]
+        self._exponentials: dict[int, tuple[arb, arb_mat, Array]] = {}
+        self._powers: dict[float, arb_mat] = {}
+        self._uses: Counter[int] = Counter()
 
     def _add_corner(self, c: int) -> None:
         """Add the rows of one corner."""
@@ -116,19 +127,26 @@ class Flow:
 
     @cached_property
     def outputs(self) -> arb_mat:
-        """Rows of what is reported: unknowns, gaps, stretches and slides, then the rates of these, shape (24, 15)."""
-        rows = [row([arb(int(i == j)) for j in range(6)]) for i in range(6)]
-        rows += [*self.model.gaps, *self.stretches, *self.model.slides]
-        return arb_mat([part.entries() for part in rows + [one * self.G for one in rows]])
+        """Rows over z of what is reported, shape (26, 15).
 
-    def step(self, span: float) -> Step:
-        """The longest step of at most `ANGLE` radians that divides a span [s], from the few that are ever asked for."""
-        count = max(1, math.ceil(self.rate * span / ANGLE * (1 - 1e-9)))
-        length = span / count
-        key = round(math.log(length) * 1e8)  # rows of a record are not evenly spaced in their last digits
-        if key not in self._steps:
-            self._steps[key] = Step(self, length)
-        return self._steps[key]
+        (u, v, r, ex, ey, gxy), gaps, stretches and slides, the rates of these, and the references.
+        """
+        half = arb(1) / 2
+        zero, one = arb(0), arb(1)
+        rows = [
+            row([one, zero, zero, zero, zero, zero]),
+            row([zero, one, zero, zero, zero, zero]),
+            row([zero, zero, zero, -half, half, zero]),
+            row([zero, zero, one, zero, zero, zero]),
+            row([zero, zero, zero, zero, zero, one]),
+            row([zero, zero, zero, one, one, zero]),
+        ]
+        rows += [*self.model.gaps, *self.stretches, *self.model.slides]
+        return arb_mat([part.entries() for part in (*rows, *(part * self.G for part in rows), *self.references)])
+
+    def step_length(self, span: float) -> float:
+        """The longest step of at most `ANGLE` radians that divides a span [s]."""
+        return span / max(1, math.ceil(self.rate * span / ANGLE * (1 - 1e-9)))
 
     def derivatives(self, count: int, which: int | None = None) -> arb_mat:
         """Rows of the first coefficients of the watched functions in powers of the time times the rate, term by term.
@@ -165,90 +183,123 @@ class Flow:
         """
         n = max(12, term_count(angle))
         columns = self.derivatives(n, which) * arb_mat([*zip(z.entries(), radius.entries(), strict=True)])
-        rate = (self.G * (z + radius)).entries()[:12]
-        norm = sum(float(c.abs_upper()) / unit for c, unit in zip(rate, self.norm, strict=True)) / self.rate
         weights = self.watched[which].entries()[:12]
-        size = sum(float(w.abs_upper()) * unit for w, unit in zip(weights, self.norm, strict=True))
-        rest = ball(2 * (1 + 1e-9) * size * norm / arb(n).fac())
+        size = sum(float(w.abs_upper()) * unit for w, unit in zip(weights, self.units, strict=False))
+        rest = ball(size * self._bound(self.G * (z + radius), n))
         return [*(middle + off for middle, off in columns.tolist()), rest]
 
-    def terms(self, z: arb_mat, length: arb, count: int) -> list[arb_mat]:
-        """The first coefficients of the powers of time / length of z, of any number of columns."""
-        terms = [z]
-        for k in range(1, count):
-            terms.append(self.G * terms[-1] * (length / k))
-        return terms
+    def _bound(self, change: arb_mat, n: int) -> arb:
+        """What all terms from n on come to, in the power n of the time times the rate, where z' is `change`.
 
-    def series(self, z: arb_mat, length: arb, least: int = 2) -> list[arb_mat]:
-        """Coefficients of the powers of time / length of z, the last one enclosing all further terms.
-
-        In units of the mass and of the rate G has the norm `rate`, so that what follows a term is at most twice as
-        large as the next term's bound where the terms are more than twice the angle.
+        In its units G has the norm `rate`, so that the terms fall at least like halves where n > 2 angle + 2; their
+        derivatives, the first and the second, are then below those of the bound.
         """
-        angle = self.rate * float(abs(length).upper()) * (1 + 1e-9)
-        n = max(least, term_count(angle))
-        terms = self.terms(z, length, n)
-        columns, last = z.ncols(), terms[-1].entries()
-        bounds = [ball(0.0)] * (SIZE * columns)
-        for j in range(columns):
-            sizes = [float(c.abs_upper()) for c in last[j : 12 * columns : columns]]
-            rest = 2 * (1 + 1e-9) * angle / n * sum(size / unit for size, unit in zip(sizes, self.norm, strict=True))
-            bounds[j : 12 * columns : columns] = [ball(rest * unit) for unit in self.norm]
-        terms.append(arb_mat(SIZE, columns, bounds))
-        return terms
+        size = sum(float(c.abs_upper()) / unit for c, unit in zip(change.entries()[:12], self.units, strict=False))
+        return arb(2 * (1 + 1e-9) * size / self.rate) / arb(n).fac()
+
+    def series(self, z: arb_mat, length: arb) -> arb_mat:
+        """Z after a time [s], the power series summed."""
+        change = self.G * z
+        angle = self.rate * abs(float(length)) * (1 + 1e-12)
+        n = term_count(angle)
+        term = change * length
+        moved = z + term
+        for k in range(2, n):
+            term = self.G * term * (length / k)
+            moved = moved + term
+        rest = self._bound(change, n) * arb(angle) ** n
+        return moved + arb_mat(SIZE, 1, [ball(rest * unit) for unit in self.units[:12].tolist()] + [arb(0)] * 3)
+
+    def advance(self, z: arb_mat, length: arb) -> arb_mat:
+        """Z after a time [s]."""
+        known = self.exponential(length)
+        if known is not None:
+            length = length - known[0]
+            z = known[1] * z
+        elif self._uses[OTHER_LENGTHS] > FREQUENT:
+            while self.rate * float(length) > SHORT_ANGLE:
+                power = 2.0 ** math.floor(math.log2(float(length)))
+                length = length - power
+                z = self._power(power) * z
+        return z if length == 0 else self.series(z, length)
+
+    def exponential(self, length: arb) -> tuple[arb, arb_mat, Array] | None:
+        """A length nearly the same, exp(G s) for it, and this in floats; None where it is not `FREQUENT` yet."""
+        key = key_of(length)
+        self._uses[key] += 1
+        if key not in self._exponentials:
+            self._uses[OTHER_LENGTHS] += 1
+            if self._uses[key] <= FREQUENT:
+                return None
+            matrix = self._exp(length)
+            self._exponentials[key] = length, matrix, to_floats(matrix)
+        return self._exponentials[key]
+
+    def _power(self, length: float) -> arb_mat:
+        """exp(G s) for a power of two, from that of its half."""
+        if length not in self._powers:
+            short = self.rate * length < SHORT_ANGLE
+            half = None if short else self._power(length / 2)
+            self._powers[length] = self._exp(arb(length)) if half is None else half * half
+        return self._powers[length]
+
+    def _exp(self, length: arb) -> arb_mat:
+        """exp(G s), by way of the units of the flow, in which G is balanced."""
+        units = arb_mat(SIZE, SIZE, [arb(x) for x in np.diag(self.units).ravel().tolist()])
+        inverse = units.inv()  # in balls: floats of it would not be its inverse
+        exponential = units * (inverse * self.G * units * length).exp() * inverse
+        return arb_mat(exponential.tolist()[:12] + UNIT[12:].tolist())
+
+    def sensitivity(self, length: arb) -> Array:
+        """exp(G s) in floats, see `EXPONENTIAL_ERROR`."""
+        known = self._exponentials.get(key_of(length))
+        if known is not None:
+            return known[2] + float(length - known[0]) * self.G_floats @ known[2]
+        scaled = self.G_floats * self.units / self.units[:, None]
+        J = expm(scaled * float(length)) / self.units * self.units[:, None]
+        return np.vstack([J[:12], UNIT[12:]])
+
+    def exponential_error(self, J: Array, hull: Array) -> Array:
+        """How far the floats of exp(G s) may move a set that reaches so far from zero; references and the one rest."""
+        largest = np.abs(J * self.units / self.units[:, None]).max()
+        moving = np.array([*self.units[:12], 0.0, 0.0, 0.0])
+        return np.asarray(EXPONENTIAL_ERROR * largest * (hull / self.units)[:14].sum() * moving)
+
+    def growth(self, radius: Array, angle: float) -> Array:
+        """How far the displacements may be off after an angle, where z is off by a radius; more than they are."""
+        apart = radius / self.units
+        pull = (self._pull @ radius[12:14]).sum()
+        return np.asarray(math.exp(angle) * (apart[:12].sum() + angle * pull) * self._largest)
 
     @cached_property
-    def _powers(self) -> list[tuple[arb_mat, Array]]:
-        """exp(G s) for the units, in balls and in floats."""
-        powers = [total(self.series(identity(), arb(self.units[-1])))]
-        while len(powers) < LEVELS:
-            powers.append(powers[-1] * powers[-1])
-        return [(power, to_floats(power)) for power in powers[::-1]]
+    def _pull(self) -> Array:
+        """What references do to the rates, in units."""
+        return np.asarray(np.abs(self.G_floats[6:12, 12:14]) / self.units[6:12, None] / self.rate)
 
-    def advance(self, z: arb_mat, length: arb, step: Step | None = None) -> tuple[arb_mat, Array]:
-        """Z after a time, and exp(G s) in floats, exact to 1e-12 of its entries.
+    @cached_property
+    def _largest(self) -> Array:
+        """(u, v, r, ex, ey, gxy) of unknowns of norm one."""
+        return np.asarray(np.abs(to_floats(self.outputs)[:6, :6]) @ self.units[:6])
 
-        Parameters
-        ----------
-        z
-            A column, or more.
-        length
-            The time [s].
-        step
-            A step of about this time, if there is one.
-        """
-        rest, J = length, UNIT
-        if step is not None:
-            z, J, rest = step.matrix * z, step.floats, length - step.length
-        short = float(rest)
-        for unit, (power, floats) in zip(self.units, self._powers, strict=True):
-            while short >= unit:
-                z, J, rest = power * z, floats @ J, rest - unit
-                short = float(rest)
-        if short:
-            z = total(self.series(z, rest))
-        if abs(short) * self.rate > NEGLIGIBLE:
-            gs = self.G_floats * short
-            J = J + gs @ (J + gs @ (J + gs @ J / 3) / 2)
-        return z, J
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Terms of the watched functions over the readings, shape (terms * functions, 15); their sizes and errors."""
+        model = self.model
+        with precision(min(ctx.prec, TABLE_BITS)):
+            G = model.readings * self.G * model.readings_inverse * (1 / arb(self.rate))
+            rows = arb_mat([watched.entries() for watched in self.watched]) * model.readings_inverse
+            terms = [rows]
+            for k in range(1, FLOAT_TERMS):
+                rows = rows * G * (1 / arb(k))
+                terms.append(rows)
+        table = np.vstack([to_floats(rows) for rows in terms])
+        errors = np.array([radius_of(entry) for rows in terms for entry in rows.entries()]).reshape(table.shape)
+        return table, np.abs(table), errors
 
-
-class Step:
-    """A step of one length in one state of the corners."""
-
-    def __init__(self, flow: Flow, length: float) -> None:
-        self.length = length
-        self.matrix, self.floats = flow.advance(identity(), arb(length))
-        self.readings, inverse = flow.model.readings, flow.model.readings_inverse
-        self.reading_sizes = np.abs(to_floats(self.readings)) * (1 + 1e-9)
-        self.count = len(flow.watched)
-        if flow.watched:
-            powers = np.repeat((flow.rate * length * REACH) ** np.arange(FLOAT_TERMS), self.count)
-            self.table = to_floats(flow.derivatives(FLOAT_TERMS) * inverse) * powers[:, None]
-            self.sizes = np.abs(self.table).reshape(FLOAT_TERMS, self.count, SIZE).sum(axis=0)
-
-    def clear(self, z: arb_mat, radius: Array, leads: list[int | None]) -> tuple[float, float, list[int]]:
-        """Where floats prove all watched functions to be positive, in parts of the step.
+    def clear(
+        self, z: arb_mat, radius: Array, leads: list[int | None], length: float
+    ) -> tuple[float, float, list[int]]:
+        """Where floats prove all watched functions to be positive, in parts of a length.
 
         Parameters
         ----------
@@ -258,6 +309,8 @@ class Step:
             How far it may be off.
         leads
             Of each watched function how many of its first terms are zero; None: it rests at zero.
+        length
+            How far to look [s].
 
         Returns
         -------
@@ -265,9 +318,14 @@ class Step:
             The part throughout which they are positive; the length of the next part, in which that cannot be proven, 0
             where there is none; and the functions that may fall in or after it.
         """
-        values = np.array([float(entry) for entry in (self.readings * z).entries()])
-        terms = (self.table @ values).reshape(FLOAT_TERMS, self.count).T
-        margin = self.sizes @ (ROUNDING * np.abs(values) + self.reading_sizes @ radius)
+        if not self.watched:
+            return 1.0, 0.0, []
+        readings = np.array([float(entry) for entry in (self.model.readings * z).entries()])
+        blur = ROUNDING * np.abs(readings) + self.model.reading_sizes @ radius
+        powers = (self.rate * length * (1 + 1e-12)) ** np.arange(FLOAT_TERMS)
+        table, sizes, errors = self._table
+        terms = (table @ readings).reshape(FLOAT_TERMS, -1).T * powers
+        margin = powers @ (sizes @ blur + errors @ np.abs(readings)).reshape(FLOAT_TERMS, -1)
         for i, place in enumerate(leads):
             if place is None:
                 terms[i], margin[i] = 0.0, -1.0
@@ -291,28 +349,20 @@ class Step:
         return low, width, doubtful.tolist()
 
 
-def total(terms: list[arb_mat]) -> arb_mat:
-    """Sum of the terms of a series, the small ones first."""
-    result = terms[-1]
-    for term in reversed(terms[:-1]):
-        result = term + result
-    return result
-
-
-def identity() -> arb_mat:
-    """The matrix one of the size of z."""
-    return arb_mat(SIZE, SIZE, [arb(int(i == j)) for i in range(SIZE) for j in range(SIZE)])
-
-
 def to_floats(matrix: arb_mat) -> Array:
     """Midpoints of a matrix."""
     return np.array([*map(float, matrix.entries())]).reshape(matrix.nrows(), matrix.ncols())
 
 
+def key_of(length: arb) -> int:
+    """The same for lengths that differ by rounding only, as those of the rows of a record do."""
+    return round(math.log(float(length)) * 1e8) if length > 0 else 0
+
+
 @cache
 def _term_count(angle: float, bits: int) -> int:
     logarithm, n = 0.0, 0
-    while logarithm > -bits - 12 or n < 2 * angle:
+    while logarithm > -bits - 12 or n < 2 * angle + 3:
         n += 1
         logarithm += math.log2(angle / n)
     return n

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from fem_reference.events.block_flow import ANGLE, CELLS, CUTS, REACH, SIZE, UNIT, Flow, Step, to_floats
+from fem_reference.events.block_flow import ANGLE, CELLS, CUTS, SIZE, UNIT, Flow, to_floats
 from fem_reference.events.block_model import CORNERS, OPEN, STICKS, Base, BlockModel, Course, States
 from fem_reference.events.block_switching import Flows, agreeing, lead, settled
 from fem_reference.events.enclosure import Fall, ball, first_fall, polynomial, precision, radius_of
@@ -25,11 +25,13 @@ from fem_reference.events.switches import (
 from fem_reference.problem.problem import Array
 
 STEPS = 60_000
-"""Greatest number of steps of `ANGLE` radians, about twenty seconds and 200 MB."""
+"""Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB."""
 IDLE = 500
 """Steps without a switch after which a motion that would take too many steps is given up."""
 REGULAR = 8
 """Moves after which the axes of the box of a `Spread` are made orthogonal again."""
+REACH = 1 + 1e-6
+"""Part of a step over which no further one is begun: the last step to a row is longer than others by rounding."""
 INFLATION = 1 + 1e-9
 """What covers the rounding of the floats that bound radii."""
 
@@ -59,8 +61,8 @@ class Spread:
         return np.asarray((np.abs(self.axes) @ self.radii + self.box) * INFLATION)
 
     def transport(self, J: Array, added: Array) -> None:
-        """Turn the set by a matrix that is exact to 1e-12 of its entries, and add a box."""
-        self.box = (np.abs(J) @ (self.box + 1e-11 * (np.abs(self.axes) @ self.radii)) + added) * INFLATION
+        """Turn the set by a matrix, and add a box that holds what its floats may be wrong by."""
+        self.box = (np.abs(J) @ self.box + added) * INFLATION
         self.axes = J @ self.axes
         self.count += 1
         if self.count % REGULAR == 0:
@@ -111,8 +113,8 @@ class March:
         self.slipped = [arb(0), arb(0)]
         self.released, self.friction, self.work = arb(0), arb(0), arb(0)
 
-    def run(self, velocity: float) -> None:
-        """Find the motion.
+    def run(self, velocity: float | arb) -> None:
+        """Find the motion from a velocity of the block at t = 0 [m/s], which may be a ball.
 
         Raises
         ------
@@ -173,40 +175,31 @@ class March:
     def step(self, row_end: arb, span: float) -> None:
         """One step, up to a switch at most."""
         flow = self.flows[self.states]
-        remainder = difference(row_end, self.time)
-        step = flow.step(span)
-        whole = bool(remainder < step.length * REACH)
-        length = remainder if whole else arb(step.length)
+        length = flow.step_length(span)
+        end = exact_sum(self.time, arb(length))
+        if difference(row_end, self.time) < length * REACH:
+            end = row_end
+        length = float(difference(end, self.time))
         radius = self.spread.hull()
         self._add_node(radius)
-        share, width, doubtful = 1.0, 0.0, list[int]()
-        if flow.watched:
-            share, width, doubtful = step.clear(self.z, radius, self.leads)
-        unit = flow.units[-1]
-        clear = arb(share * step.length * REACH)
-        if doubtful:
-            clear = arb(share * step.length // unit * unit)  # which `Flow.advance` reaches without a series
-        if not clear < length:
-            self.misses = 0
-            self._advance(flow, length, step, row_end if whole else None)
-            return
+        share, width, doubtful = flow.clear(self.z, radius, self.leads, length)
         if not doubtful:
-            self._advance(flow, clear, None)
+            self.misses = 0
+            self._advance(flow, end if share == 1 else exact_sum(self.time, arb(share * length)))
             return
-        if clear == 0 and agreeing(flow, self._balls(radius)) is None:
+        if share == 0 and agreeing(flow, self._balls(radius)) is None:
             self._switch(flow, None)
             return
-        if clear > 0:
-            self._advance(flow, clear, None)
-            radius = self.spread.hull()
-            remainder = difference(row_end, self.time)
         # Balls look at a part that is longer than the one in doubt, and where they have looked in vain at a longer one.
-        length = arb(min(share + width * CELLS ** min(1 + self.misses, CUTS), 1) * step.length) - clear
-        length = length if length < remainder else remainder
-        fall = self.first_fall(flow, length, doubtful, radius)
+        reach = share + width * CELLS ** min(1 + self.misses, CUTS)
+        if reach < 1:
+            end = exact_sum(self.time, arb(reach * length))
+        if share > 0:
+            self._advance(flow, exact_sum(self.time, arb(share * length)))
+        fall = self.first_fall(flow, end, doubtful)
         if fall is None:
             self.misses += 1
-            self._advance(flow, length, step, row_end if bool(length == remainder) else None)
+            self._advance(flow, end)
         else:
             self._switch(flow, fall)
 
@@ -215,30 +208,30 @@ class March:
         losses = self.released, self.friction, self.work
         self.nodes.append(Node(self.time, self.states, self.z, radius, self.base, self.row_time, slipped, *losses))
 
-    def _advance(self, flow: Flow, length: arb, step: Step | None, end: arb | None = None) -> None:
-        """Move by a time, to an instant that may be known exactly; a step of about this time may be at hand."""
-        long = step is not None and abs(float(length) / step.length - 1) < 2 * (REACH - 1)
-        moved, J = flow.advance(self.z, length, step if long else None)
-        self.work += self.model.base_work(self.base, self.z, moved, length)
+    def _advance(self, flow: Flow, end: arb) -> None:
+        """Move to an instant."""
+        length = difference(end, self.time)
+        moved = flow.advance(self.z, length)
+        self.work = (self.work + self.model.base_work(self.base, self.z, moved, length)).mid()
         if flow.dissipates:
             self.friction = (self.friction + flow.energy(self.z) - flow.energy(moved)).mid()
-        self.work = self.work.mid()
-        self.spread.transport(J, radii_of(moved))
+        J = flow.sensitivity(length)
+        self.spread.transport(J, radii_of(moved) + flow.exponential_error(J, self.spread.hull()))
         self.z = moved.mid()
-        self.time = exact_sum(self.time, length) if end is None else end
+        self.time = end
         self.leads = [0] * len(flow.watched)
 
     def _balls(self, radius: Array) -> arb_mat:
         """The state with what it may be off."""
         return arb_mat(SIZE, 1, [c + ball(r) for c, r in zip(self.z.entries(), radius.tolist(), strict=True)])
 
-    def first_fall(self, flow: Flow, length: arb, doubtful: list[int], radius: Array) -> tuple[Fall, arb_mat] | None:
-        """The first fall of some watched functions that do not fall at once, in units of 1 / rate."""
-        end = (length * flow.rate).upper()
-        off = arb_mat(SIZE, 1, [ball(r) for r in radius.tolist()])
+    def first_fall(self, flow: Flow, end: arb, doubtful: list[int]) -> tuple[Fall, arb_mat] | None:
+        """The first fall of some watched functions that do not fall at once, in units of 1 / rate, and the function."""
+        radii = arb_mat(SIZE, 1, [ball(r) for r in self.spread.hull().tolist()])
+        angle = (difference(end, self.time) * flow.rate).upper()
         first: tuple[Fall, arb_mat] | None = None
         for i in doubtful:
-            c = flow.coefficients(i, self.z, off, float(end))
+            c = flow.coefficients(i, self.z, radii, float(angle))
             # as large as the function would be over a whole step
             size = max(float(c[0].abs_upper()), ANGLE * float(c[1].abs_upper()))
             if radius_of(c[0]) > size * 2.0 ** (-ctx.prec // 3):
@@ -247,10 +240,11 @@ class March:
             if place is None:
                 continue
             touches: list[arb] = []
-            fall = first_fall(polynomial(c[place:], end), end, touches)
+            fall = first_fall(polynomial(c[place:], angle), angle, touches)
             self.touches += [float(exact_sum(self.time, touch / flow.rate)) for touch in touches]
             if fall is not None:
-                first, end = (fall, flow.watched[i]), fall.at.mid()
+                angle = fall.at.mid()
+                first = fall, flow.watched[i]
         return first
 
     def _switch(self, flow: Flow, first: tuple[Fall, arb_mat] | None) -> None:
@@ -261,7 +255,7 @@ class March:
         flow
             Of the states until now.
         first
-            The fall, in units of 1 / rate, and the function; None: one falls from now on.
+            What `first_fall` returns; None: a function falls from now on.
         """
         self.misses = 0
         offset, moved, timing = 0.0, arb(0), None
@@ -273,7 +267,7 @@ class March:
             if fall.grazing:
                 self.touches.append(float(enclosure))
             moved = difference(enclosure.mid(), self.time)
-            self._advance(flow, moved, None, enclosure.mid())
+            self._advance(flow, enclosure.mid())
             rate = (function * (flow.G * self.z))[0, 0]
             if not (fall.grazing or rate.contains(0)):
                 timing = function * (1 / rate.mid())

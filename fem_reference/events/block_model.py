@@ -23,6 +23,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
+import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.problem.motion import Motion
@@ -180,6 +181,8 @@ class BlockModel:
         self.elastic = _elastic(problem, a * b)  # stiffness of the strained block [N/m, N m]
         self.load = _load(problem, a, b, m)  # loads of pressure, traction and weight [N, N m]
         self.readings, self.readings_inverse = self._readings()
+        self.reading_sizes = np.array([[float(abs(entry)) for entry in line] for line in self.readings.tolist()])
+        self.reading_sizes *= 1 + 1e-9
 
     @property
     def friction(self) -> arb:

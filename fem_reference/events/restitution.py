@@ -28,8 +28,6 @@ LIMIT = 100_000
 REST = 1e-18
 """Speed and acceleration below which the mass has come to rest, over those of the impact."""
 
-Line = tuple[float, float]
-
 
 @dataclass(frozen=True)
 class ContactScheme:
@@ -53,11 +51,19 @@ class ContactScheme:
         if not 0 < self.gg <= 1:
             raise ValueError(f"gg: must be above 0 and at most 1, got {self.gg!r}")
 
-    def response(self, omega: float) -> float:
-        """Acceleration in contact per depth of the predictor, Omega^2 / (1 + alpha Omega^2); 1 / alpha if stiff."""
+    def step(self, omega: float) -> Array:
+        """A step in contact as a matrix on (w*, v, A), shape (3, 3)."""
         if not omega > 0:
             raise ValueError(f"omega: must be positive, got {omega!r}")
-        return 1 / (1 / omega / omega + self.alpha)
+        k = 1 / (1 / omega / omega + self.alpha)  # Omega^2 / (1 + alpha Omega^2); 1 / alpha if stiff
+        gg, delta = self.gg, self.delta
+        velocity = np.array([-delta * k, gg, 1 - delta])
+        return np.array([np.array([1 - k / 2, 0.0, 0.0]) + gg * velocity, velocity, [-k, 0.0, 0.0]])
+
+    @property
+    def last(self) -> Array:
+        """The velocity after a first step without contact, as a row over (w*, v, A), shape (3,)."""
+        return np.array([0.0, self.gg, 1 - self.delta])
 
 
 @dataclass(frozen=True)
@@ -109,23 +115,18 @@ def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
     overshoot = np.atleast_1d(np.asarray(theta, dtype=float))
     if not np.all((overshoot >= 0) & (overshoot <= scheme.gg)):
         raise ValueError(f"theta: must be from 0 to gg = {scheme.gg:g}, got {theta!r}")
-    stiffness = scheme.response(omega)
-    return np.array([_run(scheme, stiffness, float(x)) for x in overshoot])
-
-
-def _run(scheme: ContactScheme, stiffness: float, theta: float) -> float:
-    """One impact."""
-    gg, delta = scheme.gg, scheme.delta
-    predicted, v, A = -theta, -1.0, 0.0
+    step = scheme.step(omega)
+    restitutions = np.zeros_like(overshoot)
+    state = np.vstack([-overshoot, np.full_like(overshoot, -1.0), np.zeros_like(overshoot)])
+    inside = np.ones_like(overshoot, dtype=bool)
     for _ in range(LIMIT):
-        new = -stiffness * predicted
-        v = gg * v + (1 - delta) * A + delta * new
-        predicted, A = predicted + new / 2 + gg * v, new
-        if predicted >= 0:
-            return gg * v + (1 - delta) * A
-        if max(abs(v), abs(A)) < REST:
+        state = step @ state
+        leaves = inside & (state[0] >= 0)
+        restitutions[leaves] = scheme.last @ state[:, leaves]
+        inside &= ~leaves & (np.abs(state[1:]).max(axis=0) >= REST)
+        if not inside.any():
             break
-    return 0.0
+    return restitutions
 
 
 def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
@@ -139,47 +140,25 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
     ValueError
         If `omega` is not positive.
     """
-    stiffness = scheme.response(omega)
+    step = scheme.step(omega)
     branches: list[Branch] = []
-    pending: list[tuple[float, float, Line, Line, Line, int]] = [
-        (0.0, scheme.gg, (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0), 0)
-    ]
+    # intervals of theta, and there (w*, v, A) as columns of constants and slopes
+    pending = [(0.0, scheme.gg, np.array([[0.0, -1.0], [-1.0, 0.0], [0.0, 0.0]]), 0)]
     while pending:
-        low, high, predicted, v, A, steps = pending.pop()
-        predicted, v, A, out = _step(scheme, stiffness, predicted, v, A)
-        size = max(map(abs, (*v, *A)))
-        for part in _parts(predicted, low, high):
-            if _at(predicted, sum(part) / 2) >= 0:
-                branches.append(Branch(*part, *out))
-            elif size < REST or steps >= LIMIT:
-                branches.append(Branch(*part, 0.0, 0.0))
+        low, high, state, steps = pending.pop()
+        state = step @ state
+        constant, slope = state[0].tolist()
+        zero = -constant / slope if slope else low
+        parts = [(low, zero), (zero, high)] if low < zero < high else [(low, high)]
+        rests = np.abs(state[1:]).max() < REST or steps >= LIMIT
+        for start, end in parts:
+            if constant + slope * (start + end) / 2 >= 0:
+                branches.append(Branch(start, end, *(scheme.last @ state).tolist()))
+            elif rests:
+                branches.append(Branch(start, end, 0.0, 0.0))
             else:
-                pending.append((*part, predicted, v, A, steps + 1))
+                pending.append((start, end, state, steps + 1))
     return tuple(sorted(branches, key=lambda branch: branch.low))
-
-
-def _step(scheme: ContactScheme, stiffness: float, predicted: Line, v: Line, A: Line) -> tuple[Line, Line, Line, Line]:
-    """A step in contact: the next predictor, velocity and acceleration, and the velocity if contact ends."""
-    gg, delta = scheme.gg, scheme.delta
-    new = _mix((-stiffness, predicted))
-    v = _mix((gg, v), (1 - delta, A), (delta, new))
-    following = _mix((1.0, predicted), (0.5, new), (gg, v))
-    return following, v, new, _mix((gg, v), (1 - delta, new))
-
-
-def _mix(*terms: tuple[float, Line]) -> Line:
-    """Sum of factors times lines."""
-    return sum(x * line[0] for x, line in terms), sum(x * line[1] for x, line in terms)
-
-
-def _at(line: Line, theta: float) -> float:
-    return line[0] + line[1] * theta
-
-
-def _parts(line: Line, low: float, high: float) -> tuple[tuple[float, float], ...]:
-    """An interval, cut where a line crosses zero inside."""
-    zero = -line[0] / line[1] if line[1] else low
-    return ((low, zero), (zero, high)) if low < zero < high else ((low, high),)
 
 
 def statistics(scheme: ContactScheme, omega: float) -> Statistics:

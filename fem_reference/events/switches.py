@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 
 @dataclass(frozen=True)
@@ -14,6 +16,20 @@ class Switch:
     kind: str  # ``"opens"``, ``"closes"``, and with friction ``"sticks"`` or ``"slips"``
     midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
     radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
+
+
+class ProvenMotion:
+    """A motion whose switches are enclosed."""
+
+    switches: tuple[Switch, ...]
+
+    @property
+    def radius(self) -> float:
+        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
+        return max((switch.radius for switch in self.switches), default=0.0)
+
+
+Motion = TypeVar("Motion", bound=ProvenMotion)
 
 
 class NoContactStateError(ArithmeticError):
@@ -38,3 +54,34 @@ class TooMuchWorkError(HorizonError):
 
 class LostDigitsError(HorizonError):
     """The switches have amplified the enclosure of the motion until nothing can be decided."""
+
+
+def with_enough_digits(motion_in: Callable[[int], Motion], digits: int, most: int, promised: float) -> Motion:
+    """The motion in as many digits as it needs.
+
+    Parameters
+    ----------
+    motion_in
+        From decimal digits to the motion in them.
+    digits, most
+        The digits of the first computation; twice as many are taken time after time, up to the most.
+    promised
+        What the instants of all switches are enclosed to [s].
+
+    Raises
+    ------
+    LostDigitsError
+        If the most digits do not do.
+    """
+    while True:
+        try:
+            motion = motion_in(digits)
+            if motion.radius <= promised:
+                return motion
+            times = [switch.time for switch in motion.switches if switch.radius <= promised]
+            lost = LostDigitsError(times[-1] if times else 0.0, f"{len(motion.switches)} switches have cost the digits")
+        except LostDigitsError as error:
+            lost = error
+        if digits >= most:
+            raise lost
+        digits = min(2 * digits, most)
