@@ -30,8 +30,8 @@ from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
 from validation.diagnosis.other_solvers import Goal, Rival, rivals
-from validation.diagnosis.other_verdict import RivalVerdict
-from validation.diagnosis.other_verdict import _causes as causes_of_rival
+from validation.diagnosis.other_solvers import RivalVerdict
+from validation.diagnosis.other_solvers import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.sentences import Said
 from validation.diagnosis.variant import Variant

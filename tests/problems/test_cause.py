@@ -7,6 +7,7 @@ import pytest
 
 from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
+from validation.problems import models
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import Word, judge
@@ -196,3 +197,23 @@ def test_a_discount_where_the_scenes_own_scheme_is_exact_is_named() -> None:
     found = named("sliding", get_solver("dda").solve(problem("sliding").scene.with_values({"time.gg": 0.98})).history)
     assert found.ids[-1] == "gg"
     assert found.values["gg"] == pytest.approx(0.98, rel=1e-4)
+
+
+def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:
+    """What is tried first does not depend on the answer: another one needs no more than the runs of its own fits."""
+    runs: list[object] = []
+    plain = models._run
+
+    def counted(scene: object, values: object) -> object:
+        runs.append(values)
+        return plain(scene, values)
+
+    monkeypatch.setattr(models, "_run", counted)
+    models._runs.cache_clear()
+    exact = standard(problem("locked")).exact
+    for factor in (1.3, 1.4):
+        named("locked", History(exact.time, {name: factor * x for name, x in exact.columns.items()}))
+        runs.append(None)
+    first = runs.index(None)
+    assert first > 100
+    assert len(runs) - first - 2 < first / 3

@@ -115,7 +115,8 @@ HHT, CHUNG_HULBERT = (0.05, 0.15, 0.3), (0.2, 0.5, 0.8)  # e, and the spectral r
 PARTS = (2, 3, 4, 5, 8, 10, 20)  # steps of a program in one of the scene's
 UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
 LATE = (1.0, -1.0, 0.5, 2.0)  # steps, 1/2 the mean of two
-BANDS = tuple(float(b) for b in np.geomspace(1e-4, 0.5, 38))  # over the static displacement
+BANDS = tuple(float(b) for b in np.geomspace(1e-4, 2.0, 44))  # over the static displacement
+FINE_BANDS = tuple(float(b) for b in np.geomspace(1e-4, 2.0, 131))  # between closings of successive steps
 TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
 WIDEST_BAND = 5.0  # over the fitted one, that is tried
 HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 1e-4
@@ -182,7 +183,10 @@ def _model(target: Target, scene: Variant) -> list[Move]:
     step = float(np.mean(target.steps))
     if not scene.opens:
         found.append(Move("stiffness-damping", (), ("structural",), tuple(step * drag for drag in STIFFNESS_DRAGS)))
-        found.append(Move("load-ramp", (), ("ramp",), tuple(step * ramp for ramp in RAMPS)))
+        ramps = tuple(step * ramp for ramp in RAMPS)
+        # the loads of a ramp begin with none; a program may start from the acceleration of the full load all the same
+        for start in dict.fromkeys(("zero", scene.start)):
+            found.append(Move("load-ramp", (("start", start),), ("ramp",), ramps))
         found.append(Move("inertia", (), ("inertia",), INERTIAS))
         found.append(Move("one-spring", (("one_spring", True),)))
     if target.column.gravity:
@@ -207,19 +211,25 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
 
 def _contact(target: Target, scene: Variant) -> list[Move]:
     """Return what the contact may do; a history that never pulls is the same with a contact that opens."""
-    size = abs(target.column.static)
-    name = () if scene.opens else (("opens", True),)
     found = [Move("contact-locked", (("opens", False),))] if scene.opens else []
-    if scene.opens or pulls(target, scene):
-        found += [Move("contact-opened", name)] if not scene.opens else []
-        if target.column.poisson and not scene.opens:  # programs differ in the shear of a contact that closes again
-            found.append(Move("contact-opened", (*name, ("reset", True))))
-        found += [
-            Move("dead-band", (*name, ("band", share * size), ("reopening", part)))
-            for share in BANDS
-            for part in REOPENINGS
-        ]
-    return found
+    if not scene.opens and pulls(target, scene):
+        found.append(Move("contact-opened", (("opens", True),)))
+        if target.column.poisson:  # programs differ in the shear of a contact that closes again
+            found.append(Move("contact-opened", (("opens", True), ("reset", True))))
+    return [*found, *dead_bands(target, scene, BANDS)]
+
+
+def dead_bands(target: Target, scene: Variant, shares: Sequence[float]) -> list[Move]:
+    """Return dead bands by their shares of the static displacement; none where the contact never pulls."""
+    if not (scene.opens or pulls(target, scene)):
+        return []
+    opens = () if scene.opens else (("opens", True),)
+    size = abs(target.column.static)
+    return [
+        Move("dead-band", (*opens, ("band", share * size), ("reopening", part)))
+        for share in shares
+        for part in REOPENINGS
+    ]
 
 
 _FAMILIES: tuple[Callable[[Target, Variant], list[Move]], ...] = (

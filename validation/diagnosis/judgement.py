@@ -20,8 +20,7 @@ from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.one_number import OneChange
-from validation.diagnosis.other_solvers import Goal, Rival, rivals
-from validation.diagnosis.other_verdict import RivalVerdict, judged
+from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, rivals
 from validation.diagnosis.ranking import ranking, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, readings_of, slips
@@ -292,7 +291,7 @@ def _answer_of_rival(
     ids = ids if verdict.explained else [UNEXPLAINED]
     gone = None
     if any(not CAUSES[name].benign for name in ids):
-        expected = own_run if without_scheme and own_run is not None else verdict.own
+        expected = own_run if without_scheme and own_run is not None else verdict.scene_run
         gone = departure.measured(expected[rows], reading.displacement, rows, 0.0)
     sentence = sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS)
     if verdict.explained and own_run is not None:

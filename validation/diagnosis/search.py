@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
-from validation.diagnosis.causes import OUTSIDE, Move, moves
+from validation.diagnosis.causes import FINE_BANDS, OUTSIDE, Move, dead_bands, moves
 from validation.diagnosis.decision import (
     AROUND,
     FAULT,
@@ -57,6 +57,10 @@ def simple(target: Target, scene: Variant) -> Verdict:
         return Verdict(own, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
     verdict = decided(target, own, [nothing, *single])
+    if not verdict.reached:
+        single += fitted(target, scene, [(move,) for move in dead_bands(target, scene, FINE_BANDS)])
+        single.sort(key=lambda f: f.fit.misfit)
+        verdict = decided(target, own, [nothing, *single])
     if verdict.reached:
         return verdict
     around = decided(target, own, _around(target, scene))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from validation.diagnosis.departure import Departure
     from validation.diagnosis.evidence import Stage
     from validation.diagnosis.fits.fit import Interval
-    from validation.diagnosis.other_verdict import RivalVerdict
+    from validation.diagnosis.other_solvers import RivalVerdict
     from validation.diagnosis.readings import Slip
 
 INTEGRATOR = (

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,10 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
         Length of each time step [s], shape (n,).
     """
     n = len(steps)
+    # loads that come on in time act on a block that has, or has not, the acceleration of the full load to start from
+    started = [j for j, v in enumerate(variants) if v.ramp and v.start == "consistent"]
+    requested = variants
+    variants = [*requested, *(replace(requested[j], start="zero") for j in started)]
     longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
     equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
     groups: dict[tuple[bool, int, int, bool], list[int]] = {}
@@ -66,7 +70,14 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
                 displacement[:, members], pressure[:, members], opened[:, members] = (
                     c[parts - 1 :: parts] for c in done
                 )
-        return reported(Histories(displacement, pressure, opened), variants, longer, n)
+        from_rest = dict(zip(started, range(len(requested), len(variants)), strict=True))
+        for j, v in enumerate(requested):
+            if v.ramp:
+                for values in (displacement, pressure):
+                    at_once = values[:, from_rest.get(j, j)]
+                    values[:, j] += _ramped(at_once, v.ramp / float(longer[0])) - at_once
+        whole = len(requested)
+        return reported(Histories(displacement[:, :whole], pressure[:, :whole], opened[:, :whole]), requested, n)
 
 
 def _unknowns(rectangle: Rectangle, v: Variant) -> int:
@@ -106,9 +117,7 @@ class Stepper:
         self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)[:, None]
         self.secant = each("secant").astype(bool)
         self.viscous, self.structural = each("viscous"), each("structural")
-        # the loads of a ramp begin with none, which leaves no acceleration to start from
-        consistent = [v.start == "consistent" and not v.ramp for v in variants]
-        self.consistent = np.array(consistent, dtype=float)
+        self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated, self.opens = each("updated"), each("opens").astype(bool)
         self.closing, self.opening = each("band"), each("band") * each("reopening")
         self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
@@ -362,13 +371,10 @@ def further_steps(variants: Sequence[Variant]) -> int:
     return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
 
 
-def reported(found: Histories, variants: Sequence[Variant], steps: Array, n: int) -> Histories:
+def reported(found: Histories, variants: Sequence[Variant], n: int) -> Histories:
     """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
     displacement, pressure, opened = found.displacement, found.pressure, found.open
     for j, v in enumerate(variants):
-        if v.ramp:
-            for values in (displacement, pressure):
-                values[:, j] = _ramped(values[:, j], v.ramp / float(steps[0]))
         if v.late:
             whole, part = math.floor(v.late), v.late - math.floor(v.late)
             P = pressure[:, j]

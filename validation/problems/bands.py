@@ -139,17 +139,23 @@ def standard(problem: Problem) -> Standard:
     InputError
         An exact motion could not be computed.
     """
-    return _standard(problem.scene.model_dump_json(by_alias=True, exclude_unset=True))
+    return _standard(definition_of(problem.scene))
+
+
+def definition_of(scene: Scene) -> str:
+    """Return a scene as JSON, by which what is computed of it is kept."""
+    return scene.model_dump_json(by_alias=True, exclude_unset=True)
 
 
 @functools.lru_cache(maxsize=32)
 def _standard(definition: str) -> Standard:
-    scene = _scene(definition)
+    scene = scene_of(definition)
     own = _motion(scene)
     return standard_of(own, {name: _motion(other) for name, other in changed_scenes(scene).items()})
 
 
-def _scene(definition: str) -> Scene:
+def scene_of(definition: str) -> Scene:
+    """Return the scene of such a definition."""
     import json
 
     return parse_scene(json.loads(definition), "scene")

@@ -17,12 +17,12 @@ import numpy as np
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import laws
-from validation.diagnosis.one_change import Residual, alike, fitted, left_along_slope, nearest_start
+from validation.diagnosis.one_change import Residual, alike, fitted, nearest, nearest_start
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
 from validation.problems.families import Change, of_damping, of_data, of_output, springs_alike
-from validation.problems.models import Base, Columns, Runs
+from validation.problems.models import Base, Columns, Runs, runs_of
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes import features
@@ -43,6 +43,7 @@ CLEAR = 10.0  # times more that every other cause must leave than the one that i
 ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
 PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
 NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
+HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which it has to have halved them
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
@@ -86,7 +87,7 @@ def cause(problem: Problem, history: History, held: Standard) -> Cause:
     seen = {name: x for name, x in history.columns.items() if name in held.bands}
     if told := _plain(seen, held):
         return told
-    runs = Runs(problem.scene, held)
+    runs = runs_of(problem.scene, held)
     found = Search(runs, seen).causes()
     if found:
         return _named(found)
@@ -149,27 +150,16 @@ class Search:
                 yield _with(law.id, law.words, {}, left, base, self.runs.scene)
 
     def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
-        """Yield the changes by one number that give the answer back."""
+        """Yield the changes by one number that give the answer back, of those that come nearest along their slope."""
         changes = list(of_data(self.runs, base, cheap))
         if base.exact:
             changes += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.seen))]
-        for change, start in self._pursued(changes, cheap):
-            u, _ = fitted(self._residual(change), start, ROUNDS, NUDGE)
-            left = self._left(change.changed(u))
+        starts = [nearest_start(self._residual(change), change) for change in changes]
+        for start in nearest(starts, PURSUED if cheap else PURSUED_SLOW, NEAR):
+            best = fitted(self._residual(start.change), start, ROUNDS, NUDGE, hopeless=HOPELESS)
+            left = self._left(best.change.changed(best.u))
             if left <= BAR:
-                yield _of_change(change, u, left, base, self.runs.scene)
-
-    def _pursued(self, changes: Sequence[Change], cheap: bool) -> list[tuple[Change, float]]:
-        """Return the changes that come nearest along their slope, each from its best start."""
-        tried = []
-        for change in changes:
-            residual = self._residual(change)
-            start = nearest_start(residual, change.starts)
-            tried.append((change, start, left_along_slope(residual, start, change.nudge)))
-        tried.sort(key=lambda item: item[2])
-        last = tried[min(len(tried), PURSUED if cheap else PURSUED_SLOW) - 1]
-        bar = max(last[2], NEAR)  # none is left out that may give the same rows
-        return [(change, start) for change, start, left in tried if left <= bar]
+                yield _of_change(best.change, best.u, left, base, self.runs.scene)
 
     def _residual(self, change: Change) -> Residual:
         """Return the function of the difference of the answer and a change's columns over norms and bands."""

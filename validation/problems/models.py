@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -14,7 +15,7 @@ from validation.diagnosis.changes import accurate
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
-from validation.problems.bands import Standard
+from validation.problems.bands import Standard, definition_of, scene_of
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -27,6 +28,7 @@ FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is 
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
 ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
 AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
+MOST_SAMPLES = 20_000  # runs that are kept: some 100 MB of the longest
 Columns = Mapping[str, Array]
 
 
@@ -59,31 +61,43 @@ class Base:
         return float(self.values.get("time.delta", time.delta))
 
 
+@functools.lru_cache(maxsize=2)
+def _runs(definition: str, held: Standard) -> Runs:
+    return Runs(scene_of(definition), held)
+
+
+def runs_of(scene: Scene, held: Standard) -> Runs:
+    """Return the runs of a scene, shared by all answers that are judged by one standard."""
+    return _runs(definition_of(scene), held)
+
+
 @dataclass(eq=False)
 class Runs:
-    """Runs of one scene, each kept."""
+    """Runs of one scene: each is made once, at the steps of the scene, for all answers to it."""
 
     scene: Scene
     held: Standard
-    kept: dict[str, History | None] = field(default_factory=dict)
+    samples: dict[str, Columns | None] = field(default_factory=dict)
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
         """Return a run at its own steps with other data, None where DDA cannot run it."""
+        return _run(self.scene, self._stepped(base, values or {}))
+
+    def _stepped(self, base: Base, values: Mapping[str, Any]) -> dict[str, Any]:
         t = self.scene.time
         steps = math.ceil(t.steps * (1 + AHEAD)) if base.exact else t.steps
-        asked = {**base.values, "time.step": t.step / base.every, "time.steps": steps * base.every, **(values or {})}
-        key = json.dumps(asked, sort_keys=True)
-        if key not in self.kept:
-            self.kept[key] = _run(self.scene, asked)
-        return self.kept[key]
+        return {**base.values, "time.step": t.step / base.every, "time.steps": steps * base.every, **values}
 
     def sampled(self, base: Base, values: Mapping[str, Any] | None = None) -> Columns | None:
         """Return a run at the steps of the scene."""
-        found = self.dense(base, values)
-        if found is None:
-            return None
-        last = self.scene.time.steps * base.every
-        return {name: x[base.every - 1 : last : base.every] for name, x in found.columns.items()}
+        key = json.dumps(self._stepped(base, values or {}), sort_keys=True)
+        if key not in self.samples:
+            if len(self.samples) >= MOST_SAMPLES:
+                self.samples.clear()
+            run = self.dense(base, values)
+            rows = slice(base.every - 1, self.scene.time.steps * base.every, base.every)
+            self.samples[key] = None if run is None else {name: x[rows].copy() for name, x in run.columns.items()}
+        return self.samples[key]
 
     def apart(self, seen: Columns, wanted: Columns) -> float:
         """Return the largest difference of columns over the exact motion's norm and over its band; inf if not finite.
