@@ -29,8 +29,7 @@ from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
-from validation.diagnosis.other_solvers import Goal, Rival, rivals
-from validation.diagnosis.other_solvers import RivalVerdict
+from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, rivals
 from validation.diagnosis.other_solvers import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.sentences import Said

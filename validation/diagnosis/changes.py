@@ -16,8 +16,8 @@ MORE_BLOCKS = 4
 def springs(scene: Scene, factor: float) -> Values:
     """Return the springs, the shear springs with them where they are stated."""
     c = scene.contact
-    found = {"contact.stiffness": c.stiffness * factor}
-    return found | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
+    stiffness = {"contact.stiffness": c.stiffness * factor}
+    return stiffness | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
 
 
 def friction(scene: Scene, factor: float) -> Values:
@@ -43,5 +43,5 @@ def accurate(scene: Scene) -> Values:
     """Return a scheme that does not damp and, of a column, more blocks; the step is left to who asks."""
     if scene.column is None:
         return dict(AVERAGE)
-    found = scene.definition()["column"]["layer"]
-    return AVERAGE | {"column.layer": [one | {"blocks": MORE_BLOCKS * one.get("blocks", 1)} for one in found]}
+    layers_of_scene = scene.definition()["column"]["layer"]
+    return AVERAGE | {"column.layer": [one | {"blocks": MORE_BLOCKS * one.get("blocks", 1)} for one in layers_of_scene]}

@@ -90,13 +90,13 @@ def in_units(factor: float) -> str:
 
 def of_discount(scene: Scene, discounts: Sequence[float]) -> CandidateChange[Values]:
     """Return another discount of the velocity at every step, gg = e^u; fits begin from some, times the scene's own."""
-    own = scene.time.discount
+    scene_discount = scene.time.discount
     return CandidateChange(
         "gg",
-        lambda gg: f"gg = {gg:.5g} where the scene has {own:.5g}",
+        lambda gg: f"gg = {gg:.5g} where the scene has {scene_discount:.5g}",
         lambda u: min(math.exp(u), 1.0),
         lambda u: {"time.gg": min(math.exp(u), 1.0)},
-        tuple(math.log(discount * own) for discount in discounts),
+        tuple(math.log(discount * scene_discount) for discount in discounts),
     )
 
 

@@ -97,7 +97,7 @@ def rivals(
     solvers: Sequence[str],
     goal: Goal,
     schemes: Iterable[tuple[float, float]] = NAMED.values(),
-    known: Sequence[Rival] = (),
+    at_hand: Sequence[Rival] = (),
 ) -> list[Rival]:
     """Return the solvers that apply to the scene, under the scene's own and other schemes.
 
@@ -111,11 +111,11 @@ def rivals(
         The history.
     schemes
         Pairs (alpha, delta), the likeliest first; by default the named ones.
-    known
+    at_hand
         Rivals of the same scene and the same history that are at hand.
     """
     t = scene.time
-    before = {(rival.model, rival.alpha, rival.delta): rival for rival in known}
+    before = {(rival.model, rival.alpha, rival.delta): rival for rival in at_hand}
     every = list(dict.fromkeys([(t.alpha, t.delta), *schemes]))
     ranked = []
     for name in solvers:

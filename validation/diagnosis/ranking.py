@@ -14,27 +14,29 @@ from validation.diagnosis.variant import Variant
 
 
 def ranking(
-    model: str, target: Target, found: Variant, free: Sequence[str], others: Sequence[Rival]
+    model: str, target: Target, best_variant: Variant, free: Sequence[str], others: Sequence[Rival]
 ) -> list[dict[str, Any]]:
     """Return every named scheme with what was found besides, and the other solvers, by misfit."""
-    pairs = dict.fromkeys([(found.alpha, found.delta), *NAMED.values()])
+    pairs = dict.fromkeys([(best_variant.alpha, best_variant.delta), *NAMED.values()])
     free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in ("alpha", "delta", "gg", "base")))))
     quick = target.quick()
-    fits = fit(quick, [(replace(found, alpha=a, delta=d), free) for a, d in pairs])
-    best = fit(target, [(found, ())])[0].misfit
+    fits = fit(quick, [(replace(best_variant, alpha=a, delta=d), free) for a, d in pairs])
+    best = fit(target, [(best_variant, ())])[0].misfit
     rows = [
         row_of(
             model,
             f.variant.alpha,
             f.variant.delta,
-            found.gg,
+            best_variant.gg,
             min(f.misfit, best) if i == 0 else f.misfit,
             compliance(target, f.variant),
         )
         for i, f in enumerate(fits)
     ]
     rows += [
-        row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, compliance(target, replace(found, softness=r.softness)))
+        row_of(
+            r.model, r.alpha, r.delta, r.gg, r.misfit, compliance(target, replace(best_variant, softness=r.softness))
+        )
         for r in others
     ]
     return sorted(rows, key=lambda row: row["misfit"])

@@ -66,9 +66,9 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
                 displacement[:, members], pressure[:, members] = columns
             else:
                 every = np.repeat(longer / parts, parts)
-                done = stepper.loop(every)
+                columns_of_loop = stepper.loop(every)
                 displacement[:, members], pressure[:, members], opened[:, members] = (
-                    c[parts - 1 :: parts] for c in done
+                    c[parts - 1 :: parts] for c in columns_of_loop
                 )
         from_rest = dict(zip(started, range(len(requested), len(variants)), strict=True))
         for j, v in enumerate(requested):
@@ -221,15 +221,15 @@ class Stepper:
         one = state[..., -1:]
         alpha, delta, am, af = (c[:, None] for c in (self.alpha, self.delta, self.mean_mass, self.mean_force))
         ahead = self.gg_displacement * U + (0.5 - alpha) * W
-        kept = self.gg_velocity * U
-        rate = kept + (1 - delta) * W
+        discounted = self.gg_velocity * U
+        rate = discounted + (1 - delta) * W
         internal = times(q.carried, x) + (q.spring * state[..., 0])[..., None] * q.gap
         if d > 2:
             internal[..., 2 if d < 6 else 3] += q.shear * state[..., 1]
         pull = one * q.load - internal - (1 - af) * times(q.stiffness, ahead)
         right = dt * dt * pull - times(q.mass, am * W)
         if self.damped:
-            right = right - dt * times(self._damping(q), (1 - af) * rate + af * kept)
+            right = right - dt * times(self._damping(q), (1 - af) * rate + af * discounted)
         W1 = times(inverse, right)
         increment = ahead + alpha * W1
         U1 = np.where(self.secant[:, None], increment, rate + delta * W1)
@@ -294,8 +294,8 @@ class Stepper:
         for _ in range(math.ceil(steps / length)):
             blocks.append(times(rows, state).reshape(n, length, 2))
             state = times(power, state)
-        shown = np.concatenate(blocks, axis=1)[:, :steps]
-        return shown[..., 0].T, shown[..., 1].T
+        observed = np.concatenate(blocks, axis=1)[:, :steps]
+        return observed[..., 0].T, observed[..., 1].T
 
     def _exponential(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step that is exact in time: of x' = U, M U' = dt^2 (F - f) - dt C U, t over dt."""
@@ -320,14 +320,14 @@ class Stepper:
         """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
         n, moves = len(self.variants), bool(np.any(self.updated))
         wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
-        known: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
+        prepared_steps: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
 
         def prepared(dt: float, closed: Flags) -> tuple[Equations, Array]:
             key = (dt, closed.tobytes())
-            if moves or key not in known:
+            if moves or key not in prepared_steps:
                 q = self.equations(closed, wide, high)
-                known[key] = q, self.inverse(q, dt)
-            return known[key]
+                prepared_steps[key] = q, self.inverse(q, dt)
+            return prepared_steps[key]
 
         first = self.equations(on, wide, high)
         state, observers = self.start(first, float(steps[0])), self.observers(first)
@@ -351,11 +351,11 @@ class Stepper:
                 wide = wide * (1 + self.updated * (strain[:, 2] if self.d > 2 else 0.0))
             end[:, 1] = np.where(on, end[:, 1], 0.0)
             state = end
-            shown = times(observers, state)
-            rows.append(np.column_stack([shown[:, 0], np.where(on, shown[:, 1], 0.0)]))
+            observed = times(observers, state)
+            rows.append(np.column_stack([observed[:, 0], np.where(on, observed[:, 1], 0.0)]))
             flags.append(~on)
-        found = np.array(rows)
-        return found[..., 0], found[..., 1], np.array(flags)
+        columns = np.array(rows)
+        return columns[..., 0], columns[..., 1], np.array(flags)
 
 
 def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) -> Array:
@@ -371,9 +371,13 @@ def further_steps(variants: Sequence[Variant]) -> int:
     return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
 
 
-def reported(found: Histories, variants: Sequence[Variant], n: int) -> Histories:
+def reported(histories_of_steps: Histories, variants: Sequence[Variant], n: int) -> Histories:
     """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
-    displacement, pressure, opened = found.displacement, found.pressure, found.open
+    displacement, pressure, opened = (
+        histories_of_steps.displacement,
+        histories_of_steps.pressure,
+        histories_of_steps.open,
+    )
     for j, v in enumerate(variants):
         if v.late:
             whole, part = math.floor(v.late), v.late - math.floor(v.late)

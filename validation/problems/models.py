@@ -62,13 +62,13 @@ class Base:
 
 
 @functools.lru_cache(maxsize=2)
-def _runs(definition: str, held: Standard) -> Runs:
-    return Runs(scene_of(definition), held)
+def _runs(definition: str, reference: Standard) -> Runs:
+    return Runs(scene_of(definition), reference)
 
 
-def runs_of(scene: Scene, held: Standard) -> Runs:
+def runs_of(scene: Scene, reference: Standard) -> Runs:
     """Return the runs of a scene, shared by all answers that are judged by one standard."""
-    return _runs(definition_of(scene), held)
+    return _runs(definition_of(scene), reference)
 
 
 @dataclass(eq=False)
@@ -76,7 +76,7 @@ class Runs:
     """Runs of one scene: each is made once, at the steps of the scene, for all answers to it."""
 
     scene: Scene
-    held: Standard
+    standard: Standard
     samples: dict[str, Columns | None] = field(default_factory=dict)
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
@@ -99,25 +99,25 @@ class Runs:
             self.samples[key] = None if run is None else {name: x[rows].copy() for name, x in run.columns.items()}
         return self.samples[key]
 
-    def apart(self, seen: Columns, wanted: Columns) -> float:
+    def apart(self, answer: Columns, columns: Columns) -> float:
         """Return the largest difference of columns over the exact motion's norm and over its band; inf if not finite.
 
         Columns that one of them lacks, and rows that are not judged, do not count.
         """
-        found = [0.0]
-        for name, band in self.held.bands.items():
-            if name in seen and name in wanted:
-                size = float(np.linalg.norm(self.held.exact.columns[name][: band.rows]))
+        shares = [0.0]
+        for name, band in self.standard.bands.items():
+            if name in answer and name in columns:
+                size = float(np.linalg.norm(self.standard.exact.columns[name][: band.rows]))
                 with np.errstate(all="ignore"):
-                    gap = float(np.linalg.norm(seen[name][: band.rows] - wanted[name][: band.rows]))
-                found.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
-        return max(found)
+                    gap = float(np.linalg.norm(answer[name][: band.rows] - columns[name][: band.rows]))
+                shares.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
+        return max(shares)
 
     def exact(self) -> Base | None:
         """Return the cheapest run that stands for the exact motion, None where none comes near enough."""
         for base in self._accurate():
-            seen = self.sampled(base)
-            if seen is not None and self.apart(seen, self.held.exact.columns) <= ACCURATE:
+            columns = self.sampled(base)
+            if columns is not None and self.apart(columns, self.standard.exact.columns) <= ACCURATE:
                 return base
         return None
 
@@ -131,18 +131,18 @@ class Runs:
     def schemes(self) -> Iterator[Base]:
         """Yield the schemes by which programs step, at the steps of the scene and, the usual ones, at parts of them."""
         t, slow = self.scene.time, features.ROTATION in features.of(self.scene)
-        own = (t.alpha, t.delta)
-        yield Base(scheme_words(*own, t.discount), {}, usual=True)
+        scene_pair = (t.alpha, t.delta)
+        yield Base(scheme_words(*scene_pair, t.discount), {}, usual=True)
         if slow:
             return
-        for pair in dict.fromkeys([own, *NAMED.values()]):
+        for pair in dict.fromkeys([scene_pair, *NAMED.values()]):
             for start in ("zero", "consistent"):
-                if (pair, start) != (own, t.start):
+                if (pair, start) != (scene_pair, t.start):
                     usual = (pair, start) == (NAMED["average acceleration"], "consistent")
                     words = f"{scheme_words(*pair, t.discount)}, initial acceleration {start}"
                     yield Base(words, {"time.alpha": pair[0], "time.delta": pair[1], "time.start": start}, usual=usual)
         for every in (2, 4):
-            for pair in dict.fromkeys([own, (0.25, 0.5)]):
+            for pair in dict.fromkeys([scene_pair, (0.25, 0.5)]):
                 values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}
                 words = f"{scheme_words(*pair, t.discount)} at a step of {t.step / every:g} s"
                 yield Base(words, values, every)
@@ -150,12 +150,12 @@ class Runs:
 
 def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
     try:
-        asked = scene.with_values(dict(values))
+        changed = scene.with_values(dict(values))
         judged = get_solver(by_role(Role.JUDGED)[0])
-        if judged.refusal(asked) is not None:
+        if judged.refusal(changed) is not None:
             return None
         with np.errstate(all="ignore"):
-            run = judged.solve(asked)
+            run = judged.solve(changed)
     except (InputError, ArithmeticError, ValueError):
         return None
     whole = run.outcome is Outcome.COMPLETED and run.history is not None

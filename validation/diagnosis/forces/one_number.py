@@ -71,10 +71,10 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
         lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
         tuple(map(math.log, FACTORS)),
     )
-    found = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
+    changes = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
     width = body_of(scene).x[1] - body_of(scene).x[0]
     limit = body_of(scene).coefficient * abs(float(body_of(scene).load[1])) / 2
-    found.append(
+    changes.append(
         CandidateChange(
             "cohesion",
             lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
@@ -83,7 +83,7 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
             tuple(math.log(share * limit / (width / 2)) for share in COHESIONS if limit > 0),
         )
     )
-    return [*found, *_schemes(scene), _other_rules(scene)]
+    return [*changes, *_schemes(scene), _other_rules(scene)]
 
 
 def _other_rules(scene: Scene) -> CandidateChange[Values]:
@@ -96,7 +96,7 @@ def _other_rules(scene: Scene) -> CandidateChange[Values]:
 
 def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
     """Return the other named schemes and starts, which have no number."""
-    t, found = scene.time, []
+    t, schemes = scene.time, []
     for name, (alpha, delta) in NAMED.items():
         for start in ("zero", "consistent"):
             same = (alpha, delta) == (t.alpha, t.delta)
@@ -104,10 +104,12 @@ def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
                 continue
             values: Values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
             words = f"the initial acceleration is {start}" if same else f"the scheme is {name}, start {start}"
-            found.append(
-                CandidateChange("start" if same else "scheme", lambda _, said=words: said, float, lambda _, v=values: v)  # type: ignore[misc]
+            schemes.append(
+                CandidateChange(
+                    "start" if same else "scheme", lambda _, sentence=words: sentence, float, lambda _, v=values: v
+                )  # type: ignore[misc]
             )
-    return found
+    return schemes
 
 
 def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange | None, list[OneChange]]:
@@ -149,5 +151,5 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
             explanations.append(OneChange(fit.change.id, value, fit.change.words(fit.change.value(fit.u)), run))
     clear = alike(explanations, lambda change: change.run.left, CLEAR)
     ids = {change.id for change in clear}
-    named = clear[0] if len(ids) == 1 and not ids & set(OUTSIDE) else None
-    return named, clear
+    certain = clear[0] if len(ids) == 1 and not ids & set(OUTSIDE) else None
+    return certain, clear
