@@ -9,12 +9,11 @@ import pytest
 
 from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Variant
+from validation.diagnosis.variant import Variant, rectangle_of
 from validation.errors import InputError
 
 SCENE = load_scene("figures-3-4").with_values(

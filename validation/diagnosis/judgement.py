@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,19 +15,16 @@ from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.rectangle import OPENING, own_variant, rectangle_of
 from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.one_number import OneChange
-from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, rivals
-from validation.diagnosis.ranking import ranking, row_of
+from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, readings_of, slips
 from validation.diagnosis.search import beside, paired, simple
-from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Rectangle, Variant
+from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes import features
@@ -48,6 +46,17 @@ class Case:
     reading: Reading
     target: Target
     own: Variant
+
+    @cached_property
+    def scene_run(self) -> Histories:
+        """The scene's own run at the steps of the history."""
+        return computed(self.target.column, [self.own], self.target.steps)
+
+    @property
+    def expected(self) -> tuple[Array, Array]:
+        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
+        rows = self.target.rows
+        return self.scene_run.displacement[rows, 0], self.scene_run.pressure[rows, 0]
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -81,9 +90,10 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         return _without_rectangle(scene, foreign)
     scene_variant = own_variant(scene)
     read = readings_of(scene, column, scene_variant, foreign)
-    factor = _growth(column, scene_variant, read[0])
+    likeliest = _case(scene, foreign, read[0], column, scene_variant)
+    factor = _growth(likeliest)
     if factor is not None:
-        return _diverged(_case(scene, foreign, read[0], column, scene_variant), factor)
+        return _diverged(likeliest, factor)
     case, verdict = _best(scene, foreign, read, column, scene_variant)
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
@@ -93,7 +103,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         names = RIVALS if scene.block.poisson == 0 else ("fem",)
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
         if theirs is not None and theirs.explained:
-            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), _own_run(case))
+            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
         verdict = paired(case.target, scene_variant, verdict)
     elif not (verdict.explained or verdict.reached):
         verdict = beside(case.target, scene_variant, verdict)
@@ -119,12 +129,11 @@ def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Rectangle, s
     return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), scene_variant)
 
 
-def _growth(column: Rectangle, scene_variant: Variant, reading: Reading) -> float | None:
+def _growth(case: Case) -> float | None:
     """Return the growth in a step of the displacement or the pressure, None if both are bounded."""
-    rows, run = reading.stepping.rows, computed(column, [scene_variant], reading.stepping.steps)
-    pairs = [(reading.displacement, run.displacement), (reading.pressure, run.pressure)]
-    factors = [evidence.growth(values, expected[rows, 0]) for values, expected in pairs if values is not None]
-    return next((f for f in factors if f is not None), None)
+    pairs = zip((case.reading.displacement, case.reading.pressure), case.expected, strict=True)
+    factors = [evidence.growth(values, expected) for values, expected in pairs if values is not None]
+    return next((factor for factor in factors if factor is not None), None)
 
 
 def _best(
@@ -165,9 +174,7 @@ def _others(scene: Scene, case: Case, verdict: Verdict, at_hand: Sequence[Rival]
 
 
 def _stages(case: Case, factor: float | None = None) -> list[Stage]:
-    rows, run = case.reading.stepping.rows, computed(case.target.column, [case.own], case.target.steps)
-    expected = run.displacement[rows, 0], run.pressure[rows, 0]
-    return evidence.stages(case.target, expected, case.reading.slips, case.reading.stepping.note, factor)
+    return evidence.stages(case.target, case.expected, case.reading.slips, case.reading.stepping.note, factor)
 
 
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
@@ -248,8 +255,8 @@ def _opened(target: Target, v: Variant) -> list[int]:
 def _diverged(case: Case, factor: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
     target, stages = case.target, _stages(case, factor)
-    expected = histories(target.column, [case.own], target.steps).displacement[:, 0]
-    first_departure = departure.unbounded(expected[target.rows], target.displacement, target.rows)
+    expected = case.expected[0]
+    first_departure = departure.unbounded(expected, target.displacement, target.rows)
     time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
@@ -260,7 +267,7 @@ def _diverged(case: Case, factor: float) -> Answer:
         None,
         sentences.diverged(first_departure, factor),
         _notes(case.foreign, case.reading),
-        curves={"the file": (time, target.displacement), DDA: (time, expected[target.rows])},
+        curves={"the file": (time, target.displacement), DDA: (time, expected)},
         values={DIVERGED: float(f"{factor:.6g}")},
         evidence=tuple(stages),
     )
@@ -270,11 +277,6 @@ def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
     of_times = (reading.stepping.note,) if reading.stepping.note else ()
     slipped = tuple(slip.words for slip in reading.corrected)
     return (*foreign.notes, *of_times, *slipped)
-
-
-def _own_run(case: Case) -> Array:
-    """Return the displacement of DDA's own run of the scene at every step [m]."""
-    return computed(case.target.column, [case.own], case.target.steps).displacement[:, 0]
 
 
 def _answer_of_rival(

@@ -13,8 +13,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
-from validation.diagnosis.numbers import numbers
+from validation.diagnosis.numbers import Values, numbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 

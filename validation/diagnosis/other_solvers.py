@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.causes import BENIGN_COMPLIANCE
-from validation.diagnosis.fits.fit import NAMED
-from validation.diagnosis.fits.target import Bar, norm
+from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
+from validation.diagnosis.fits.fit import NAMED, fit, named
+from validation.diagnosis.fits.target import Bar, Target, norm
 from validation.diagnosis.one_change import CandidateChange, Fitted, fitted, nearest_start
 from validation.diagnosis.readings import Reading
+from validation.diagnosis.variant import Variant
 from validation.errors import InputError
 from validation.runs.history import PRESSURE, Array
 from validation.scenes.scene import Scene
@@ -252,3 +254,41 @@ def _causes(scene: Scene, rival: Rival) -> tuple[list[str], dict[str, float]]:
         causes.append(name)
         values[name] = float(f"{np.exp(-rival.softness):.6g}") if name == "springs-factor" else rival.softness
     return causes, values
+
+
+# ---- the ranking ----------------------------------------------------------------------------------------------------
+
+
+def ranking(
+    model: str, target: Target, best: Variant, free: Sequence[str], others: Sequence[Rival]
+) -> list[dict[str, Any]]:
+    """Return every named scheme with what else explains the history, and the other solvers, by misfit."""
+    pairs = dict.fromkeys([(best.alpha, best.delta), *NAMED.values()])
+    free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in ("alpha", "delta", "gg", "base")))))
+    fits = fit(target.quick(), [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
+    misfits = [each.misfit for each in fits]
+    misfits[0] = min(misfits[0], fit(target, [(best, ())])[0].misfit)
+    rows = []
+    for each, misfit in zip(fits, misfits, strict=True):
+        v = each.variant
+        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target, v)))
+    for rival in others:
+        softer = compliance(target, replace(best, softness=rival.softness))
+        rows.append(row_of(rival.model, rival.alpha, rival.delta, rival.gg, rival.misfit, softer))
+    return sorted(rows, key=lambda row: row["misfit"])
+
+
+def row_of(
+    model: str, alpha: float | None, delta: float | None, gg: float | None, misfit: float, soft: float | None
+) -> dict[str, Any]:
+    """Return a line of the ranking; a scheme that grows has no finite misfit worth a number."""
+    name = None if alpha is None or delta is None else named(alpha, delta)
+    return {
+        "model": model,
+        "name": name,
+        "alpha": alpha,
+        "delta": delta,
+        "gg": gg,
+        "misfit": float(f"{min(misfit, 1e6):.6g}"),
+        "compliance": None if soft is None else float(f"{soft:.4g}"),
+    }

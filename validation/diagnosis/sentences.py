@@ -19,17 +19,8 @@ if TYPE_CHECKING:
     from validation.diagnosis.readings import Slip
 
 INTEGRATOR = (
-    *(
-        "scheme",
-        "gg",
-        "gg-in-one-formula",
-        "start",
-        "hht",
-        "generalised-alpha",
-        "substeps",
-        "exact-in-time",
-        "velocity",
-    ),
+    *("scheme", "gg", "gg-in-one-formula", "start", "hht", "generalised-alpha", "substeps"),
+    *("exact-in-time", "velocity"),
 )
 OUTPUT = ("sign", "unit", "time-shift", "pressure-shift", "pressure-factor", "reported-point")
 HALF = 0.5

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.changes import Values, friction, layers, sized, springs
+from validation.diagnosis.numbers import Values, friction, layers, sized, springs
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
+from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import UNITS, CandidateChange, of_discount, of_numbers
 from validation.problems.models import Base, Columns, Runs
 from validation.runs.history import Array, History

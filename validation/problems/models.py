@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.changes import accurate
 from validation.diagnosis.fits.fit import NAMED
+from validation.diagnosis.numbers import accurate
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard, definition_of, scene_of

@@ -36,21 +36,8 @@ SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "w
         "inertia": 0.1, "gravity": 0.1}  # fmt: skip
 LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -15.0, "base": 0.0, "weight": 0.0, "viscous": 0.0,
        "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0}  # fmt: skip
-HIGH = {
-    "alpha": 5.0,
-    "delta": 5.0,
-    "gg": 1.0,
-    "softness": 15.0,
-    "base": 1e4,
-    "weight": 1.1,
-    "poisson": 0.49,
-    "point": 1.0,
-    "viscous": 1e5,
-    "structural": 1.0,
-    "ramp": 1e3,
-    "spectral": 1.0,
-    "gravity": 50.0,
-}
+HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.0, "softness": 15.0, "base": 1e4, "weight": 1.1, "poisson": 0.49,
+        "point": 1.0, "viscous": 1e5, "structural": 1.0, "ramp": 1e3, "spectral": 1.0, "gravity": 50.0}  # fmt: skip
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of density, modulus, side, load and what is reported: other units
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96

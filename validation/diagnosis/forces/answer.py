@@ -12,13 +12,13 @@ from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.fits.rectangle import upright
 from validation.diagnosis.forces.forward import at_step, displacements
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
 from validation.diagnosis.forces.motion import body_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip
 from validation.diagnosis.sentences import per_cent, scheme_words
+from validation.diagnosis.variant import upright
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, Array
 from validation.scenes import features

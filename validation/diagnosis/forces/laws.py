@@ -63,15 +63,13 @@ class _Seen:
     acceleration: Array
 
 
-def follow(body: Body, motion: Motion, lagged: bool, rubs: bool = True) -> Followed:
+def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
     """Follow a motion with a law of friction.
 
     Parameters
     ----------
     lagged
         Whether a slipping corner has the friction of the step before, and forgets its shear.
-    rubs
-        Whether the corners slip at all; glued in shear otherwise.
     """
     observer, corners = _Observer(body, motion), (_Corner(), _Corner())
     resultants, rows, before = motion.forces(body), [], CLOSED[0]
@@ -79,7 +77,7 @@ def follow(body: Body, motion: Motion, lagged: bool, rubs: bool = True) -> Follo
         shears = tuple(_assumed(body, corner) for corner in corners)
         for _ in range(TRIES):
             end = observer.step(place, force, corners, shears, before)
-            responses = [_asked(body, corner, end, c, lagged, rubs) for c, corner in enumerate(corners)]
+            responses = [_asked(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
             new_shears = tuple(one.slip_force for one in responses)
             if lagged or new_shears == shears:
                 break
@@ -117,7 +115,7 @@ def _assumed(body: Body, corner: _Corner) -> float | None:
     return math.copysign(body.coefficient * max(corner.normal, 0.0) + body.cohesion, corner.state)
 
 
-def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool, rubs: bool) -> _Asked:
+def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool) -> _Asked:
     """Return what a law asks of a corner at the end of a step."""
     slide, gap = end.slide[c], end.gap[c]
     if not end.closed[c]:
@@ -127,7 +125,7 @@ def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool, rubs: 
         past = corner.gap / (corner.gap - gap) if corner.gap > 0 > gap else 0.0
         state, reference = STICK, corner.slide + past * (slide - corner.slide)
     shear = -body.shear * (slide - reference)
-    limit = body.coefficient * max(end.normal[c], 0.0) + body.cohesion if rubs else math.inf
+    limit = body.coefficient * max(end.normal[c], 0.0) + body.cohesion
     if not lagged:
         if abs(shear) <= limit:
             return _Asked(shear, None, STICK, reference)

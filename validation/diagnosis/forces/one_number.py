@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.forces.forward import NOISE, Agreement, agreement, displacements
 from validation.diagnosis.forces.motion import body_of
+from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import (
     CandidateChange,
     Residual,
@@ -83,15 +83,10 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
             tuple(math.log(share * limit / (width / 2)) for share in COHESIONS if limit > 0),
         )
     )
-    return [*changes, *_schemes(scene), _other_rules(scene)]
-
-
-def _other_rules(scene: Scene) -> CandidateChange[Values]:
-    """Return the other rules of friction, which the printed digits may show in the motion and not in its forces."""
-    lagged = scene.contact.rules != "lagged"
-    words = "friction lags" if lagged else "friction at a slipping corner is that of the same step"
-    values: Values = {"contact.rules": "lagged" if lagged else "consistent"}
-    return CandidateChange("lagged-friction", lambda _: words, float, lambda _: values)
+    if scene.contact.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
+        lagged: Values = {"contact.rules": "lagged"}
+        changes.append(CandidateChange("lagged-friction", lambda _: "friction lags", float, lambda _: lagged))
+    return [*changes, *_schemes(scene)]
 
 
 def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
