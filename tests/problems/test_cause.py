@@ -1,9 +1,11 @@
 """The cause of a failure: named where it is certain, silent elsewhere."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
+from faults import seams
 
 from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
@@ -202,13 +204,11 @@ def test_a_discount_where_the_scenes_own_scheme_is_exact_is_named() -> None:
 def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:
     """What is tried first does not depend on the answer: another one needs no more than the runs of its own fits."""
     runs: list[object] = []
-    plain = models._run
 
-    def counted(scene: object, values: object) -> object:
-        runs.append(values)
-        return plain(scene, values)
+    def counted(run: Any) -> Any:
+        return lambda scene, values: runs.append(values) or run(scene, values)
 
-    monkeypatch.setattr(models, "_run", counted)
+    seams.PROBLEM_RUN.wrap(monkeypatch, counted)
     models._runs.cache_clear()
     exact = standard(problem("locked")).exact
     for factor in (1.3, 1.4):

@@ -150,7 +150,8 @@ def _on_softer_springs(scene: Scene, name: str, goal: Goal) -> Rival | None:
         best = _best(change, Fitted(change, 0.0, plain), goal)
     except InputError:  # the step lies beyond the limit of this scheme
         return None
-    return Rival(name, *_scheme(scene, name), best.remainder, best.u, answer(best.u)[1], unsoftened, plain)
+    alpha, delta, gg = _scheme(scene, name)
+    return Rival(name, alpha, delta, gg, best.remainder, best.u, answer(best.u)[1], unsoftened, plain)
 
 
 def slipped(scene: Scene, name: str, goal: Goal) -> list[Rival]:
@@ -174,10 +175,9 @@ def slipped(scene: Scene, name: str, goal: Goal) -> list[Rival]:
         except InputError:  # the step lies beyond the limit of the scheme
             continue
         factor = min(math.exp(best.u), largest) * (data[slip] if slip == "gg" else 1.0)
-        scheme = _scheme(scene, name)
-        slipped.append(
-            Rival(name, *scheme, best.remainder, 0.0, displacement, displacement, best.remainder, slip, factor)
-        )
+        alpha, delta, gg = _scheme(scene, name)
+        misfit = best.remainder
+        slipped.append(Rival(name, alpha, delta, gg, misfit, 0.0, displacement, displacement, misfit, slip, factor))
     return slipped
 
 

@@ -85,7 +85,7 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
     )
     if scene.contact.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
         lagged: Values = {"contact.rules": "lagged"}
-        changes.append(CandidateChange("lagged-friction", lambda _: "friction lags", float, lambda _: lagged))
+        changes.append(_fixed("lagged-friction", "friction lags", lagged))
     return [*changes, *_schemes(scene)]
 
 
@@ -99,12 +99,12 @@ def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
                 continue
             values: Values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
             words = f"the initial acceleration is {start}" if same else f"the scheme is {name}, start {start}"
-            schemes.append(
-                CandidateChange(
-                    "start" if same else "scheme", lambda _, sentence=words: sentence, float, lambda _, v=values: v
-                )  # type: ignore[misc]
-            )
+            schemes.append(_fixed("start" if same else "scheme", words, values))
     return schemes
+
+
+def _fixed(name: str, words: str, values: Values) -> CandidateChange[Values]:
+    return CandidateChange(name, lambda _: words, float, lambda _: values)
 
 
 def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange | None, list[OneChange]]:
