@@ -14,14 +14,13 @@ from oracles.shi_dda import Program, run, write_measured_point
 
 from validation import load_scene, solve
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.other_solvers import Goal, slipped
 from validation.diagnosis.reading import Foreign, read
 from validation.diagnosis.sentences import span
 from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Variant
+from validation.diagnosis.variant import Variant, rectangle_of
 from validation.scenes.scene import Scene
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda"

@@ -26,15 +26,13 @@ from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compl
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
-from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
-from validation.diagnosis.other_solvers import Goal, Rival, rivals
-from validation.diagnosis.other_verdict import RivalVerdict
-from validation.diagnosis.other_verdict import _causes as causes_of_rival
+from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, rivals
+from validation.diagnosis.other_solvers import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.sentences import Said
-from validation.diagnosis.variant import Variant
+from validation.diagnosis.variant import Variant, rectangle_of
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare

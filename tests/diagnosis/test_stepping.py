@@ -64,10 +64,13 @@ def test_what_is_exact_in_time_is_the_limit_of_fine_steps() -> None:
     close(stepped(replace(OWN, exact=True)), [column[255::256] for column in fine], 3e-4)
 
 
-def test_a_load_that_comes_on_in_time_is_that_of_a_plain_code() -> None:
-    program = Plain(dt=DT, steps=STEPS, ramp=0.0125)
+@pytest.mark.parametrize("consistent", [False, True])
+def test_a_load_that_comes_on_in_time_is_that_of_a_plain_code(consistent: bool) -> None:
+    """A program may start from the acceleration of the full load, although none of it is there at first."""
+    program = Plain(dt=DT, steps=STEPS, ramp=0.0125, alpha=0.3, delta=0.6, consistent=consistent)
     rectangle = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
-    close(stepped(replace(OWN, ramp=0.0125), rectangle), run(program))
+    start: Any = "consistent" if consistent else "zero"
+    close(stepped(replace(OWN, alpha=0.3, delta=0.6, gg=1.0, ramp=0.0125, start=start), rectangle), run(program))
 
 
 @pytest.mark.parametrize(

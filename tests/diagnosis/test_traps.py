@@ -67,6 +67,13 @@ def test_a_slip_is_named_with_its_number(slip: dict[str, Any], causes: list[str]
     named(judged(**slip), causes, values)
 
 
+@pytest.mark.parametrize("consistent", [True, pytest.param(False, marks=pytest.mark.long)])
+def test_a_ramp_is_named_whichever_acceleration_it_starts_from(consistent: bool) -> None:
+    """The scene starts consistently; the program from the acceleration of the full load, or of none."""
+    base = replace(PLAIN, alpha=0.25, delta=0.5, consistent=True)
+    named(judged(base, ramp=0.01, consistent=consistent), ["load-ramp"], {"load-ramp": 0.01})
+
+
 GIVEN = replace(PLAIN, q=2e5, g=9.81)  # a scene with gravity, which a program may have forgotten or turned
 
 

@@ -9,12 +9,11 @@ import pytest
 
 from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.fits.rectangle import rectangle_of
 from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Variant
+from validation.diagnosis.variant import Variant, rectangle_of
 from validation.errors import InputError
 
 SCENE = load_scene("figures-3-4").with_values(
@@ -44,6 +43,17 @@ def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]
     assert (answer.opened is None) == (causes == ["contact-locked"])
     assert answer.departs == bool(causes)
     assert (answer.departure is None) == (set(causes) <= {"own-weight"})
+
+
+def test_a_dead_band_between_two_closings_is_named() -> None:
+    """Wider than what the springs carry at rest; from 0.93 to 1.07 mm the rows are the same."""
+    stiff = {"contact.stiffness": 3e10, "block.young": 3e9, "block.density": 2900.0, "load.pressure": 6e6}
+    plain = SCENE.with_values(stiff | {"time.step": 2e-4, "time.steps": 80})
+    banded = solve(plain.with_values({"contact.band": [1e-3, 1e-6]}), "dda")
+    answer = compare(plain, Foreign(banded.time, banded.displacement))
+    assert answer.causes == ["dead-band"]
+    low, high = answer.intervals["dead-band"]
+    assert low < 1e-3 < high
 
 
 def test_the_batch_and_the_suite_s_solver_step_alike() -> None:

@@ -44,6 +44,7 @@ from fem_reference.scheme import newmark as fem_newmark
 from validation.diagnosis import decision, judgement, other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
+from validation.problems import models
 from validation.runs import provenance
 from validation.solvers import fenicsx, registry
 
@@ -178,6 +179,7 @@ DIAGNOSIS_OPENED = Seam(judgement, judgement._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
+PROBLEM_RUN = Seam(models, models._run)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)

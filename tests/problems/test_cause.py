@@ -1,12 +1,15 @@
 """The cause of a failure: named where it is certain, silent elsewhere."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
+from faults import seams
 
 from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
+from validation.problems import models
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import Word, judge
@@ -196,3 +199,21 @@ def test_a_discount_where_the_scenes_own_scheme_is_exact_is_named() -> None:
     found = named("sliding", get_solver("dda").solve(problem("sliding").scene.with_values({"time.gg": 0.98})).history)
     assert found.ids[-1] == "gg"
     assert found.values["gg"] == pytest.approx(0.98, rel=1e-4)
+
+
+def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:
+    """What is tried first does not depend on the answer: another one needs no more than the runs of its own fits."""
+    runs: list[object] = []
+
+    def counted(run: Any) -> Any:
+        return lambda scene, values: runs.append(values) or run(scene, values)
+
+    seams.PROBLEM_RUN.wrap(monkeypatch, counted)
+    models._runs.cache_clear()
+    exact = standard(problem("locked")).exact
+    for factor in (1.3, 1.4):
+        named("locked", History(exact.time, {name: factor * x for name, x in exact.columns.items()}))
+        runs.append(None)
+    first = runs.index(None)
+    assert first > 100
+    assert len(runs) - first - 2 < first / 3

@@ -118,12 +118,12 @@ def test_a_history_at_other_instants_is_refused() -> None:
 
 def test_numbers_that_people_understand() -> None:
     asked = short("opening")
-    told = {number.name: number for number in judge(asked, standard(asked).exact).told}
+    told = {number.name: number for number in judge(asked, standard(asked).exact).quantities}
     assert told["openings"].value == told["openings"].exact == 5
-    landing = judge(short("rocking"), standard(short("rocking")).exact).told[1]
+    landing = judge(short("rocking"), standard(short("rocking")).exact).quantities[1]
     assert landing.name == "instant of landing"
     assert landing.value == pytest.approx(short("rocking").truth.until, rel=1e-4)
-    swings = judge(short("locked"), history(short("locked"), lambda t, x: x)).told
+    swings = judge(short("locked"), history(short("locked"), lambda t, x: x)).quantities
     assert swings[0].value == pytest.approx(54.84, rel=1e-3)
     assert PRESSURE not in {number.name for number in swings}
 

@@ -14,7 +14,7 @@ from oracles.made_cases import line_in, made_history
 from validation.problems.bands import Band, Standard
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import problem
-from validation.problems.told import Told
+from validation.problems.quantities import Quantity
 from validation.report.blocks import Callout, Table
 from validation.report.chapters import judged as chapter
 from validation.report.figures.curves import style_of
@@ -29,7 +29,7 @@ def judged() -> chapter.Judged:
         Column("contact_pressure", Word.PASS, 0.0125, 0.025, 0.2, "", 0.2),
         Column("rotation", Word.NOT_JUDGED, None, None, 0.3, "it is zero throughout"),
     )
-    found = Judgement("locked", columns, (Told("first peak", "mm", 2.0, 3.0),))
+    found = Judgement("locked", columns, (Quantity("first peak", "mm", 2.0, 3.0),))
     bands: Any = {name: Band(0.05, datum, 3, 0.3) for name, datum in
                   (("displacement", "block.young"), ("contact_pressure", "load.pressure"))}  # fmt: skip
     held = Standard(EXACT, {}, bands)

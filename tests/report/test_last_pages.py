@@ -12,7 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, names_at
 
-from validation.problems.told import Told
+from validation.problems.quantities import Quantity
 from validation.report.appendix import alarms as appendix_alarms
 from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
@@ -196,9 +196,9 @@ def test_a_count_that_is_none_is_no_small_number() -> None:
     count = verdict(scene, 0.0, (0.0, 0.0), metric="displacement.fine_settling_step")
     error = verdict(scene, 0.0, (0.0, 1e-9), metric="displacement.l2")
     assert [gates.value_cell(v["value"], v["metric"]) for v in (count, error)] == ["0", "<10⁻¹²"]
-    (told,) = judged_chapter._further_numbers((Told("openings", "1", 0.0, 5.0),)).rows
+    (told,) = judged_chapter._further_numbers((Quantity("openings", "1", 0.0, 5.0),)).rows
     assert told == ("openings", "0", "5", "1")
-    (told,) = judged_chapter._further_numbers((Told("damping ratio", "1", 0.0, 0.1),)).rows
+    (told,) = judged_chapter._further_numbers((Quantity("damping ratio", "1", 0.0, 0.1),)).rows
     assert told[1] == "<10⁻¹²"
 
 

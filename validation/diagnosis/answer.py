@@ -44,7 +44,7 @@ class Answer:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        gone = None if self.departure is None else {"step": self.departure.step, "kind": self.departure.kind}
+        departure = None if self.departure is None else {"step": self.departure.step, "kind": self.departure.kind}
         return {
             "sentence": self.sentence,
             "causes": self.causes,
@@ -54,7 +54,7 @@ class Answer:
             "unexplained": self.unexplained,
             "nearest": self.nearest,
             "alike": self.alike,
-            "departure": gone,
+            "departure": departure,
             "opened": None if self.opened is None else list(self.opened),
             "scheme": self.scheme,
             "ranking": self.ranking,

@@ -115,7 +115,8 @@ HHT, CHUNG_HULBERT = (0.05, 0.15, 0.3), (0.2, 0.5, 0.8)  # e, and the spectral r
 PARTS = (2, 3, 4, 5, 8, 10, 20)  # steps of a program in one of the scene's
 UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
 LATE = (1.0, -1.0, 0.5, 2.0)  # steps, 1/2 the mean of two
-BANDS = tuple(float(b) for b in np.geomspace(1e-4, 0.5, 38))  # over the static displacement
+BANDS = tuple(float(b) for b in np.geomspace(1e-4, 2.0, 44))  # over the static displacement
+FINE_BANDS = tuple(float(b) for b in np.geomspace(1e-4, 2.0, 131))  # between closings of successive steps
 TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
 WIDEST_BAND = 5.0  # over the fitted one, that is tried
 HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 1e-4
@@ -126,79 +127,84 @@ WRONG = (0.0, -1.0)  # missing, of the wrong sign
 
 def moves(target: Target, scene: Variant) -> list[Move]:
     """Return every way in which the catalogue's causes may be in a history of a scene."""
-    found = [move for family in _FAMILIES for move in family(target, scene)]
+    candidates = [move for family in _FAMILIES for move in family(target, scene)]
     return (
-        found
+        candidates
         if target.pressure is not None
-        else [m for m in found if m.id not in ("pressure-shift", "pressure-factor")]
+        else [m for m in candidates if m.id not in ("pressure-shift", "pressure-factor")]
     )
 
 
 def _integrator(target: Target, scene: Variant) -> list[Move]:
-    own = (scene.alpha, scene.delta)
-    pairs = [pair for pair in NAMED.values() if pair != own]
-    found = [Move("scheme", (("alpha", a), ("delta", d))) for a, d in pairs]
-    found += [Move("scheme", (("alpha", a), ("delta", d)), ("alpha", "delta")) for a, d in (own, *UNNAMED)]
-    found += [Move("gg", (("gg", gg),)) for gg in (scene.gg**2, math.sqrt(scene.gg)) if gg < 1]
-    found += [Move("gg", (("gg", 1.0),))] if scene.gg < 1 else []
-    found.append(Move("gg", (), ("gg",), DISCOUNTS))
+    scene_pair = (scene.alpha, scene.delta)
+    pairs = [pair for pair in NAMED.values() if pair != scene_pair]
+    candidates = [Move("scheme", (("alpha", a), ("delta", d))) for a, d in pairs]
+    candidates += [Move("scheme", (("alpha", a), ("delta", d)), ("alpha", "delta")) for a, d in (scene_pair, *UNNAMED)]
+    candidates += [Move("gg", (("gg", gg),)) for gg in (scene.gg**2, math.sqrt(scene.gg)) if gg < 1]
+    candidates += [Move("gg", (("gg", 1.0),))] if scene.gg < 1 else []
+    candidates.append(Move("gg", (), ("gg",), DISCOUNTS))
     if scene.gg < 1:
-        found += [Move("gg-in-one-formula", (("discounted", name),)) for name in ("velocity", "displacement")]
+        candidates += [Move("gg-in-one-formula", (("discounted", name),)) for name in ("velocity", "displacement")]
     other = "zero" if scene.start == "consistent" else "consistent"
-    found.append(Move("start", (("start", other),)))
+    candidates.append(Move("start", (("start", other),)))
     if scene.delta not in (0.5, 1.0):
-        found.append(Move("scheme", (("delta", 1 - scene.delta),)))  # the two weights of (7) are swapped
-    return found
+        candidates.append(Move("scheme", (("delta", 1 - scene.delta),)))  # the two weights of (7) are swapped
+    return candidates
 
 
 def _other_integrators(target: Target, scene: Variant) -> list[Move]:
     """Return integrators that are no pair of numbers of Newmark's, and other lengths of their steps."""
-    found = [Move("substeps", (("parts", parts),)) for parts in PARTS]
+    candidates = [Move("substeps", (("parts", parts),)) for parts in PARTS]
     if scene.opens:
-        return found
+        return candidates
     other = "zero" if scene.start == "consistent" else "consistent"
     for start in (scene.start, other):
-        found.append(Move("hht", (("family", "hht"), ("start", start)), ("spectral",), HHT))
-        found.append(
+        candidates.append(Move("hht", (("family", "hht"), ("start", start)), ("spectral",), HHT))
+        candidates.append(
             Move("generalised-alpha", (("family", "chung-hulbert"), ("start", start)), ("spectral",), CHUNG_HULBERT)
         )
     if float(np.ptp(target.steps)) <= UNEQUAL * float(target.steps[0]):
-        found.append(Move("exact-in-time", (("exact", True), ("gg", 1.0))))
-    return [*found, Move("velocity", (("secant", True),))]
+        candidates.append(Move("exact-in-time", (("exact", True), ("gg", 1.0))))
+    return [*candidates, Move("velocity", (("secant", True),))]
 
 
 def _rows(target: Target, scene: Variant) -> list[Move]:
-    found = [Move("time-shift", (("shift", late),)) for late in (1, -1, 2, -2)]
-    found += [Move("pressure-shift", (("late", late),)) for late in LATE]
-    found.append(Move("pressure-factor", (), ("pressure_factor",), (0.5, 2.0)))
-    found += [Move("reported-point", (("point", place),)) for place in (1.0, -1.0)]
-    return [*found, Move("reported-point", (), ("point",), (0.5, -0.5))]
+    candidates = [Move("time-shift", (("shift", late),)) for late in (1, -1, 2, -2)]
+    candidates += [Move("pressure-shift", (("late", late),)) for late in LATE]
+    candidates.append(Move("pressure-factor", (), ("pressure_factor",), (0.5, 2.0)))
+    candidates += [Move("reported-point", (("point", place),)) for place in (1.0, -1.0)]
+    return [*candidates, Move("reported-point", (), ("point",), (0.5, -0.5))]
 
 
 def _model(target: Target, scene: Variant) -> list[Move]:
-    found = [Move(f"{name}-factor", (), (name,), FACTORS) for name in ("density", "young", "side")]
-    found.append(Move("load-factor", (), ("load",), BY_HAND))
-    found += [Move("height-factor", (), ("tall",), FACTORS), Move("viscous-damping", (), ("viscous",), DRAGS)]
+    candidates = [Move(f"{name}-factor", (), (name,), FACTORS) for name in ("density", "young", "side")]
+    candidates.append(Move("load-factor", (), ("load",), BY_HAND))
+    candidates += [Move("height-factor", (), ("tall",), FACTORS), Move("viscous-damping", (), ("viscous",), DRAGS)]
     step = float(np.mean(target.steps))
     if not scene.opens:
-        found.append(Move("stiffness-damping", (), ("structural",), tuple(step * drag for drag in STIFFNESS_DRAGS)))
-        found.append(Move("load-ramp", (), ("ramp",), tuple(step * ramp for ramp in RAMPS)))
-        found.append(Move("inertia", (), ("inertia",), INERTIAS))
-        found.append(Move("one-spring", (("one_spring", True),)))
+        candidates.append(
+            Move("stiffness-damping", (), ("structural",), tuple(step * drag for drag in STIFFNESS_DRAGS))
+        )
+        ramps = tuple(step * ramp for ramp in RAMPS)
+        # the loads of a ramp begin with none; a program may start from the acceleration of the full load all the same
+        for start in dict.fromkeys(("zero", scene.start)):
+            candidates.append(Move("load-ramp", (("start", start),), ("ramp",), ramps))
+        candidates.append(Move("inertia", (), ("inertia",), INERTIAS))
+        candidates.append(Move("one-spring", (("one_spring", True),)))
     if target.column.gravity:
-        found += [Move("gravity-factor", (("gravity", part),)) for part in WRONG]
-        found.append(Move("gravity-factor", (), ("gravity",), (0.5, 2.0)))
+        candidates += [Move("gravity-factor", (("gravity", part),)) for part in WRONG]
+        candidates.append(Move("gravity-factor", (), ("gravity",), (0.5, 2.0)))
     if target.pressure is not None:
-        found.append(Move("load-factor", (), ("displacement_factor",), (0.5, 2.0)))
-    found.append(Move("springs-factor", (), ("softness",), SOFTNESSES))
+        candidates.append(Move("load-factor", (), ("displacement_factor",), (0.5, 2.0)))
+    candidates.append(Move("springs-factor", (), ("softness",), SOFTNESSES))
     if target.column.poisson:
-        found.append(Move("springs-factor", (("tied", False),), ("softness",), SOFTNESSES))
-        found.append(Move("hypothesis", (("other_plane", True),)))
-        found.append(Move("poisson", (("poisson", -target.column.poisson),)))
-    found.append(Move("poisson", (), ("poisson",), (0.05, 0.15, 0.3)))
-    found += [Move("load-row", (("strain_load", part),)) for part in WRONG]
-    found += [Move("coupling", (("coupling", part),)) for part in WRONG]
-    return [*found, *(Move("stress-not-kept", (("kept", name),)) for name in ("springs", "stress"))]
+        candidates.append(Move("springs-factor", (("tied", False),), ("softness",), SOFTNESSES))
+        candidates.append(Move("hypothesis", (("other_plane", True),)))
+        candidates.append(Move("poisson", (("poisson", -target.column.poisson),)))
+    candidates.append(Move("poisson", (), ("poisson",), (0.05, 0.15, 0.3)))
+    candidates += [Move("load-row", (("strain_load", part),)) for part in WRONG]
+    candidates += [Move("coupling", (("coupling", part),)) for part in WRONG]
+    return [*candidates, *(Move("stress-not-kept", (("kept", name),)) for name in ("springs", "stress"))]
 
 
 def _surroundings(target: Target, scene: Variant) -> list[Move]:
@@ -207,19 +213,25 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
 
 def _contact(target: Target, scene: Variant) -> list[Move]:
     """Return what the contact may do; a history that never pulls is the same with a contact that opens."""
+    candidates = [Move("contact-locked", (("opens", False),))] if scene.opens else []
+    if not scene.opens and pulls(target, scene):
+        candidates.append(Move("contact-opened", (("opens", True),)))
+        if target.column.poisson:  # programs differ in the shear of a contact that closes again
+            candidates.append(Move("contact-opened", (("opens", True), ("reset", True))))
+    return [*candidates, *dead_bands(target, scene, BANDS)]
+
+
+def dead_bands(target: Target, scene: Variant, shares: Sequence[float]) -> list[Move]:
+    """Return dead bands by their shares of the static displacement; none where the contact never pulls."""
+    if not (scene.opens or pulls(target, scene)):
+        return []
+    opens = () if scene.opens else (("opens", True),)
     size = abs(target.column.static)
-    name = () if scene.opens else (("opens", True),)
-    found = [Move("contact-locked", (("opens", False),))] if scene.opens else []
-    if scene.opens or pulls(target, scene):
-        found += [Move("contact-opened", name)] if not scene.opens else []
-        if target.column.poisson and not scene.opens:  # programs differ in the shear of a contact that closes again
-            found.append(Move("contact-opened", (*name, ("reset", True))))
-        found += [
-            Move("dead-band", (*name, ("band", share * size), ("reopening", part)))
-            for share in BANDS
-            for part in REOPENINGS
-        ]
-    return found
+    return [
+        Move("dead-band", (*opens, ("band", share * size), ("reopening", part)))
+        for share in shares
+        for part in REOPENINGS
+    ]
 
 
 _FAMILIES: tuple[Callable[[Target, Variant], list[Move]], ...] = (
@@ -284,19 +296,19 @@ def causes_of(
     softness_error
         Half width of the 95 % interval of the softness, which is the relative error of the springs' factor [-].
     """
-    found = set(ids)
-    if "springs-factor" in found and is_base(target, variant, softness_error):
-        found = found - {"springs-factor"} | {"base-compliance"}
-    if "dead-band" in found and not scene.opens:
-        found |= {"contact-opened"}
-    return [name for name in (*CAUSES, *OUTSIDE) if name in found]
+    names = set(ids)
+    if "springs-factor" in names and is_base(target, variant, softness_error):
+        names = names - {"springs-factor"} | {"base-compliance"}
+    if "dead-band" in names and not scene.opens:
+        names |= {"contact-opened"}
+    return [name for name in (*CAUSES, *OUTSIDE) if name in names]
 
 
 def values_of(target: Target, ids: Sequence[str], v: Variant) -> dict[str, float]:
     """Return the number of every cause that has one, as docs/compare.md says."""
     h = target.column.height
     load = v.load if v.load != 1 else v.displacement_factor
-    known = {
+    numbers = {
         "gg": v.gg,
         "time-shift": float(v.shift),
         "pressure-shift": v.late,
@@ -323,19 +335,19 @@ def values_of(target: Target, ids: Sequence[str], v: Variant) -> dict[str, float
         "base-compliance": compliance(target, v),
         "own-weight": v.weight,
     }
-    return {name: float(f"{known[name]:.8g}") for name in ids if name in known}
+    return {name: float(f"{numbers[name]:.8g}") for name in ids if name in numbers}
 
 
-def intervals_of(target: Target, found: Fit, ids: Sequence[str]) -> dict[str, tuple[float, float]]:
+def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[str, tuple[float, float]]:
     """Return the 95 % interval of every value of an explanation that was fitted, or that the rows leave open."""
-    values = values_of(target, ids, found.variant)
+    values = values_of(target, ids, explanation.variant)
     ends: dict[str, tuple[float, float]] = {}
-    for name, interval in intervals(found).items():
+    for name, interval in intervals(explanation).items():
         if not math.isfinite(interval.half_width):
             continue
 
         def moved(by: float, name: str = name, value: float = interval.value) -> dict[str, float]:
-            return values_of(target, ids, changed(found.variant, {name: value + by}))
+            return values_of(target, ids, changed(explanation.variant, {name: value + by}))
 
         low = moved(-interval.half_width)
         high = moved(interval.half_width)
@@ -344,17 +356,17 @@ def intervals_of(target: Target, found: Fit, ids: Sequence[str]) -> dict[str, tu
             if elsewhere[cause] != value:
                 ends[cause] = (min(low[cause], high[cause]), max(low[cause], high[cause]))
     if "dead-band" in values:
-        ends["dead-band"] = band_interval(target, found.variant)
+        ends["dead-band"] = band_interval(target, explanation.variant)
     return ends
 
 
 def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
     """Return the penetrations between which a dead band gives the same rows: it lies between two that happened."""
-    own = fit(target, [(variant, ())])[0].misfit
+    least = fit(target, [(variant, ())])[0].misfit
 
     def same(bands: Sequence[float]) -> list[bool]:
         misfits = [one.misfit for one in fit(target, [(replace(variant, band=band), ()) for band in bands])]
-        return [abs(misfit - own) <= SAME_MISFIT * max(own, target.floor) for misfit in misfits]
+        return [abs(misfit - least) <= SAME_MISFIT * max(least, target.floor) for misfit in misfits]
 
     def end(farthest: float) -> float:
         trials = np.geomspace(variant.band, variant.band * farthest, TRIALS)[1:].tolist()

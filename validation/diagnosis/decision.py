@@ -64,22 +64,26 @@ class Verdict:
 # ---- the decision ---------------------------------------------------------------------------------------------------
 
 
-def decided(target: Target, own: Fit, found: Sequence[Found]) -> Verdict:
+def decided(target: Target, scene_fit: Fit, explanations: Sequence[Found]) -> Verdict:
     """Return the verdict over candidates, the scene as it is among them or not."""
-    scores = {id(f): score(target, f.fit, f.moves) for f in found}
-    ranked = sorted(found, key=lambda f: scores[id(f)])
-    fine = [f for f in ranked if accepted(target, own, f.fit) and _sensible(f)]
+    scores = {id(f): score(target, f.fit, f.moves) for f in explanations}
+    ranked = sorted(explanations, key=lambda f: scores[id(f)])
+    fine = [f for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
     if not fine:
-        return Verdict(own, min(found, key=lambda f: f.fit.misfit) if found else Found((), own), False)
+        return Verdict(
+            scene_fit, min(explanations, key=lambda f: f.fit.misfit) if explanations else Found((), scene_fit), False
+        )
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
     best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
     alike = {f.ids: f for f in reversed(close) if f.ids != best.ids and not _contained(best, f)}
-    named = not alike and _nameable(target, own, best)
-    if target.explained(own.residual) and not (named and score(target, own) - score(target, best.fit) >= NEEDED):
-        return Verdict(own, Found((), own), True)
-    return Verdict(own, best, named, tuple(alike.values())[:MOST_ALIKE], reached=True)
+    is_named = not alike and _nameable(target, scene_fit, best)
+    if target.explained(scene_fit.residual) and not (
+        is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
+    ):
+        return Verdict(scene_fit, Found((), scene_fit), True)
+    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True)
 
 
 def _rounder(close: list[Found]) -> list[Found]:
@@ -92,8 +96,8 @@ def _rounder(close: list[Found]) -> list[Found]:
 
 def _digits(value: float) -> int:
     """Return the significant digits that a fitted number or its exponential has, of what can be told."""
-    told = (value, math.exp(-value)) if abs(value) < LARGEST_EXPONENT else (value,)
-    return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in told)
+    forms = (value, math.exp(-value)) if abs(value) < LARGEST_EXPONENT else (value,)
+    return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in forms)
 
 
 def _contained(best: Found, other: Found) -> bool:
@@ -101,50 +105,50 @@ def _contained(best: Found, other: Found) -> bool:
     return set(best.ids) < set(other.ids) or (best.ids in WITHOUT_BAND and other.ids == ("dead-band",))
 
 
-def accepted(target: Target, own: Fit, found: Fit) -> bool:
+def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
     """Whether a fit leaves no more than it may: digits and noise, or next to nothing, or what a base does."""
-    v = found.variant
-    if target.explained(target.inner(found.residual, v)):
+    v = candidate.variant
+    if target.explained(target.inner(candidate.residual, v)):
         return True
-    if found is own or v == own.variant:
-        return found.misfit <= NEGLIGIBLE
-    if found.misfit <= min(NEGLIGIBLE, own.misfit * NEGLIGIBLE_SHARE):
+    if candidate is scene_fit or v == scene_fit.variant:
+        return candidate.misfit <= NEGLIGIBLE
+    if candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
         return True
     noise = MARGIN * target.spread
     around = AROUND_OPEN if v.opens else AROUND
-    loose = min(math.hypot(around, noise), SHARE * own.misfit)
-    return found.misfit <= loose and _surrounded(target, found)
+    loose = min(math.hypot(around, noise), SHARE * scene_fit.misfit)
+    return candidate.misfit <= loose and _surrounded(target, candidate)
 
 
-def _surrounded(target: Target, found: Fit) -> bool:
+def _surrounded(target: Target, candidate: Fit) -> bool:
     """Whether moving geometry or a base is seen in a history: without it the same fit leaves much more.
 
     What surrounds a block is treated differently by every program, so that some of it may be left; a base of 1e-6 or
     a geometry that makes no difference has explained nothing, and excuses nothing.
     """
-    v = found.variant
+    v = candidate.variant
     base = v.base > 0 or (v.softness > 0 and benign_springs(target, v))
     if not (v.updated or base):
         return False
     without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
-    return fit(target, [(without, ())])[0].misfit > SEEN * found.misfit
+    return fit(target, [(without, ())])[0].misfit > SEEN * candidate.misfit
 
 
-def _nameable(target: Target, own: Fit, found: Found) -> bool:
+def _nameable(target: Target, scene_fit: Fit, explanation: Found) -> bool:
     """Whether enough of the difference stands out of the noise for a cause to be named.
 
     Where noise hides a share of it, another cause that leaves less than that share would look the same.
     """
-    if any(name in OUTSIDE for name in found.ids):
+    if any(name in OUTSIDE for name in explanation.ids):
         return False
-    if not found.moves or target.within_digits(target.inner(found.fit.residual, found.fit.variant)):
+    if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
         return True
-    single = len(found.moves) == 1 and len(set(found.fit.free) - {"base"}) <= 1
-    if found.ids == ("scheme",):  # any other integrator is near to some scheme
-        return found.fit.misfit <= HIDDEN_SCHEME * own.misfit
-    usual = single and found.ids[0] in USUAL
+    single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
+    if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
+        return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
+    usual = single and explanation.ids[0] in USUAL
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
-    return found.fit.misfit <= limit * own.misfit
+    return explanation.fit.misfit <= limit * scene_fit.misfit
 
 
 def _rare(move: Move, among: int) -> bool:
@@ -152,21 +156,21 @@ def _rare(move: Move, among: int) -> bool:
     return move.id not in (*USUAL, *SURROUNDINGS) or (among > 1 and "displacement_factor" in move.free)
 
 
-def _sensible(found: Found) -> bool:
+def _sensible(explanation: Found) -> bool:
     """Whether every cause is there in a measurable amount and within its bounds."""
     plain = Variant(0.5, 1.0, 1.0)
-    for move in found.moves:
+    for move in explanation.moves:
         for name in move.free:
-            value = getattr(found.fit.variant, name)
+            value = getattr(explanation.fit.variant, name)
             if name not in ("alpha", "delta", "gg", "spectral") and abs(value - getattr(plain, name)) < 1e-7:
                 return False
-    return all(name in CAUSES or name in OUTSIDE for name in found.ids)
+    return all(name in CAUSES or name in OUTSIDE for name in explanation.ids)
 
 
-def score(target: Target, found: Fit, moves: Sequence[Move] = ()) -> float:
+def score(target: Target, candidate: Fit, moves: Sequence[Move] = ()) -> float:
     """Return the Bayesian information criterion of a fit, digits not counted below what was printed.
 
     A cause that people rarely make counts less than one that they make often.
     """
-    n, rare = len(found.residual), sum(_rare(move, len(moves)) for move in moves)
-    return 2 * n * math.log(max(found.misfit, target.floor)) + len(found.free) * math.log(n) + RARE * rare
+    n, rare = len(candidate.residual), sum(_rare(move, len(moves)) for move in moves)
+    return 2 * n * math.log(max(candidate.misfit, target.floor)) + len(candidate.free) * math.log(n) + RARE * rare

@@ -28,21 +28,21 @@ class Departure:
     kind: Kind
 
 
-def expected(target: Target, found: Fit, scene: Variant, causes: Sequence[str]) -> tuple[Array, Array]:
+def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[str]) -> tuple[Array, Array]:
     """Return displacement [m] and pressure [Pa] of the scene's own scheme with what a program may add without fault.
 
     Weight, moving geometry and a slightly compliant base are taken over from the fit.
     """
-    v = found.variant
+    v = explanation.variant
     yields = "base-compliance" in causes
     softness, base = (v.softness, v.base) if yields else (0.0, 0.0)
     plain = replace(scene, softness=softness, base=base, weight=v.weight, updated=v.updated)
-    own = computed(target.column, [plain], target.steps)
-    return own.displacement[:, 0], own.pressure[:, 0]
+    run = computed(target.column, [plain], target.steps)
+    return run.displacement[:, 0], run.pressure[:, 0]
 
 
 def departure(
-    target: Target, wanted: tuple[Array, Array], causes: Sequence[str], open_steps: Sequence[int]
+    target: Target, expected_columns: tuple[Array, Array], causes: Sequence[str], open_steps: Sequence[int]
 ) -> Departure | None:
     """Return where the history departs; None if there is no cause but benign ones.
 
@@ -53,33 +53,36 @@ def departure(
         return None
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")
-    given = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
-    columns = list(zip(given, wanted, target.bars, strict=False))
-    left = [c for c in columns if not c[2].holds(c[0] - c[1][target.rows])]
-    dated = [measured(own[target.rows], values, target.rows, bar.spread) for values, own, bar in left or columns[:1]]
-    gone = replace(dated[0], step=min(one.step for one in dated))
-    if open_steps and set(causes) & {"contact-opened"} and gone.step > open_steps[0]:
-        return Departure(open_steps[0], gone.kind)
-    return gone
+    recorded = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
+    columns = list(zip(recorded, expected_columns, target.bars, strict=False))
+    departing = [c for c in columns if not c[2].holds(c[0] - c[1][target.rows])]
+    dated = [
+        measured(expected_values[target.rows], values, target.rows, bar.spread)
+        for values, expected_values, bar in departing or columns[:1]
+    ]
+    first = replace(dated[0], step=min(one.step for one in dated))
+    if open_steps and set(causes) & {"contact-opened"} and first.step > open_steps[0]:
+        return Departure(open_steps[0], first.kind)
+    return first
 
 
-def unbounded(wanted: Array, given: Array, rows: np.ndarray) -> Departure:
+def unbounded(expected_values: Array, recorded: Array, rows: np.ndarray) -> Departure:
     """Return the first step at which a history without bounds has left the expected one."""
-    away = np.abs(given - wanted) > SEEN * float(np.max(np.abs(wanted)))
+    away = np.abs(recorded - expected_values) > SEEN * float(np.max(np.abs(expected_values)))
     return Departure(int(rows[int(np.argmax(away))]) + 1, "amplitude")
 
 
-def measured(wanted: Array, given: Array, rows: np.ndarray, noise: float) -> Departure:
+def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: float) -> Departure:
     """Return the first step beyond tolerance and the manner that explains most of the difference.
 
     The manners are the derivatives of the expected history r about its last value s: a factor on s (offset), a
     factor on r - s (amplitude), a stretch of time (phase), a further decay (damping).
     """
     with np.errstate(all="ignore"):
-        wanted = np.nan_to_num(wanted, posinf=1e300, neginf=-1e300)
-        size = float(np.max(np.abs(given))) or 1.0
-        r = np.clip(wanted, -1e3 * size, 1e3 * size)
-    d = given - r
+        expected_values = np.nan_to_num(expected_values, posinf=1e300, neginf=-1e300)
+        size = float(np.max(np.abs(recorded))) or 1.0
+        r = np.clip(expected_values, -1e3 * size, 1e3 * size)
+    d = recorded - r
     tolerance = max(SEEN * size, NOISE * noise)
     beyond = np.flatnonzero(np.abs(d) > tolerance)
     first = int(beyond[0]) if beyond.size else int(np.argmax(np.abs(d)))

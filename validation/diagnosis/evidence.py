@@ -44,11 +44,11 @@ def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> 
     return replace(stage, agrees=None, words=f"{stage.words}; {explained_by} explains it")
 
 
-def growth(values: Array, wanted: Array) -> float | None:
+def growth(values: Array, expected: Array) -> float | None:
     """Return the factor by which a diverging history grows in a step, None if it is bounded."""
-    size, own = np.abs(values), np.abs(np.nan_to_num(wanted, posinf=1e300, neginf=-1e300))
+    size, expected_size = np.abs(values), np.abs(np.nan_to_num(expected, posinf=1e300, neginf=-1e300))
     thirds = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(size, 3)]
-    theirs = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(own, 3)]
+    theirs = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(expected_size, 3)]
     if thirds[2] > BEYOND * max(theirs):
         return _factor(thirds, len(values))
     grows = thirds[2] > GROWTH * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
@@ -63,7 +63,7 @@ def _factor(thirds: Sequence[float], rows: int) -> float:
 
 
 def stages(
-    target: Target, wanted: Sequence[Array], slips: Sequence[str], note: str, factor: float | None
+    target: Target, expected: Sequence[Array], slips: Sequence[str], note: str, factor: float | None
 ) -> list[Stage]:
     """Return the stages up to the damping.
 
@@ -71,7 +71,7 @@ def stages(
     ----------
     target
         The history as it is read.
-    wanted
+    expected
         The scene's own displacement and pressure at the recorded rows.
     slips
         Ids of errors of sign and unit that reading has corrected.
@@ -81,7 +81,7 @@ def stages(
         Growth in a step, None if bounded.
     """
     read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
-    found = [
+    measured = [
         Stage("reading", not slips, read + (f"; {note}" if note else ""), {}),
         Stage(
             "bounded",
@@ -91,36 +91,38 @@ def stages(
         ),
     ]
     if factor is not None:
-        return found
-    found += _columns(target, wanted)
-    return found + _motion(target, wanted[0])
+        return measured
+    measured += _columns(target, expected)
+    return measured + _motion(target, expected[0])
 
 
-def _columns(target: Target, wanted: Sequence[Array]) -> list[Stage]:
+def _columns(target: Target, expected: Sequence[Array]) -> list[Stage]:
     """Return how far each column is from the scene's own, by itself."""
-    given = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
-    found = []
-    for name, values, own, bar in zip((DISPLACEMENT, PRESSURE), given, wanted, target.bars, strict=False):
+    recorded = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
+    measured = []
+    for name, values, expected_values, bar in zip(
+        (DISPLACEMENT, PRESSURE), recorded, expected, target.bars, strict=False
+    ):
         with np.errstate(all="ignore"):
-            misfit = min(float(np.linalg.norm(values - own)) / (bar.norm or 1.0), 1e6)
-        agrees = bar.holds(values - own)
+            misfit = min(float(np.linalg.norm(values - expected_values)) / (bar.norm or 1.0), 1e6)
+        agrees = bar.holds(values - expected_values)
         allowed = bar.allowed
         words = f"the {name.replace('_', ' ')} alone " + (
             "is the scene's" if agrees else f"is {100 * misfit:.3g} % off (digits and noise: {100 * allowed:.1g} %)"
         )
-        found.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": allowed}))
-    return found
+        measured.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": allowed}))
+    return measured
 
 
-def _motion(target: Target, wanted: Array) -> list[Stage]:
+def _motion(target: Target, expected: Array) -> list[Stage]:
     """Return where file and scene come to rest, and how their strongest motion swings."""
     steps = np.diff(np.concatenate([[-1], target.rows]))
     if np.ptp(target.steps) > 1e-9 * target.steps[0] or len(set(steps[1:].tolist())) > 1:
         return [Stage(name, None, "not told by unequal rows", {}) for name in ("statics", "frequency", "damping")]
     step = float(target.steps[0]) * float(steps[-1])
-    theirs, ours = swing(target.displacement, step), swing(wanted, step)
+    theirs, ours = swing(target.displacement, step), swing(expected, step)
     close = target.bars[0].allowed
-    asked = (
+    quantities = (
         ("frequency", "swings at", "rad/s", CLOSE_FREQUENCY),
         ("damping", "is damped by", "of critical", CLOSE_DAMPING),
     )
@@ -128,13 +130,13 @@ def _motion(target: Target, wanted: Array) -> list[Stage]:
         _beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, CLOSE_STATIC)),
         *(
             _beside(name, verb, unit, _part(theirs, name), _part(ours, name), max(close, least))
-            for name, verb, unit, least in asked
+            for name, verb, unit, least in quantities
         ),
     ]
 
 
-def _part(found: Swing, name: str) -> float | None:
-    return None if found.pole is None else float(getattr(found.pole, name))
+def _part(measured: Swing, name: str) -> float | None:
+    return None if measured.pole is None else float(getattr(measured.pole, name))
 
 
 def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:

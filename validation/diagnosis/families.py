@@ -41,32 +41,32 @@ def relatives(
 
     The rows depend on m/(k dt^2), E/p and load/p only (m the mass, k the springs), and the pressure on the load.
     """
-    found: list[dict[str, Any]] = []
+    alike: list[dict[str, Any]] = []
     density = values.get("density-factor")
     if list(ids) == ["density-factor"] and density and not target.column.gravity:
-        said = {"step-factor": float(f"{1 / math.sqrt(density):.6g}")}
-        found.append(_relative(["step-factor"], said, TELLS["density-factor"]))
+        numbers = {"step-factor": float(f"{1 / math.sqrt(density):.6g}")}
+        alike.append(_relative(["step-factor"], numbers, TELLS["density-factor"]))
     both = values.get("young-factor"), values.get("springs-factor")
     pair = sorted(ids) == ["springs-factor", "young-factor"]
     if pair and both[0] and both[1] and abs(both[0] / both[1] - 1) < SAME_FACTOR:
         less, more = float(f"{1 / both[0]:.6g}"), float(f"{both[0]:.6g}")
-        found.append(_relative(["density-factor", "side-factor"], {"density-factor": more, "side-factor": less}, SIDE))
+        alike.append(_relative(["density-factor", "side-factor"], {"density-factor": more, "side-factor": less}, SIDE))
         if target.pressure is None:
-            said = {"density-factor": less, "load-factor": less}
-            found.append(_relative(list(said), said, "the contact pressure: it shows the load"))
+            numbers = {"density-factor": less, "load-factor": less}
+            alike.append(_relative(list(numbers), numbers, "the contact pressure: it shows the load"))
     if list(ids) == ["side-factor"] and target.pressure is None:
         side = values["side-factor"]
-        said = {"density-factor": float(f"{side**2:.6g}"), "load-factor": side}
-        found.append(_relative(list(said), said, TELLS["side-factor"]))
+        numbers = {"density-factor": float(f"{side**2:.6g}"), "load-factor": side}
+        alike.append(_relative(list(numbers), numbers, TELLS["side-factor"]))
     if list(ids) == ["stiffness-damping"]:
-        found.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
+        alike.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
     if "base-compliance" in ids and variant.base == 0:
-        found.append(_springs_for_base(ids, values, variant))
+        alike.append(_springs_for_base(ids, values, variant))
     if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:
         # per unit of width, pressure, mass and stiffness of the block stay; the two springs share a wider base
         wider = _six(math.exp(variant.softness))
-        found.append(_relative(["width-factor"], {"width-factor": wider}, TELLS["width-factor"]))
-    return found
+        alike.append(_relative(["width-factor"], {"width-factor": wider}, TELLS["width-factor"]))
+    return alike
 
 
 def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:
@@ -82,9 +82,9 @@ def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip
 def _springs_for_base(ids: Sequence[str], values: Mapping[str, float], variant: Variant) -> dict[str, Any]:
     """Return the springs that give the rows of a base without mass: it stands in series with them."""
     others = [name for name in ids if name != "base-compliance"]
-    known = {name: values[name] for name in others if name in values}
+    numbers = {name: values[name] for name in others if name in values}
     factor = _six(math.exp(-variant.softness))
-    return _relative([*others, "springs-factor"], known | {"springs-factor": factor}, TELLS["base-compliance"])
+    return _relative([*others, "springs-factor"], numbers | {"springs-factor": factor}, TELLS["base-compliance"])
 
 
 def _six(value: float) -> float:
@@ -93,12 +93,15 @@ def _six(value: float) -> float:
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
     """Return the explanations that the file cannot tell from the best one."""
-    return [_told(target, verdict, found) for found in ([verdict.best] if verdict.alike else []) + list(verdict.alike)]
+    return [
+        _told(target, verdict, explanation)
+        for explanation in ([verdict.best] if verdict.alike else []) + list(verdict.alike)
+    ]
 
 
-def _told(target: Target, verdict: Verdict, found: Found) -> dict[str, Any]:
-    v = found.fit.variant
-    ids = causes_of(target, found.ids, v, verdict.own.variant)
+def _told(target: Target, verdict: Verdict, explanation: Found) -> dict[str, Any]:
+    v = explanation.fit.variant
+    ids = causes_of(target, explanation.ids, v, verdict.own.variant)
     scene = next((TELLS[name] for name in ids if name in TELLS), "a scene with less damping, over more periods")
     return _relative(ids, values_of(target, ids, v), scene)
 

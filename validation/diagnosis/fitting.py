@@ -51,24 +51,28 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     n = len(target.steps)
     steps = min(max(SHORTEST, math.ceil(PERIODS * _period(target) / float(np.mean(target.steps)))), COARSE)
     part = target.until(steps).quick() if steps < n else target.quick()
-    found = _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)
-    if len(found) > MANY:
-        found = found[:MANY]
-    found = _further(part, found)
+    explanations = _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)
+    if len(explanations) > MANY:
+        explanations = explanations[:MANY]
+    explanations = _further(part, explanations)
     while steps < n:
         steps *= STRETCH
         part = target.until(min(steps, n)).quick()
-        found = _further(part, _leading(found))
-    return found if part.same_steps(target) and not _solved(found) else _further(target, _leading(found))
+        explanations = _further(part, _leading(explanations))
+    return (
+        explanations
+        if part.same_steps(target) and not _solved(explanations)
+        else _further(target, _leading(explanations))
+    )
 
 
-def _further(target: Target, found: Sequence[Found]) -> list[Found]:
-    return _fits(target, [(f.moves, f.fit.variant, f.fit.free) for f in found], ROUNDS)
+def _further(target: Target, explanations: Sequence[Found]) -> list[Found]:
+    return _fits(target, [(f.moves, f.fit.variant, f.fit.free) for f in explanations], ROUNDS)
 
 
-def _solved(found: Sequence[Found]) -> bool:
+def _solved(explanations: Sequence[Found]) -> bool:
     """Whether some variant is one that the suite's own solver has, which the search does not use."""
-    return any(f.fit.variant.opens for f in found)
+    return any(f.fit.variant.opens for f in explanations)
 
 
 def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Found]:
@@ -93,9 +97,9 @@ def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     for (i, v), misfit in zip(every, misfits, strict=True):
         best.setdefault(i, []).append((misfit, v))
     chosen = []
-    for i, tried in best.items():
+    for i, misfits_of_starts in best.items():
         free = tuple(name for move in combos[i] for name in move.free)
-        chosen += [(combos[i], v, free) for _, v in sorted(tried, key=lambda t: t[0])[: 2 if free else 1]]
+        chosen += [(combos[i], v, free) for _, v in sorted(misfits_of_starts, key=lambda t: t[0])[: 2 if free else 1]]
     return chosen
 
 
@@ -109,13 +113,13 @@ def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
     return [fixed, *firsts]
 
 
-def _leading(found: Sequence[Found]) -> list[Found]:
+def _leading(explanations: Sequence[Found]) -> list[Found]:
     """Return the best few, of the same causes the best with the same free numbers."""
-    kept: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Found] = {}
-    for f in found:
-        if len({ids for ids, _, _ in kept} | {f.ids}) <= KEPT:
-            kept.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
-    return list(kept.values())
+    leading: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Found] = {}
+    for f in explanations:
+        if len({ids for ids, _, _ in leading} | {f.ids}) <= KEPT:
+            leading.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
+    return list(leading.values())
 
 
 def _period(target: Target) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,20 +15,16 @@ from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.rectangle import OPENING, own_variant, rectangle_of
 from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.one_number import OneChange
-from validation.diagnosis.other_solvers import Goal, Rival, rivals
-from validation.diagnosis.other_verdict import RivalVerdict, judged
-from validation.diagnosis.ranking import ranking, row_of
+from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, readings_of, slips
 from validation.diagnosis.search import beside, paired, simple
-from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Rectangle, Variant
+from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.scenes import features
@@ -49,6 +46,17 @@ class Case:
     reading: Reading
     target: Target
     own: Variant
+
+    @cached_property
+    def scene_run(self) -> Histories:
+        """The scene's own run at the steps of the history."""
+        return computed(self.target.column, [self.own], self.target.steps)
+
+    @property
+    def expected(self) -> tuple[Array, Array]:
+        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
+        rows = self.target.rows
+        return self.scene_run.displacement[rows, 0], self.scene_run.pressure[rows, 0]
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -80,12 +88,13 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
     if column is None:
         return _without_rectangle(scene, foreign)
-    own = own_variant(scene)
-    read = readings_of(scene, column, own, foreign)
-    factor = _growth(column, own, read[0])
+    scene_variant = own_variant(scene)
+    read = readings_of(scene, column, scene_variant, foreign)
+    likeliest = _case(scene, foreign, read[0], column, scene_variant)
+    factor = _growth(likeliest)
     if factor is not None:
-        return _diverged(_case(scene, foreign, read[0], column, own), factor)
-    case, verdict = _best(scene, foreign, read, column, own)
+        return _diverged(likeliest, factor)
+    case, verdict = _best(scene, foreign, read, column, scene_variant)
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
@@ -94,10 +103,10 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         names = RIVALS if scene.block.poisson == 0 else ("fem",)
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
         if theirs is not None and theirs.explained:
-            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), _own_run(case))
-        verdict = paired(case.target, own, verdict)
+            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
+        verdict = paired(case.target, scene_variant, verdict)
     elif not (verdict.explained or verdict.reached):
-        verdict = beside(case.target, own, verdict)
+        verdict = beside(case.target, scene_variant, verdict)
     linear = scene.contact.law == "locked"
     return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
 
@@ -114,42 +123,43 @@ def _beyond(scene: Scene) -> list[str]:
 # ---- reading --------------------------------------------------------------------------------------------------------
 
 
-def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Rectangle, own: Variant) -> Case:
+def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Rectangle, scene_variant: Variant) -> Case:
     s = reading.stepping
     columns = reading.displacement, reading.pressure, reading.rounding, reading.pressure_rounding
-    return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), own)
+    return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), scene_variant)
 
 
-def _growth(column: Rectangle, own: Variant, reading: Reading) -> float | None:
+def _growth(case: Case) -> float | None:
     """Return the growth in a step of the displacement or the pressure, None if both are bounded."""
-    rows, found = reading.stepping.rows, computed(column, [own], reading.stepping.steps)
-    pairs = [(reading.displacement, found.displacement), (reading.pressure, found.pressure)]
-    factors = [evidence.growth(values, wanted[rows, 0]) for values, wanted in pairs if values is not None]
-    return next((f for f in factors if f is not None), None)
+    pairs = zip((case.reading.displacement, case.reading.pressure), case.expected, strict=True)
+    factors = [evidence.growth(values, expected) for values, expected in pairs if values is not None]
+    return next((factor for factor in factors if factor is not None), None)
 
 
 def _best(
-    scene: Scene, foreign: Foreign, read: Sequence[Reading], column: Rectangle, own: Variant
+    scene: Scene, foreign: Foreign, read: Sequence[Reading], column: Rectangle, scene_variant: Variant
 ) -> tuple[Case, Verdict]:
     """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
-    tried: list[tuple[Case, Verdict]] = []
+    judged_readings: list[tuple[Case, Verdict]] = []
     fewest = min(len(reading.corrected) for reading in read)
     for reading in read:
-        case = _case(scene, foreign, reading, column, own)
-        verdict = simple(case.target, own)
-        tried.append((case, verdict))
+        case = _case(scene, foreign, reading, column, scene_variant)
+        verdict = simple(case.target, scene_variant)
+        judged_readings.append((case, verdict))
         least = len(reading.corrected) == fewest
         reached = verdict.reached or verdict.explained
         # a slip of sign or unit beside another cause is less likely than that of a datum alone
         if reached and (least or verdict.same):
             return case, verdict
-        if verdict.best.fit.misfit < PLAIN and any(len(other.reading.corrected) == fewest for other, _ in tried):
+        if verdict.best.fit.misfit < PLAIN and any(
+            len(other.reading.corrected) == fewest for other, _ in judged_readings
+        ):
             break
-    sound = [pair for pair in tried if pair[1].reached or pair[1].explained]
-    return sound[0] if sound else min(tried, key=lambda pair: pair[1].best.fit.misfit)
+    sound = [pair for pair in judged_readings if pair[1].reached or pair[1].explained]
+    return sound[0] if sound else min(judged_readings, key=lambda pair: pair[1].best.fit.misfit)
 
 
-def _others(scene: Scene, case: Case, verdict: Verdict, known: Sequence[Rival]) -> list[Rival]:
+def _others(scene: Scene, case: Case, verdict: Verdict, at_hand: Sequence[Rival]) -> list[Rival]:
     """Return the other solvers' best answers, for the ranking."""
     v, steps = verdict.best.fit.variant, case.reading.stepping.steps
     names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
@@ -157,67 +167,69 @@ def _others(scene: Scene, case: Case, verdict: Verdict, known: Sequence[Rival]) 
         return []
     schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
     r = case.reading
-    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, known)
+    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, at_hand)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------
 
 
 def _stages(case: Case, factor: float | None = None) -> list[Stage]:
-    rows, found = case.reading.stepping.rows, computed(case.target.column, [case.own], case.target.steps)
-    wanted = found.displacement[rows, 0], found.pressure[rows, 0]
-    return evidence.stages(case.target, wanted, case.reading.slips, case.reading.stepping.note, factor)
+    return evidence.stages(case.target, case.expected, case.reading.slips, case.reading.stepping.note, factor)
 
 
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
-    target, own, found = case.target, case.own, verdict.best.fit
+    target, scene_variant, best_fit = case.target, case.own, verdict.best.fit
     stages = _stages(case)
     corrected = case.reading.corrected
-    error = intervals(found)["softness"].half_width if "softness" in found.free else 0.0
-    named_ = list(case.reading.slips) + causes.causes_of(target, verdict.best.ids, found.variant, own, error)
-    either = families.sign_or_gravity(target, named_, corrected) if verdict.explained else []
-    left = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
+    error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
+    all_causes = list(case.reading.slips) + causes.causes_of(
+        target, verdict.best.ids, best_fit.variant, scene_variant, error
+    )
+    either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
+    unexplained = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
     if either:
         verdict = replace(verdict, explained=False)
-    ids = named_ if verdict.explained else [UNEXPLAINED]
-    v = found.variant if verdict.explained else own
-    steps = _opened(target, found.variant) if verdict.explained else []
+    ids = all_causes if verdict.explained else [UNEXPLAINED]
+    v = best_fit.variant if verdict.explained else scene_variant
+    steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
-    expected = departure.expected(target, shown, own, ids)
-    gone = departure.departure(target, expected, named_ if either else ids, steps)
-    told = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
+    expected = departure.expected(target, shown, scene_variant, ids)
+    first_departure = departure.departure(target, expected, all_causes if either else ids, steps)
+    refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target, ids, v)
-    ends = causes.intervals_of(target, found, ids) if verdict.explained else {}
+    ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
     soft = causes.compliance(target, v)
     alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
-    nearest = None if verdict.explained or alike else _nearest(target, verdict, named_)
+    nearest = None if verdict.explained or alike else _nearest(target, verdict, all_causes)
     if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
         stages = [evidence.surrounded(stage) for stage in stages]
-    said = sentences.Said(v, own, ids, values, gone, steps, found.misfit, soft, corrected, ends)
+    subject = sentences.Said(
+        v, scene_variant, ids, values, first_departure, steps, best_fit.misfit, soft, corrected, ends
+    )
     if not verdict.explained:
-        sentence = sentences.not_explained(said, nearest, alike, left, stages)
+        sentence = sentences.not_explained(subject, nearest, alike, unexplained, stages)
     else:
-        sentence = sentences.sentence(said, alike)
+        sentence = sentences.sentence(subject, alike)
     time = np.cumsum(target.steps)[target.rows]
-    best = computed(target.column, [found.variant], target.steps)
+    best = computed(target.column, [best_fit.variant], target.steps)
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
         ranking(DDA, target, v, shown.free, others),
-        gone,
+        first_departure,
         ids,
         (steps[0], steps[-1]) if steps else None,
         sentence,
         _notes(case.foreign, case.reading),
-        intervals(told) if verdict.explained else {},
-        untold(told) if verdict.explained else [],
-        found.misfit,
+        intervals(refitted) if verdict.explained else {},
+        untold(refitted) if verdict.explained else [],
+        best_fit.misfit,
         {name: (time, curve) for name, curve in curves.items()},
         values,
-        left,
+        unexplained,
         nearest,
         alike,
         tuple(stages),
@@ -243,33 +255,28 @@ def _opened(target: Target, v: Variant) -> list[int]:
 def _diverged(case: Case, factor: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
     target, stages = case.target, _stages(case, factor)
-    expected = histories(target.column, [case.own], target.steps).displacement[:, 0]
-    gone = departure.unbounded(expected[target.rows], target.displacement, target.rows)
+    expected = case.expected[0]
+    first_departure = departure.unbounded(expected, target.displacement, target.rows)
     time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
         {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
         [],
-        gone,
+        first_departure,
         [DIVERGED],
         None,
-        sentences.diverged(gone, factor),
+        sentences.diverged(first_departure, factor),
         _notes(case.foreign, case.reading),
-        curves={"the file": (time, target.displacement), DDA: (time, expected[target.rows])},
+        curves={"the file": (time, target.displacement), DDA: (time, expected)},
         values={DIVERGED: float(f"{factor:.6g}")},
         evidence=tuple(stages),
     )
 
 
 def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
-    said = (reading.stepping.note,) if reading.stepping.note else ()
+    of_times = (reading.stepping.note,) if reading.stepping.note else ()
     slipped = tuple(slip.words for slip in reading.corrected)
-    return (*foreign.notes, *said, *slipped)
-
-
-def _own_run(case: Case) -> Array:
-    """Return the displacement of DDA's own run of the scene at every step [m]."""
-    return computed(case.target.column, [case.own], case.target.steps).displacement[:, 0]
+    return (*foreign.notes, *of_times, *slipped)
 
 
 def _answer_of_rival(
@@ -290,11 +297,11 @@ def _answer_of_rival(
     without_scheme = verdict.explained and own_run is not None and best.alpha is None
     ids = [*reading.slips, *(["exact-in-time"] if without_scheme else []), *verdict.causes]
     ids = ids if verdict.explained else [UNEXPLAINED]
-    gone = None
+    first_departure = None
     if any(not CAUSES[name].benign for name in ids):
-        expected = own_run if without_scheme and own_run is not None else verdict.own
-        gone = departure.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = sentences.rival_sentence(verdict, ids, gone, MODEL_WORDS)
+        expected = own_run if without_scheme and own_run is not None else verdict.scene_run
+        first_departure = departure.measured(expected[rows], reading.displacement, rows, 0.0)
+    sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
         sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
@@ -303,7 +310,7 @@ def _answer_of_rival(
     return Answer(
         {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
         [row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
-        gone,
+        first_departure,
         ids,
         None,
         sentence,
@@ -320,26 +327,26 @@ def _answer_of_rival(
 def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
     read = answer.read(scene, foreign)
-    found = judge(scene, read.place, read.step, read.rounding)
-    ids = answer.ids_of(found, read)
+    result = judge(scene, read.place, read.step, read.rounding)
+    ids = answer.ids_of(result, read)
     t = scene.time
-    left = float(f"{min(1.0, np.nanmax([1 - max(found.shares.values()), found.run.left])):.4g}")
-    near = {"causes": list(found.causes), "values": found.values, "left": left}
+    unexplained = float(f"{min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])):.4g}")
+    near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
     return Answer(
         {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        [row_of(DDA, t.alpha, t.delta, t.discount, found.normal, found.values.get("base-compliance", 0.0))],
-        answer.departure_of(found, ids),
+        [row_of(DDA, t.alpha, t.delta, t.discount, result.normal, result.values.get("base-compliance", 0.0))],
+        answer.departure_of(result, ids),
         ids,
-        found.opened if found.explained else None,
-        answer.sentence(scene, found, ids, read.corrected),
+        result.opened if result.explained else None,
+        answer.sentence(scene, result, ids, read.corrected),
         (*foreign.notes, *read.notes),
-        misfit=found.normal,
+        misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
-        values=found.values if found.explained else {},
-        unexplained=0.0 if found.explained else left,
-        nearest=None if found.explained else near,
-        alike=[_alone(one) for one in found.alike],
-        evidence=tuple(answer.stages(found, read)),
+        values=result.values if result.explained else {},
+        unexplained=0.0 if result.explained else unexplained,
+        nearest=None if result.explained else near,
+        alike=[_alone(one) for one in result.alike],
+        evidence=tuple(answer.stages(result, read)),
         slips=read.corrected,
     )
 
@@ -355,7 +362,7 @@ def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block that is no upright rectangle, or that turns: linear models alone are tried."""
     from validation.solvers.registry import get_solver
 
-    tried = []
+    verdicts = []
     for stepping in steppings(foreign, scene.time.step):
         if np.ptp(stepping.steps) > 0:
             continue
@@ -364,9 +371,9 @@ def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
         rows = stepping.rows
         for reading in slips(foreign, stepping, run.displacement[rows], run.contact_pressure[rows]):
             verdict = judged(scene, reading, 1.0, (DDA, "fem"), DDA)
-            tried += [(reading, verdict)] if verdict is not None else []
-    if not tried:
+            verdicts += [(reading, verdict)] if verdict is not None else []
+    if not verdicts:
         raise InputError(f"{scene.name}: the times of the history are not uniform, which this scene needs")
-    reading, verdict = min(tried, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
+    reading, verdict = min(verdicts, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
     note = "the block is not an upright rectangle: opening and updated geometry are not tried"
     return _answer_of_rival(replace(foreign, notes=(*foreign.notes, note)), reading, verdict)

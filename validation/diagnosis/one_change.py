@@ -13,22 +13,23 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
-from validation.diagnosis.numbers import numbers
+from validation.diagnosis.numbers import Values, numbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
-Given = TypeVar("Given")
-Found = TypeVar("Found")
+Change = TypeVar("Change")  # what a candidate gives
+Explanation = TypeVar("Explanation")
 Residual = Callable[[float], Array]  # of a candidate's u: what it leaves of a history
 UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for Pa
 IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-factor"})
 NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
 SPAN = 0.05  # of u, that a step of a fit is measured in
+FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
+HALVED = 0.5  # of the remainder at the start
 
 
 @dataclass(frozen=True, eq=False)
-class CandidateChange(Generic[Given]):
+class CandidateChange(Generic[Change]):
     """One thing changed; with `starts` it has a number u that is fitted.
 
     Attributes
@@ -50,7 +51,7 @@ class CandidateChange(Generic[Given]):
     id: str
     words: Callable[[float], str]
     value: Callable[[float], float]
-    changed: Callable[[float], Given]
+    changed: Callable[[float], Change]
     starts: tuple[float, ...] = ()
     nudge: float = 1e-3
 
@@ -88,34 +89,70 @@ def in_units(factor: float) -> str:
 
 def of_discount(scene: Scene, discounts: Sequence[float]) -> CandidateChange[Values]:
     """Return another discount of the velocity at every step, gg = e^u; fits begin from some, times the scene's own."""
-    own = scene.time.discount
+    scene_discount = scene.time.discount
     return CandidateChange(
         "gg",
-        lambda gg: f"gg = {gg:.5g} where the scene has {own:.5g}",
+        lambda gg: f"gg = {gg:.5g} where the scene has {scene_discount:.5g}",
         lambda u: min(math.exp(u), 1.0),
         lambda u: {"time.gg": min(math.exp(u), 1.0)},
-        tuple(math.log(discount * own) for discount in discounts),
+        tuple(math.log(discount * scene_discount) for discount in discounts),
     )
 
 
 # ---- fits -----------------------------------------------------------------------------------------------------------
 
 
-def nearest_start(residual: Residual, starts: Sequence[float]) -> float:
-    """Return the start that leaves least."""
-    return min(starts, key=lambda u: float(np.linalg.norm(residual(u))))
+@dataclass(frozen=True, eq=False)
+class Fitted(Generic[Change]):
+    """A candidate at its best number so far.
+
+    Attributes
+    ----------
+    change
+        The candidate.
+    u
+        Its number; zero where it has none.
+    remainder
+        Norm of what it leaves of a history, or of what the best number would leave were the history linear in it.
+    """
+
+    change: CandidateChange[Change]
+    u: float
+    remainder: float
 
 
-def left_along_slope(residual: Residual, start: float, nudge: float) -> float:
-    """Return what the best number leaves if the history is linear in it at a start; infinite without effect there."""
-    at = residual(start)
-    slope = (residual(start + nudge) - at) / nudge
+def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted[Change]:
+    """Return a candidate at the start that leaves least, with what it would leave if the history were linear there.
+
+    One without a number leaves what it leaves, one whose number has no effect infinitely much.
+    """
+    if not change.starts:
+        return Fitted(change, 0.0, float(np.linalg.norm(residual(0.0))))
+    residuals = {u: residual(u) for u in change.starts}
+    start = min(residuals, key=lambda u: float(np.linalg.norm(residuals[u])))
+    there = residuals[start]
+    slope = (residual(start + change.nudge) - there) / change.nudge
     size = float(slope @ slope)
-    return float(np.linalg.norm(at - slope * (slope @ at) / size)) if size > 0 else math.inf
+    linear = float(np.linalg.norm(there - slope * (slope @ there) / size)) if size > 0 else math.inf
+    return Fitted(change, start, linear)
 
 
-def fitted(residual: Residual, start: float, rounds: int, nudge: float, settled: float = 1e-8) -> tuple[float, float]:
-    """Return the number that comes nearest, and the norm of what it leaves.
+def nearest(candidates: Sequence[Fitted[Change]], number: int, least: float) -> list[Fitted[Change]]:
+    """Return so many of the candidates that leave least, and all that leave no more than `least`, the best first."""
+    ordered = sorted(candidates, key=lambda candidate: candidate.remainder)
+    bar = max(ordered[min(len(ordered), number) - 1].remainder, least) if ordered else least
+    return [candidate for candidate in ordered if candidate.remainder <= bar]
+
+
+def fitted(
+    residual: Residual,
+    candidate: Fitted[Change],
+    rounds: int,
+    nudge: float,
+    settled: float = 1e-8,
+    hopeless: float = math.inf,
+) -> Fitted[Change]:
+    """Return a candidate at the number that comes nearest, as it is where it has none.
 
     Parameters
     ----------
@@ -125,35 +162,53 @@ def fitted(residual: Residual, start: float, rounds: int, nudge: float, settled:
         Relative change of u for a derivative.
     settled
         Relative gain at which the fit has arrived.
+    hopeless
+        Remainder beyond which a fit is given up whose first rounds have not halved it, nor would its slope.
     """
+    if not candidate.change.starts:
+        return replace(candidate, remainder=float(np.linalg.norm(residual(0.0))))
+    first = _least_squares(residual, candidate, min(rounds, FIRST_ROUNDS), nudge, settled)
+    if rounds <= FIRST_ROUNDS or (
+        min(first.remainder, candidate.remainder) > hopeless
+        and first.remainder > HALVED * float(np.linalg.norm(residual(candidate.u)))
+    ):
+        return first
+    return _least_squares(residual, first, rounds - FIRST_ROUNDS, nudge, settled)
+
+
+def _least_squares(
+    residual: Residual, candidate: Fitted[Change], rounds: int, nudge: float, settled: float
+) -> Fitted[Change]:
     from scipy.optimize import least_squares
 
-    done = least_squares(
+    solution = least_squares(
         lambda u: residual(float(u[0])),
-        [start],
+        [candidate.u],
         diff_step=nudge,
         x_scale=SPAN,
         max_nfev=rounds,
         xtol=settled,
         ftol=settled,
     )
-    return float(done.x[0]), float(np.linalg.norm(done.fun))
+    return replace(candidate, u=float(solution.x[0]), remainder=float(np.linalg.norm(solution.fun)))
 
 
 # ---- the decision ---------------------------------------------------------------------------------------------------
 
 
-def alike(found: Sequence[Found], left: Callable[[Found], float], times: float, least: float = 0.0) -> list[Found]:
+def alike(
+    explanations: Sequence[Explanation], remainder: Callable[[Explanation], float], times: float, least: float = 0.0
+) -> list[Explanation]:
     """Return those of some explanations that leave hardly more than the best, the best first.
 
     Parameters
     ----------
-    left
+    remainder
         What one leaves.
     times
         More than the best that others may leave.
     least
         That the best counts as leaving: below it no difference is one.
     """
-    ordered = sorted(found, key=left)
-    return [one for one in ordered if left(one) <= times * max(left(ordered[0]), least)]
+    ordered = sorted(explanations, key=remainder)
+    return [each for each in ordered if remainder(each) <= times * max(remainder(ordered[0]), least)]

@@ -110,10 +110,14 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
-    found = reader(text, path, columns)
-    scaled = {name: values * scale.get(name, 1.0) for name, values in found.items() if name in OURS}
-    rounded = {name: last_digits(found[name]) * abs(scale.get(name, 1.0)) for name in OURS[1:] if name in found}
-    return _checked(scaled, rounded, found.get("dt"), path, _notes_of(found, columns))
+    columns_of_file = reader(text, path, columns)
+    scaled = {name: values * scale.get(name, 1.0) for name, values in columns_of_file.items() if name in OURS}
+    rounded = {
+        name: last_digits(columns_of_file[name]) * abs(scale.get(name, 1.0))
+        for name in OURS[1:]
+        if name in columns_of_file
+    }
+    return _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
 
 
 # ---- tables -------------------------------------------------------------------------------------------------------
@@ -185,12 +189,12 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
     _bounded(len(lines), path)
     rows = [_numbers(line.split()) for line in lines]
-    kept = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
-    if not kept or len(kept) < len(rows) - 1:  # an interrupted run may leave half a last row
+    full_rows = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
+    if not full_rows or len(full_rows) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
-            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(kept)} other rows"
+            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(full_rows)} other rows"
         )
-    step, time, dt, x, y, size, vx, vy, _ = np.array(kept).T
+    step, time, dt, x, y, size, vx, vy, _ = np.array(full_rows).T
     summed = np.cumsum(vy * dt)
     start = y[0] - math.copysign(size[0], vy[0])
     every = bool(step[0] == 1 and np.all(np.diff(step) == 1))
@@ -208,19 +212,23 @@ def _bounded(rows: int, path: Path) -> None:
         raise InputError(f"{path}: must hold at most {MOST_STEPS} rows, got {rows}; cut it, or keep every tenth row")
 
 
-def _notes_of(found: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
-    return () if PRESSURE in found else ("no contact pressure in the file: only the displacement is judged",)
+def _notes_of(columns_of_file: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
+    return () if PRESSURE in columns_of_file else ("no contact pressure in the file: only the displacement is judged",)
 
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 
 
 def _checked(
-    found: Mapping[str, Array], rounded: Mapping[str, Array], dt: Array | None, path: Path, notes: tuple[str, ...]
+    columns_of_file: Mapping[str, Array],
+    rounded: Mapping[str, Array],
+    dt: Array | None,
+    path: Path,
+    notes: tuple[str, ...],
 ) -> Foreign:
     """Return the history without its row at t = 0."""
-    time = found["time"]
-    for name, values in found.items():
+    time = columns_of_file["time"]
+    for name, values in columns_of_file.items():
         sound = np.isfinite(values) & (np.abs(values) < LARGEST)
         if not np.all(sound):
             row = int(np.flatnonzero(~sound)[0]) + 1
@@ -236,16 +244,16 @@ def _checked(
         raise InputError(f"{path}: must hold at least {LEAST_ROWS} rows after t = 0, got {int(np.sum(keep))}")
     if not np.all(keep):
         notes = (*notes, "the row at t = 0 is ignored")
-    pressure = found.get(PRESSURE)
+    pressure = columns_of_file.get(PRESSURE)
     return Foreign(
         time[keep],
-        found[DISPLACEMENT][keep],
+        columns_of_file[DISPLACEMENT][keep],
         None if pressure is None else pressure[keep],
         None if dt is None else dt[keep],
         notes,
         rounded[DISPLACEMENT][keep],
         None if pressure is None else rounded[PRESSURE][keep],
-        *((found[SIDEWAYS][keep], rounded[SIDEWAYS][keep]) if SIDEWAYS in found else (None, None)),
+        *((columns_of_file[SIDEWAYS][keep], rounded[SIDEWAYS][keep]) if SIDEWAYS in columns_of_file else (None, None)),
     )
 
 
@@ -281,15 +289,15 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     slip = _unit_slip(usual / step) if foreign.steps is None else None
     if slip:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
-        said = f"the times are {slip:g} times those of the scene: a unit error"
-        return [Stepping(inner.steps, inner.rows, said, slip)]
-    found = []
+        note = f"the times are {slip:g} times those of the scene: a unit error"
+        return [Stepping(inner.steps, inner.rows, note, slip)]
+    ways_to_read = []
     if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
         return [Stepping(foreign.steps, every, "the times are not uniform: the program changed its step")]
-    found += _multiples(gaps, step)
-    if not found or len(found[0].rows) != len(found[0].steps):
-        found += _own_steps(gaps, usual, step)
-    return found
+    ways_to_read += _multiples(gaps, step)
+    if not ways_to_read or len(ways_to_read[0].rows) != len(ways_to_read[0].steps):
+        ways_to_read += _own_steps(gaps, usual, step)
+    return ways_to_read
 
 
 def _multiples(gaps: Array, step: float) -> list[Stepping]:

@@ -62,13 +62,15 @@ class Reading:
         )
 
 
-def readings_of(scene: Scene, column: Rectangle, own: Variant, foreign: Foreign) -> list[Reading]:
+def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign: Foreign) -> list[Reading]:
     """Return the ways to read a history's steps, sign and units."""
-    found = []
+    readings = []
     for stepping in steppings(foreign, scene.time.step):
-        expected = computed(column, [own], stepping.steps)
-        found += slips(foreign, stepping, expected.displacement[stepping.rows, 0], expected.pressure[stepping.rows, 0])
-    return found
+        expected = computed(column, [scene_variant], stepping.steps)
+        readings += slips(
+            foreign, stepping, expected.displacement[stepping.rows, 0], expected.pressure[stepping.rows, 0]
+        )
+    return readings
 
 
 def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
@@ -86,9 +88,9 @@ def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array
             pressure = pressure * turned / scale
             rounding = None if rounding is None else rounding / scale
             corrected += _column_slips(PRESSURE, turned, scale)
-        own = None if foreign.rounding is None else foreign.rounding / factor
+        unit = None if foreign.rounding is None else foreign.rounding / factor
         moved = foreign.displacement * sign / factor
-        readings.append(Reading(stepping, moved, pressure, tuple(corrected), own, rounding))
+        readings.append(Reading(stepping, moved, pressure, tuple(corrected), unit, rounding))
     return _plain_second(readings)
 
 
@@ -111,4 +113,4 @@ def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
-    return [(way * sign, factor) for way in (1.0, -1.0) for factor in (*near, 1.0)]
+    return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]

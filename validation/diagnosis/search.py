@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
-from validation.diagnosis.causes import OUTSIDE, Move, moves
+from validation.diagnosis.causes import FINE_BANDS, OUTSIDE, Move, dead_bands, moves
 from validation.diagnosis.decision import (
     AROUND,
     FAULT,
@@ -51,18 +51,22 @@ def simple(target: Target, scene: Variant) -> Verdict:
     scene
         The scene's own scheme, nothing added.
     """
-    own = fit(target, [(scene, ())])[0]
-    nothing = Found((), own)
-    if target.within_digits(own.residual) or own.misfit <= NEGLIGIBLE:
-        return Verdict(own, nothing, True)
+    scene_fit = fit(target, [(scene, ())])[0]
+    nothing = Found((), scene_fit)
+    if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
+        return Verdict(scene_fit, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
-    verdict = decided(target, own, [nothing, *single])
+    verdict = decided(target, scene_fit, [nothing, *single])
+    if not verdict.reached:
+        single += fitted(target, scene, [(move,) for move in dead_bands(target, scene, FINE_BANDS)])
+        single.sort(key=lambda f: f.fit.misfit)
+        verdict = decided(target, scene_fit, [nothing, *single])
     if verdict.reached:
         return verdict
-    around = decided(target, own, _around(target, scene))
+    around = decided(target, scene_fit, _around(target, scene))
     better = around.reached or around.best.fit.misfit < verdict.best.fit.misfit
-    left = around.best.fit.misfit
-    return replace(around if better else verdict, single=tuple(single), around=left)
+    misfit = around.best.fit.misfit
+    return replace(around if better else verdict, single=tuple(single), around=misfit)
 
 
 def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
@@ -92,10 +96,10 @@ def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
     faults = [move for move in few if move.id not in SURROUNDINGS]
     around = tuple(_surroundings(target, scene))
     faults += [move for move in moves(target, scene) if move.id == "dead-band" and OTHER_PROGRAMS in move.changes]
-    tried = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
-    tried = [*tried[:3], *_heavy(target, tried[:3])]
-    fine = [f for f in tried if accepted(target, before.own, f.fit)]
-    last = decided(target, before.own, [_without_excess(target, before.own, f) for f in fine] or tried)
+    explanations = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
+    explanations = [*explanations[:3], *_heavy(target, explanations[:3])]
+    fine = [f for f in explanations if accepted(target, before.own, f.fit)]
+    last = decided(target, before.own, [_without_excess(target, before.own, f) for f in fine] or explanations)
     return _nearer(last, before)
 
 
@@ -103,9 +107,9 @@ def _around(target: Target, scene: Variant) -> list[Found]:
     """Return two or three of what surrounds a block: a softer base, weight, moving geometry."""
     parts = _surroundings(target, scene)
     combos = [tuple(parts[:1])] + [combo for size in (2, 3) for combo in combinations(parts, size)]
-    found = fitted(target, scene, combos)
-    soft = [f for f in found if len(f.moves) == 1]
-    return sorted([*found, *_heavy(target, found[:2]), *_heavy(target, soft)], key=lambda f: f.fit.misfit)
+    explanations = fitted(target, scene, combos)
+    soft = [f for f in explanations if len(f.moves) == 1]
+    return sorted([*explanations, *_heavy(target, explanations[:2]), *_heavy(target, soft)], key=lambda f: f.fit.misfit)
 
 
 def _surroundings(target: Target, scene: Variant) -> list[Move]:
@@ -114,10 +118,10 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
     return [plain[name] for name in SURROUNDINGS]
 
 
-def _heavy(target: Target, found: Sequence[Found]) -> list[Found]:
+def _heavy(target: Target, explanations: Sequence[Found]) -> list[Found]:
     """Return explanations by a softer base with a base that has mass."""
     more = []
-    for f in found:
+    for f in explanations:
         v = f.fit.variant
         if v.softness > 0 and "softness" in f.fit.free:
             starts = [(replace(v, base=m, softness=v.softness * soft), (*f.fit.free, "base")) for m, soft in BASES]
@@ -125,19 +129,19 @@ def _heavy(target: Target, found: Sequence[Found]) -> list[Found]:
     return more
 
 
-def _without_excess(target: Target, own: Fit, found: Found) -> Found:
+def _without_excess(target: Target, scene_fit: Fit, explanation: Found) -> Found:
     """Return an explanation without those of its surroundings that it does not need."""
-    for move in [m for m in found.moves if m.id in SURROUNDINGS]:
-        rest = tuple(m for m in found.moves if m is not move)
-        plain = Variant(own.variant.alpha, own.variant.delta, own.variant.gg)
+    for move in [m for m in explanation.moves if m.id in SURROUNDINGS]:
+        rest = tuple(m for m in explanation.moves if m is not move)
+        plain = Variant(scene_fit.variant.alpha, scene_fit.variant.delta, scene_fit.variant.gg)
         names = [name for name, _ in move.changes] + list(move.free) + (["base"] if "softness" in move.free else [])
-        back = changed(found.fit.variant, {name: getattr(plain, name) for name in names})
-        free = tuple(name for name in found.fit.free if name not in names)
+        back = changed(explanation.fit.variant, {name: getattr(plain, name) for name in names})
+        free = tuple(name for name in explanation.fit.free if name not in names)
         (less,) = fit(target, [(back, free)], rounds=12)
-        fine = accepted(target, own, less) and less.misfit < max(2 * found.fit.misfit, AROUND / 10)
-        if fine or score(target, less) <= score(target, found.fit):
-            found = Found(rest, less)
-    return found
+        fine = accepted(target, scene_fit, less) and less.misfit < max(2 * explanation.fit.misfit, AROUND / 10)
+        if fine or score(target, less) <= score(target, explanation.fit):
+            explanation = Found(rest, less)
+    return explanation
 
 
 def _few(target: Target, scene: Variant, single: Sequence[Found]) -> list[Move]:

@@ -15,21 +15,12 @@ if TYPE_CHECKING:
     from validation.diagnosis.departure import Departure
     from validation.diagnosis.evidence import Stage
     from validation.diagnosis.fits.fit import Interval
-    from validation.diagnosis.other_verdict import RivalVerdict
+    from validation.diagnosis.other_solvers import RivalVerdict
     from validation.diagnosis.readings import Slip
 
 INTEGRATOR = (
-    *(
-        "scheme",
-        "gg",
-        "gg-in-one-formula",
-        "start",
-        "hht",
-        "generalised-alpha",
-        "substeps",
-        "exact-in-time",
-        "velocity",
-    ),
+    *("scheme", "gg", "gg-in-one-formula", "start", "hht", "generalised-alpha", "substeps"),
+    *("exact-in-time", "velocity"),
 )
 OUTPUT = ("sign", "unit", "time-shift", "pressure-shift", "pressure-factor", "reported-point")
 HALF = 0.5
@@ -93,79 +84,79 @@ class Said:
         return f" from step {self.gone.step} on, mainly in {self.gone.kind}" if self.gone else ""
 
 
-def sentence(said: Said, alike: Sequence[Mapping[str, Any]] = ()) -> str:
+def sentence(subject: Said, alike: Sequence[Mapping[str, Any]] = ()) -> str:
     """Return the first line of the answer where causes explain the history, or none is needed."""
-    faults = [name for name in said.causes if not CAUSES[name].benign]
-    benign = [_benign_words(name, said) for name in said.causes if CAUSES[name].benign]
+    faults = [name for name in subject.causes if not CAUSES[name].benign]
+    benign = [_benign_words(name, subject) for name in subject.causes if CAUSES[name].benign]
     allowed = f", allowing for {_listed(benign)}" if benign else ""
-    left = f"the remaining difference is {per_cent(said.misfit, 2)} %"
+    remainder = f"the remaining difference is {per_cent(subject.misfit, 2)} %"
     if not faults:
         same = f" (the same rows: {_family(alike[0])})" if alike else ""
-        return f"Same model, same scheme: {said.own}{allowed}{same}; {left}."
-    words = _listed([_fault_words(name, said) for name in faults])
+        return f"Same model, same scheme: {subject.own}{allowed}{same}; {remainder}."
+    words = _listed([_fault_words(name, subject) for name in faults])
     if len(faults) == 1 and faults[0] in ("pressure-shift", "pressure-factor"):
         words += ", the displacement is right"
     family = f" (the same rows: {_family(alike[0])})" if alike else ""
     if set(faults) & set(INTEGRATOR):
-        return f"Departs{said.where}: {words}{family}; the history matches {said.own}{allowed}; {left}."
+        return f"Departs{subject.where}: {words}{family}; the history matches {subject.own}{allowed}; {remainder}."
     model = ", same model" if set(faults) <= set(OUTPUT) else ""
-    return f"Same scheme{model}: {said.own}, but departs{said.where}: {words}{family}{allowed}; {left}."
+    return f"Same scheme{model}: {subject.own}, but departs{subject.where}: {words}{family}{allowed}; {remainder}."
 
 
 def not_explained(
-    said: Said,
+    subject: Said,
     nearest: Mapping[str, Any] | None,
     alike: Sequence[Mapping[str, Any]],
-    left: float,
+    unexplained: float,
     stages: Sequence[Stage],
 ) -> str:
     """Return the first line of the answer where nothing explains the history, or several causes do."""
-    start = f"Departs{said.where}, not explained: "
+    start = f"Departs{subject.where}, not explained: "
     if alike:
         words = " or ".join(_family(one) for one in alike[:3])
         further = f"to tell them apart, try {alike[0]['further_scene']}"
         return f"{start}{words} give the same rows within digits and noise; {further}."
     near = "nothing is near"
-    if nearest and nearest["causes"] and left <= NEAR:
-        near = f"nearest is {_family(nearest)}, {per_cent(left, 2)} % left"
+    if nearest and nearest["causes"] and unexplained <= NEAR:
+        near = f"nearest is {_family(nearest)}, {per_cent(unexplained, 2)} % left"
     right = _names(stages, True)
     wrong = _names(stages, False)
-    told = [f"right so far: {right}" if right else "", f"wrong: {wrong}" if wrong else ""]
-    return "; ".join([start + near, *(part for part in told if part)]) + "."
+    summary = [f"right so far: {right}" if right else "", f"wrong: {wrong}" if wrong else ""]
+    return "; ".join([start + near, *(part for part in summary if part)]) + "."
 
 
-def diverged(gone: Departure, growth: float) -> str:
+def diverged(departure: Departure, growth: float) -> str:
     """Return the first line of the answer to a history without bounds."""
     return (
-        f"Departs from step {gone.step} on: the run diverged, by a factor of {growth:.4g} a step; "
+        f"Departs from step {departure.step} on: the run diverged, by a factor of {growth:.4g} a step; "
         "nothing else can be told from it."
     )
 
 
 def rival_sentence(
-    verdict: RivalVerdict, causes: Sequence[str], gone: Departure | None, models: Mapping[str, str]
+    verdict: RivalVerdict, causes: Sequence[str], departure: Departure | None, models: Mapping[str, str]
 ) -> str:
     """Return the first line where another solver explains the history best."""
     best = verdict.best
-    own, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
-    left = f"the remaining difference is {per_cent(best.misfit, 2)} %"
+    scheme_of_best, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
+    remainder = f"the remaining difference is {per_cent(best.misfit, 2)} %"
     if not verdict.explained:
         return (
-            f"Departs, not explained: nearest is {best.model} ({model}) with {own}, "
-            f"{per_cent(verdict.left, 2)} % of the difference left; {left}."
+            f"Departs, not explained: nearest is {best.model} ({model}) with {scheme_of_best}, "
+            f"{per_cent(verdict.left, 2)} % of the difference left; {remainder}."
         )
     parts = [f"{CAUSES[name].words}{_number(name, verdict.values)}" for name in causes]
-    said = f"; {_listed(parts)}" if parts else ""
-    if gone is None:
-        return f"Same model as {best.model} ({model}), same scheme: {own}{said}; {left}."
-    where = f"departs from step {gone.step} on, mainly in {gone.kind}"
+    faults = f"; {_listed(parts)}" if parts else ""
+    if departure is None:
+        return f"Same model as {best.model} ({model}), same scheme: {scheme_of_best}{faults}; {remainder}."
+    where = f"departs from step {departure.step} on, mainly in {departure.kind}"
     scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(causes) else "same scheme"
-    return f"Closest match: {best.model} ({model}), {scheme}: {own}; {where}{said}; {left}."
+    return f"Closest match: {best.model} ({model}), {scheme}: {scheme_of_best}; {where}{faults}; {remainder}."
 
 
-def told_lines(told: Mapping[str, Interval], untold: Sequence[Mapping[str, float]]) -> list[str]:
+def told_lines(determined: Mapping[str, Interval], untold: Sequence[Mapping[str, float]]) -> list[str]:
     """Return the fitted numbers with their intervals, and the directions that the history does not determine."""
-    lines = [f"fitted {name} = {_fitted(found)} (95 %)" for name, found in told.items()]
+    lines = [f"fitted {name} = {_fitted(interval)} (95 %)" for name, interval in determined.items()]
     return lines + [
         "not determined by the data: " + ", ".join(f"{part:+.2f} {name}" for name, part in direction.items())
         for direction in untold
@@ -182,9 +173,9 @@ def per_cent(value: float, digits: int = 3) -> str:
     return f"{100 * value:.{digits}g}" if abs(value) > ROUNDING else f"below {100 * ROUNDING:g}"
 
 
-def _fitted(found: Interval) -> str:
-    width = f"+- {found.half_width:.2g}" if found.half_width > ROUNDING else f"+- less than {ROUNDING:g}"
-    return f"{cleaned(found.value):.7g} {width}"
+def _fitted(interval: Interval) -> str:
+    width = f"+- {interval.half_width:.2g}" if interval.half_width > ROUNDING else f"+- less than {ROUNDING:g}"
+    return f"{cleaned(interval.value):.7g} {width}"
 
 
 def _listed(parts: Sequence[str]) -> str:
@@ -204,22 +195,22 @@ def _family(one: Mapping[str, Any]) -> str:
     return _listed([name + (f" {one['values'][name]:.4g}" if name in one["values"] else "") for name in one["causes"]])
 
 
-def _benign_words(name: str, said: Said) -> str:
+def _benign_words(name: str, subject: Said) -> str:
     if name == "base-compliance":
-        return f"a base that adds {100 * said.compliance:.2g} % to the static displacement"
+        return f"a base that adds {100 * subject.compliance:.2g} % to the static displacement"
     if name == "own-weight":
-        return f"the block's own weight ({said.variant.weight:.3g} x 9.81 m/s2)"
+        return f"the block's own weight ({subject.variant.weight:.3g} x 9.81 m/s2)"
     return CAUSES[name].words
 
 
-def _fault_words(name: str, said: Said) -> str:
+def _fault_words(name: str, subject: Said) -> str:
     """Return a cause with its number."""
-    v, scene, value = said.variant, said.scene, said.values.get(name, 0.0)
-    steps = span(said.open_steps)
+    v, scene, value = subject.variant, subject.scene, subject.values.get(name, 0.0)
+    steps = span(subject.open_steps)
     formula = {"velocity": "velocity (7)", "displacement": "displacement (6)"}.get(v.discounted, "")
     words = {
-        "sign": _slips("sign", said.slips),
-        "unit": _slips("unit", said.slips),
+        "sign": _slips("sign", subject.slips),
+        "unit": _slips("unit", subject.slips),
         "scheme": f"a different scheme from the scene's {scheme_words(scene.alpha, scene.delta, scene.gg)}",
         "gg": f"gg = {v.gg:.5g} where the scene has {scene.gg:.5g}" + _square(v.gg, scene.gg),
         "gg-in-one-formula": f"gg is applied only in the formula for the {formula}",
@@ -246,7 +237,8 @@ def _fault_words(name: str, said: Said) -> str:
         "coupling": "the springs' coupling of v and ey " + ("is missing" if v.coupling == 0 else "has the wrong sign"),
         "stress-not-kept": f"only the {'force of the springs' if v.kept == 'springs' else 'stress'} is carried over",
         "contact-opened": f"the contact opened in steps {steps}" if steps else "the contact opened",
-        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m" + _between(said, name),
+        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m"
+        + _between(subject, name),
     }
     return words.get(name, CAUSES[name].words)
 
@@ -255,24 +247,24 @@ def _slips(cause: str, slips: Sequence[Slip]) -> str:
     return " and ".join(slip.words for slip in slips if slip.cause == cause) or CAUSES[cause].words
 
 
-def _between(said: Said, name: str) -> str:
+def _between(subject: Said, name: str) -> str:
     """Say between which values of a number the rows do not change."""
-    if name not in said.intervals:
+    if name not in subject.intervals:
         return ""
-    low, high = said.intervals[name]
+    low, high = subject.intervals[name]
     return f" ({low:.3g} to {high:.3g} m give the same rows)"
 
 
 def _gravity(factor: float) -> str:
     """Say what became of the scene's gravity."""
-    told = {0.0: "gravity is missing", -1.0: "gravity acts upwards"}
-    return told.get(factor, f"gravity is {factor:.5g} times the scene's")
+    words = {0.0: "gravity is missing", -1.0: "gravity acts upwards"}
+    return words.get(factor, f"gravity is {factor:.5g} times the scene's")
 
 
 def _twelfth(factor: float) -> str:
     """Say which slip a factor on the inertia is, where it looks so."""
-    told = {3.0: ", of a mass in the corners", 12.0: ", without its twelfth"}
-    return told.get(round(factor, 3), "")
+    words = {3.0: ", of a mass in the corners", 12.0: ", without its twelfth"}
+    return words.get(round(factor, 3), "")
 
 
 def _square(gg: float, scene: float) -> str:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,10 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
         Length of each time step [s], shape (n,).
     """
     n = len(steps)
+    # loads that come on in time act on a block that has, or has not, the acceleration of the full load to start from
+    started = [j for j, v in enumerate(variants) if v.ramp and v.start == "consistent"]
+    requested = variants
+    variants = [*requested, *(replace(requested[j], start="zero") for j in started)]
     longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
     equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
     groups: dict[tuple[bool, int, int, bool], list[int]] = {}
@@ -62,11 +66,18 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
                 displacement[:, members], pressure[:, members] = columns
             else:
                 every = np.repeat(longer / parts, parts)
-                done = stepper.loop(every)
+                columns_of_loop = stepper.loop(every)
                 displacement[:, members], pressure[:, members], opened[:, members] = (
-                    c[parts - 1 :: parts] for c in done
+                    c[parts - 1 :: parts] for c in columns_of_loop
                 )
-        return reported(Histories(displacement, pressure, opened), variants, longer, n)
+        from_rest = dict(zip(started, range(len(requested), len(variants)), strict=True))
+        for j, v in enumerate(requested):
+            if v.ramp:
+                for values in (displacement, pressure):
+                    at_once = values[:, from_rest.get(j, j)]
+                    values[:, j] += _ramped(at_once, v.ramp / float(longer[0])) - at_once
+        whole = len(requested)
+        return reported(Histories(displacement[:, :whole], pressure[:, :whole], opened[:, :whole]), requested, n)
 
 
 def _unknowns(rectangle: Rectangle, v: Variant) -> int:
@@ -106,9 +117,7 @@ class Stepper:
         self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)[:, None]
         self.secant = each("secant").astype(bool)
         self.viscous, self.structural = each("viscous"), each("structural")
-        # the loads of a ramp begin with none, which leaves no acceleration to start from
-        consistent = [v.start == "consistent" and not v.ramp for v in variants]
-        self.consistent = np.array(consistent, dtype=float)
+        self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated, self.opens = each("updated"), each("opens").astype(bool)
         self.closing, self.opening = each("band"), each("band") * each("reopening")
         self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
@@ -212,15 +221,15 @@ class Stepper:
         one = state[..., -1:]
         alpha, delta, am, af = (c[:, None] for c in (self.alpha, self.delta, self.mean_mass, self.mean_force))
         ahead = self.gg_displacement * U + (0.5 - alpha) * W
-        kept = self.gg_velocity * U
-        rate = kept + (1 - delta) * W
+        discounted = self.gg_velocity * U
+        rate = discounted + (1 - delta) * W
         internal = times(q.carried, x) + (q.spring * state[..., 0])[..., None] * q.gap
         if d > 2:
             internal[..., 2 if d < 6 else 3] += q.shear * state[..., 1]
         pull = one * q.load - internal - (1 - af) * times(q.stiffness, ahead)
         right = dt * dt * pull - times(q.mass, am * W)
         if self.damped:
-            right = right - dt * times(self._damping(q), (1 - af) * rate + af * kept)
+            right = right - dt * times(self._damping(q), (1 - af) * rate + af * discounted)
         W1 = times(inverse, right)
         increment = ahead + alpha * W1
         U1 = np.where(self.secant[:, None], increment, rate + delta * W1)
@@ -285,8 +294,8 @@ class Stepper:
         for _ in range(math.ceil(steps / length)):
             blocks.append(times(rows, state).reshape(n, length, 2))
             state = times(power, state)
-        shown = np.concatenate(blocks, axis=1)[:, :steps]
-        return shown[..., 0].T, shown[..., 1].T
+        observed = np.concatenate(blocks, axis=1)[:, :steps]
+        return observed[..., 0].T, observed[..., 1].T
 
     def _exponential(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step that is exact in time: of x' = U, M U' = dt^2 (F - f) - dt C U, t over dt."""
@@ -311,14 +320,14 @@ class Stepper:
         """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
         n, moves = len(self.variants), bool(np.any(self.updated))
         wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
-        known: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
+        prepared_steps: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
 
         def prepared(dt: float, closed: Flags) -> tuple[Equations, Array]:
             key = (dt, closed.tobytes())
-            if moves or key not in known:
+            if moves or key not in prepared_steps:
                 q = self.equations(closed, wide, high)
-                known[key] = q, self.inverse(q, dt)
-            return known[key]
+                prepared_steps[key] = q, self.inverse(q, dt)
+            return prepared_steps[key]
 
         first = self.equations(on, wide, high)
         state, observers = self.start(first, float(steps[0])), self.observers(first)
@@ -342,11 +351,11 @@ class Stepper:
                 wide = wide * (1 + self.updated * (strain[:, 2] if self.d > 2 else 0.0))
             end[:, 1] = np.where(on, end[:, 1], 0.0)
             state = end
-            shown = times(observers, state)
-            rows.append(np.column_stack([shown[:, 0], np.where(on, shown[:, 1], 0.0)]))
+            observed = times(observers, state)
+            rows.append(np.column_stack([observed[:, 0], np.where(on, observed[:, 1], 0.0)]))
             flags.append(~on)
-        found = np.array(rows)
-        return found[..., 0], found[..., 1], np.array(flags)
+        columns = np.array(rows)
+        return columns[..., 0], columns[..., 1], np.array(flags)
 
 
 def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) -> Array:
@@ -362,13 +371,14 @@ def further_steps(variants: Sequence[Variant]) -> int:
     return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
 
 
-def reported(found: Histories, variants: Sequence[Variant], steps: Array, n: int) -> Histories:
+def reported(histories_of_steps: Histories, variants: Sequence[Variant], n: int) -> Histories:
     """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
-    displacement, pressure, opened = found.displacement, found.pressure, found.open
+    displacement, pressure, opened = (
+        histories_of_steps.displacement,
+        histories_of_steps.pressure,
+        histories_of_steps.open,
+    )
     for j, v in enumerate(variants):
-        if v.ramp:
-            for values in (displacement, pressure):
-                values[:, j] = _ramped(values[:, j], v.ramp / float(steps[0]))
         if v.late:
             whole, part = math.floor(v.late), v.late - math.floor(v.late)
             P = pressure[:, j]

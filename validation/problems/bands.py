@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.changes import Values, friction, layers, sized, springs
+from validation.diagnosis.numbers import Values, friction, layers, sized, springs
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
@@ -122,8 +122,8 @@ DATA = (
 
 def changes(scene: Scene) -> dict[str, Values]:
     """Return what one per cent of each datum of a scene is: datum to keys and values."""
-    found = {datum.name: datum.changed(scene) for datum in DATA}
-    return {name: values for name, values in found.items() if values}
+    values_by_datum = {datum.name: datum.changed(scene) for datum in DATA}
+    return {name: values for name, values in values_by_datum.items() if values}
 
 
 def changed_scenes(scene: Scene) -> dict[str, Scene]:
@@ -139,17 +139,23 @@ def standard(problem: Problem) -> Standard:
     InputError
         An exact motion could not be computed.
     """
-    return _standard(problem.scene.model_dump_json(by_alias=True, exclude_unset=True))
+    return _standard(definition_of(problem.scene))
+
+
+def definition_of(scene: Scene) -> str:
+    """Return a scene as JSON, by which what is computed of it is kept."""
+    return scene.model_dump_json(by_alias=True, exclude_unset=True)
 
 
 @functools.lru_cache(maxsize=32)
 def _standard(definition: str) -> Standard:
-    scene = _scene(definition)
-    own = _motion(scene)
-    return standard_of(own, {name: _motion(other) for name, other in changed_scenes(scene).items()})
+    scene = scene_of(definition)
+    motion = _motion(scene)
+    return standard_of(motion, {name: _motion(other) for name, other in changed_scenes(scene).items()})
 
 
-def _scene(definition: str) -> Scene:
+def scene_of(definition: str) -> Scene:
+    """Return the scene of such a definition."""
     import json
 
     return parse_scene(json.loads(definition), "scene")
@@ -159,14 +165,14 @@ def _motion(scene: Scene) -> History:
     return exact(scene, truth_of(scene))
 
 
-def standard_of(own: History, changed: Mapping[str, History]) -> Standard:
+def standard_of(motion: History, changed: Mapping[str, History]) -> Standard:
     """Return the standard of exact motions that are there already: the problem's and those of changed data."""
     bands = {}
-    for name, column in own.columns.items():
-        found = band(own.time, column, {datum: other.columns[name] for datum, other in changed.items()})
-        if found is not None:
-            bands[name] = found
-    return Standard(own, changed, bands)
+    for name, column in motion.columns.items():
+        band_of_column = band(motion.time, column, {datum: other.columns[name] for datum, other in changed.items()})
+        if band_of_column is not None:
+            bands[name] = band_of_column
+    return Standard(motion, changed, bands)
 
 
 def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | None:
@@ -193,8 +199,10 @@ def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | Non
 def moved_by(other: Array, column: Array) -> Array:
     """Return ||other - column|| / ||column|| over the first n rows, for every n; 0 where both are zero so far."""
     size = float(np.max(np.abs(column))) or 1.0
-    difference, own = (np.sqrt(np.cumsum(np.square(x / size))) for x in (other - column, column))
-    return np.asarray(np.divide(difference, own, out=np.where(difference > 0, np.inf, 0.0), where=own > 0))
+    difference, size_so_far = (np.sqrt(np.cumsum(np.square(x / size))) for x in (other - column, column))
+    return np.asarray(
+        np.divide(difference, size_so_far, out=np.where(difference > 0, np.inf, 0.0), where=size_so_far > 0)
+    )
 
 
 def _judged_rows(most: Array) -> int:

@@ -17,12 +17,12 @@ import numpy as np
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import laws
-from validation.diagnosis.one_change import Residual, alike, fitted, left_along_slope, nearest_start
+from validation.diagnosis.one_change import Residual, alike, fitted, nearest, nearest_start
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.problems.bands import Standard
 from validation.problems.families import Change, of_damping, of_data, of_output, springs_alike
-from validation.problems.models import Base, Columns, Runs
+from validation.problems.models import Base, Columns, Runs, runs_of
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes import features
@@ -43,6 +43,7 @@ CLEAR = 10.0  # times more that every other cause must leave than the one that i
 ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
 PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
 NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
+HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which it has to have halved them
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
@@ -81,31 +82,31 @@ class Cause:
         return OTHERS_WOULD if self.alike else WOULD_TELL
 
 
-def cause(problem: Problem, history: History, held: Standard) -> Cause:
+def cause(problem: Problem, history: History, reference: Standard) -> Cause:
     """Return the cause of a failure; silent rather than wrong."""
-    seen = {name: x for name, x in history.columns.items() if name in held.bands}
-    if told := _plain(seen, held):
-        return told
-    runs = Runs(problem.scene, held)
-    found = Search(runs, seen).causes()
-    if found:
-        return _named(found)
+    answer = {name: x for name, x in history.columns.items() if name in reference.bands}
+    if plain := _plain(answer, reference):
+        return plain
+    runs = runs_of(problem.scene, reference)
+    causes = Search(runs, answer).causes()
+    if causes:
+        return _named(causes)
     return compared(problem.scene, history) or Cause()
 
 
-def _plain(seen: Columns, held: Standard) -> Cause | None:
+def _plain(answer: Columns, reference: Standard) -> Cause | None:
     """Return what needs no run to be seen: no numbers, no motion."""
-    for name, x in seen.items():
+    for name, x in answer.items():
         if not np.isfinite(x).all():
             row = int(np.argmin(np.isfinite(x))) + 1
             return Cause(f"{name} is not a number from step {row} on", ("not-finite",), left=0.0)
-    if all(float(np.max(np.abs(x))) <= NOTHING * _size(name, held) for name, x in seen.items()):
+    if all(float(np.max(np.abs(x))) <= NOTHING * _size(name, reference) for name, x in answer.items()):
         return Cause("nothing moves", ("nothing-moves",), left=0.0)
     return None
 
 
-def _size(name: str, held: Standard) -> float:
-    return float(np.max(np.abs(held.exact.columns[name])))
+def _size(name: str, reference: Standard) -> float:
+    return float(np.max(np.abs(reference.exact.columns[name])))
 
 
 @dataclass(eq=False)
@@ -113,63 +114,52 @@ class Search:
     """The search for what gives an answer back."""
 
     runs: Runs
-    seen: Columns
+    answer: Columns
 
     def causes(self) -> list[Cause]:
         """Return all causes that leave less than the bar, the one that leaves least first."""
-        found = sorted(self._schemes(), key=lambda one: one.left)
-        if found and found[0].left <= SAME:  # digit for digit
-            return found
+        causes = sorted(self._schemes(), key=lambda one: one.left)
+        if causes and causes[0].left <= SAME:  # digit for digit
+            return causes
         exact = self.runs.exact()
         cheap = not {features.FRICTION, features.ROTATION} & {*features.of(self.runs.scene)}
         for base in self._bases(exact, cheap):
-            found += [*self._laws(base), *self._changes(base, cheap)]
-        return sorted(found, key=lambda one: (one.left, len(one.ids)))
+            causes += [*self._laws(base), *self._changes(base, cheap)]
+        return sorted(causes, key=lambda one: (one.left, len(one.ids)))
 
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
         """Return the runs that one wrong number is put into: the exact motion's, and those of the usual schemes."""
-        found = [] if exact is None else [exact]
+        bases = [] if exact is None else [exact]
         if exact is not None and not exact.values:  # the scene's own scheme is exact enough by itself
-            return found
-        return [*found, *(base for base in self.runs.schemes() if base.usual and (cheap or not base.values))]
+            return bases
+        return [*bases, *(base for base in self.runs.schemes() if base.usual and (cheap or not base.values))]
 
     def _schemes(self) -> Iterable[Cause]:
         t = self.runs.scene.time
         for base in self.runs.schemes():
-            left = self._left(self.runs.sampled(base))
-            if left <= BAR:
+            remainder = self._left(self.runs.sampled(base))
+            if remainder <= BAR:
                 values = {"alpha": base.alpha(t), "delta": base.delta(t), "step": t.step / base.every}
-                yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), left)
+                yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), remainder)
 
     def _laws(self, base: Base) -> Iterable[Cause]:
         """Yield other laws of the contact under which a base gives the answer back."""
         for law in laws(self.runs.scene):
-            left = self._left(self.runs.sampled(base, law.values))
-            if left <= BAR:
-                yield _with(law.id, law.words, {}, left, base, self.runs.scene)
+            remainder = self._left(self.runs.sampled(base, law.values))
+            if remainder <= BAR:
+                yield _with(law.id, law.words, {}, remainder, base, self.runs.scene)
 
     def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
-        """Yield the changes by one number that give the answer back."""
+        """Yield the changes by one number that give the answer back, of those that come nearest along their slope."""
         changes = list(of_data(self.runs, base, cheap))
         if base.exact:
-            changes += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.seen))]
-        for change, start in self._pursued(changes, cheap):
-            u, _ = fitted(self._residual(change), start, ROUNDS, NUDGE)
-            left = self._left(change.changed(u))
-            if left <= BAR:
-                yield _of_change(change, u, left, base, self.runs.scene)
-
-    def _pursued(self, changes: Sequence[Change], cheap: bool) -> list[tuple[Change, float]]:
-        """Return the changes that come nearest along their slope, each from its best start."""
-        tried = []
-        for change in changes:
-            residual = self._residual(change)
-            start = nearest_start(residual, change.starts)
-            tried.append((change, start, left_along_slope(residual, start, change.nudge)))
-        tried.sort(key=lambda item: item[2])
-        last = tried[min(len(tried), PURSUED if cheap else PURSUED_SLOW) - 1]
-        bar = max(last[2], NEAR)  # none is left out that may give the same rows
-        return [(change, start) for change, start, left in tried if left <= bar]
+            changes += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.answer))]
+        starts = [nearest_start(self._residual(change), change) for change in changes]
+        for start in nearest(starts, PURSUED if cheap else PURSUED_SLOW, NEAR):
+            best = fitted(self._residual(start.change), start, ROUNDS, NUDGE, hopeless=HOPELESS)
+            remainder = self._left(best.change.changed(best.u))
+            if remainder <= BAR:
+                yield _of_change(best.change, best.u, remainder, base, self.runs.scene)
 
     def _residual(self, change: Change) -> Residual:
         """Return the function of the difference of the answer and a change's columns over norms and bands."""
@@ -177,9 +167,9 @@ class Search:
         def residual(u: float) -> Array:
             columns = change.changed(u)
             parts = []
-            for name, x in self.seen.items():
-                band = self.runs.held.bands[name]
-                size = float(np.linalg.norm(self.runs.held.exact.columns[name][: band.rows])) * band.high
+            for name, x in self.answer.items():
+                band = self.runs.standard.bands[name]
+                size = float(np.linalg.norm(self.runs.standard.exact.columns[name][: band.rows])) * band.high
                 other = np.full(band.rows, np.inf) if columns is None else columns[name][: band.rows]
                 parts.append((x[: band.rows] - other) / size)
             return np.nan_to_num(np.clip(np.concatenate(parts), -FARTHEST, FARTHEST), nan=FARTHEST)
@@ -188,7 +178,7 @@ class Search:
 
     def _left(self, columns: Columns | None) -> float:
         """Return what columns leave of the answer over the band, inf where there are none."""
-        return math.inf if columns is None else self.runs.apart(self.seen, columns)
+        return math.inf if columns is None else self.runs.apart(self.answer, columns)
 
 
 # ---- words ----------------------------------------------------------------------------------------------------------
@@ -206,32 +196,34 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     return f"another integrator, {base.words}{step}: {why}"
 
 
-def _of_change(change: Change, u: float, left: float, base: Base, scene: Scene) -> Cause:
+def _of_change(change: Change, u: float, remainder: float, base: Base, scene: Scene) -> Cause:
     value = float(f"{change.value(u):.6g}")
     words = change.words(value) + springs_alike(scene, change.id, value)
-    return _with(change.id, words, {change.id: value}, left, base, scene)
+    return _with(change.id, words, {change.id: value}, remainder, base, scene)
 
 
-def _with(name: str, said: str, values: dict[str, float], left: float, base: Base, scene: Scene) -> Cause:
+def _with(name: str, words: str, values: dict[str, float], remainder: float, base: Base, scene: Scene) -> Cause:
     """Return a cause that a base shows: by itself where that stands for the exact motion, else beside its scheme."""
     if base.exact:
-        return Cause(said, (name,), values, (), left)
-    return Cause(f"{_scheme_sentence(base, scene)}; and {said}", ("scheme", name), values, (), left)
+        return Cause(words, (name,), values, (), remainder)
+    return Cause(f"{_scheme_sentence(base, scene)}; and {words}", ("scheme", name), values, (), remainder)
 
 
-def _named(found: Sequence[Cause]) -> Cause:
+def _named(causes: Sequence[Cause]) -> Cause:
     """Return the usual one of the causes that leave hardly more than the least; nothing where these are too many."""
-    near = alike(found, lambda one: one.left, CLEAR, BAR / CLEAR**2)
+    near = alike(causes, lambda one: one.left, CLEAR, BAR / CLEAR**2)
     fewest = min(len(one.ids) for one in near)
-    told: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
+    distinct: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
     for one in sorted((one for one in near if len(one.ids) == fewest), key=_rank):
-        told.setdefault((one.ids, *(float(f"{value:.2g}") for value in one.values.values())), one)
-    best, *others = told.values()
+        distinct.setdefault((one.ids, *(float(f"{value:.2g}") for value in one.values.values())), one)
+    best, *others = distinct.values()
     if not others:
         return best
     if len(others) >= MOST_ALIKE:
-        names = ", ".join(_short(one) for one in told.values())
-        return Cause(f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, told.values())))
+        names = ", ".join(_short(one) for one in distinct.values())
+        return Cause(
+            f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, distinct.values()))
+        )
     first, joint, _ = best.sentence.partition("; and ")
     same_rows = tuple(one.sentence.removeprefix(first + joint) if joint else one.sentence for one in others)
     sentence = f"{best.sentence} (the same rows: {'; or '.join(same_rows)})"

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
+from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import UNITS, CandidateChange, of_discount, of_numbers
 from validation.problems.models import Base, Columns, Runs
 from validation.runs.history import Array, History
@@ -122,15 +122,15 @@ def _moved(
     if not SLOWEST <= rate <= FASTEST or abs(late) > MOST_LATE:
         return None
     step = runs.scene.time.step
-    asked = rate * (step * np.arange(1.0, runs.scene.time.steps + 1) - late * step)
-    if asked[-1] > dense.time[-1]:
+    instants = rate * (step * np.arange(1.0, runs.scene.time.steps + 1) - late * step)
+    if instants[-1] > dense.time[-1]:
         return None
-    return {name: _at(dense, name, asked) if name in group else x for name, x in plain.items()}
+    return {name: _at(dense, name, instants) if name in group else x for name, x in plain.items()}
 
 
-def _at(dense: History, name: str, asked: Array) -> Array:
+def _at(dense: History, name: str, instants: Array) -> Array:
     from scipy.interpolate import CubicSpline
 
     time, column = np.concatenate([[0.0], dense.time]), np.concatenate([[0.0], dense.columns[name]])
-    found = CubicSpline(time, column)(np.maximum(asked, 0.0))
-    return np.asarray(found, dtype=np.float64)
+    values = CubicSpline(time, column)(np.maximum(instants, 0.0))
+    return np.asarray(values, dtype=np.float64)

@@ -12,7 +12,7 @@ from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
 from validation.problems.problem import Problem
-from validation.problems.told import Told, told
+from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
 
 ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is inside
@@ -66,7 +66,7 @@ class Judgement:
 
     problem: str
     columns: tuple[Column, ...]
-    told: tuple[Told, ...] = ()
+    quantities: tuple[Quantity, ...] = ()
 
     @property
     def word(self) -> Word:
@@ -130,48 +130,48 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
     InputError
         The answer is not at the steps of the scene, or no exact motion could be computed.
     """
-    held = against or standard(problem)
-    _check_instants(problem, history, held)
+    reference = against or standard(problem)
+    _check_instants(problem, history, reference)
     names = problem.scene.run.columns
-    columns = tuple(_judged(name, history.columns.get(name), held) for name in names)
-    return Judgement(problem.name, columns, told(problem, history, held.exact))
+    columns = tuple(_judged(name, history.columns.get(name), reference) for name in names)
+    return Judgement(problem.name, columns, quantities(problem, history, reference.exact))
 
 
-def _check_instants(problem: Problem, history: History, held: Standard) -> None:
-    rows, step = len(held.exact.time), problem.scene.time.step
+def _check_instants(problem: Problem, history: History, reference: Standard) -> None:
+    rows, step = len(reference.exact.time), problem.scene.time.step
     if len(history.time) < rows:
         raise InputError(f"{problem.name}: time: must hold {rows} rows, got {len(history.time)}")
-    apart = np.abs(history.time[:rows] - held.exact.time)
+    apart = np.abs(history.time[:rows] - reference.exact.time)
     if not np.all(apart <= SAME_INSTANT * step):
         row = int(np.argmin(apart <= SAME_INSTANT * step))
-        wanted, got = held.exact.time[row], history.time[row]
-        raise InputError(f"{problem.name}: time: must be {wanted:.9g} s in row {row + 1}, got {got:.9g}")
+        expected, stated = reference.exact.time[row], history.time[row]
+        raise InputError(f"{problem.name}: time: must be {expected:.9g} s in row {row + 1}, got {stated:.9g}")
 
 
-def _judged(name: str, values: Array | None, held: Standard) -> Column:
-    band = held.bands.get(name)
+def _judged(name: str, values: Array | None, reference: Standard) -> Column:
+    band = reference.bands.get(name)
     if band is None:
-        return Column(name, Word.NOT_JUDGED, None, None, 0.0, _without_band(name, held))
+        return Column(name, Word.NOT_JUDGED, None, None, 0.0, _without_band(name, reference))
     if values is None:
         return Column(name, Word.NOT_REPORTED, None, band.high, band.until, band.reason)
-    error = error_of(values, held.exact.columns[name], band)
+    error = error_of(values, reference.exact.columns[name], band)
     inside = error <= band.high * (1 + ROUNDING)
     word = Word.PASS if inside else Word.FAIL
-    within = band.until if inside else _within_until(values, held.exact, name, band)
+    within = band.until if inside else _within_until(values, reference.exact, name, band)
     return Column(name, word, error, band.high, band.until, band.reason, within)
 
 
 def _within_until(values: Array, exact: History, name: str, band: Band) -> float:
     """Return the last instant before the error alone of the rows so far is more than is allowed of all [s]."""
-    wanted = exact.columns[name][: band.rows]
+    expected = exact.columns[name][: band.rows]
     with np.errstate(all="ignore"):
-        so_far = np.sqrt(np.cumsum((values[: band.rows] - wanted) ** 2))
-    rows = np.flatnonzero(~(so_far <= band.high * np.linalg.norm(wanted)))
+        so_far = np.sqrt(np.cumsum((values[: band.rows] - expected) ** 2))
+    rows = np.flatnonzero(~(so_far <= band.high * np.linalg.norm(expected)))
     return float(exact.time[rows[0] - 1]) if len(rows) and rows[0] else 0.0
 
 
-def _without_band(name: str, held: Standard) -> str:
-    exact = held.exact.columns.get(name)
+def _without_band(name: str, reference: Standard) -> str:
+    exact = reference.exact.columns.get(name)
     if exact is None:
         return "no exact motion of this column is known"
     if not np.any(exact):
@@ -181,9 +181,9 @@ def _without_band(name: str, held: Standard) -> str:
 
 def error_of(values: Array, exact: Array, band: Band) -> float:
     """Return the relative L2 error over the judged rows; infinite where a value is not finite."""
-    seen, wanted = values[: band.rows], exact[: band.rows]
-    if not np.isfinite(seen).all():
+    judged, expected = values[: band.rows], exact[: band.rows]
+    if not np.isfinite(judged).all():
         return math.inf
     with np.errstate(over="ignore"):
-        error = relative_l2(seen, wanted)
+        error = relative_l2(judged, expected)
     return error if isinstance(error, float) else math.inf

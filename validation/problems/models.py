@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -10,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.changes import accurate
 from validation.diagnosis.fits.fit import NAMED
+from validation.diagnosis.numbers import accurate
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
-from validation.problems.bands import Standard
+from validation.problems.bands import Standard, definition_of, scene_of
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -27,6 +28,7 @@ FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is 
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
 ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
 AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
+MOST_SAMPLES = 20_000  # runs that are kept: some 100 MB of the longest
 Columns = Mapping[str, Array]
 
 
@@ -59,51 +61,63 @@ class Base:
         return float(self.values.get("time.delta", time.delta))
 
 
+@functools.lru_cache(maxsize=2)
+def _runs(definition: str, reference: Standard) -> Runs:
+    return Runs(scene_of(definition), reference)
+
+
+def runs_of(scene: Scene, reference: Standard) -> Runs:
+    """Return the runs of a scene, shared by all answers that are judged by one standard."""
+    return _runs(definition_of(scene), reference)
+
+
 @dataclass(eq=False)
 class Runs:
-    """Runs of one scene, each kept."""
+    """Runs of one scene: each is made once, at the steps of the scene, for all answers to it."""
 
     scene: Scene
-    held: Standard
-    kept: dict[str, History | None] = field(default_factory=dict)
+    standard: Standard
+    samples: dict[str, Columns | None] = field(default_factory=dict)
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
         """Return a run at its own steps with other data, None where DDA cannot run it."""
+        return _run(self.scene, self._stepped(base, values or {}))
+
+    def _stepped(self, base: Base, values: Mapping[str, Any]) -> dict[str, Any]:
         t = self.scene.time
         steps = math.ceil(t.steps * (1 + AHEAD)) if base.exact else t.steps
-        asked = {**base.values, "time.step": t.step / base.every, "time.steps": steps * base.every, **(values or {})}
-        key = json.dumps(asked, sort_keys=True)
-        if key not in self.kept:
-            self.kept[key] = _run(self.scene, asked)
-        return self.kept[key]
+        return {**base.values, "time.step": t.step / base.every, "time.steps": steps * base.every, **values}
 
     def sampled(self, base: Base, values: Mapping[str, Any] | None = None) -> Columns | None:
         """Return a run at the steps of the scene."""
-        found = self.dense(base, values)
-        if found is None:
-            return None
-        last = self.scene.time.steps * base.every
-        return {name: x[base.every - 1 : last : base.every] for name, x in found.columns.items()}
+        key = json.dumps(self._stepped(base, values or {}), sort_keys=True)
+        if key not in self.samples:
+            if len(self.samples) >= MOST_SAMPLES:
+                self.samples.clear()
+            run = self.dense(base, values)
+            rows = slice(base.every - 1, self.scene.time.steps * base.every, base.every)
+            self.samples[key] = None if run is None else {name: x[rows].copy() for name, x in run.columns.items()}
+        return self.samples[key]
 
-    def apart(self, seen: Columns, wanted: Columns) -> float:
+    def apart(self, answer: Columns, columns: Columns) -> float:
         """Return the largest difference of columns over the exact motion's norm and over its band; inf if not finite.
 
         Columns that one of them lacks, and rows that are not judged, do not count.
         """
-        found = [0.0]
-        for name, band in self.held.bands.items():
-            if name in seen and name in wanted:
-                size = float(np.linalg.norm(self.held.exact.columns[name][: band.rows]))
+        shares = [0.0]
+        for name, band in self.standard.bands.items():
+            if name in answer and name in columns:
+                size = float(np.linalg.norm(self.standard.exact.columns[name][: band.rows]))
                 with np.errstate(all="ignore"):
-                    gap = float(np.linalg.norm(seen[name][: band.rows] - wanted[name][: band.rows]))
-                found.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
-        return max(found)
+                    gap = float(np.linalg.norm(answer[name][: band.rows] - columns[name][: band.rows]))
+                shares.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
+        return max(shares)
 
     def exact(self) -> Base | None:
         """Return the cheapest run that stands for the exact motion, None where none comes near enough."""
         for base in self._accurate():
-            seen = self.sampled(base)
-            if seen is not None and self.apart(seen, self.held.exact.columns) <= ACCURATE:
+            columns = self.sampled(base)
+            if columns is not None and self.apart(columns, self.standard.exact.columns) <= ACCURATE:
                 return base
         return None
 
@@ -117,18 +131,18 @@ class Runs:
     def schemes(self) -> Iterator[Base]:
         """Yield the schemes by which programs step, at the steps of the scene and, the usual ones, at parts of them."""
         t, slow = self.scene.time, features.ROTATION in features.of(self.scene)
-        own = (t.alpha, t.delta)
-        yield Base(scheme_words(*own, t.discount), {}, usual=True)
+        scene_pair = (t.alpha, t.delta)
+        yield Base(scheme_words(*scene_pair, t.discount), {}, usual=True)
         if slow:
             return
-        for pair in dict.fromkeys([own, *NAMED.values()]):
+        for pair in dict.fromkeys([scene_pair, *NAMED.values()]):
             for start in ("zero", "consistent"):
-                if (pair, start) != (own, t.start):
+                if (pair, start) != (scene_pair, t.start):
                     usual = (pair, start) == (NAMED["average acceleration"], "consistent")
                     words = f"{scheme_words(*pair, t.discount)}, initial acceleration {start}"
                     yield Base(words, {"time.alpha": pair[0], "time.delta": pair[1], "time.start": start}, usual=usual)
         for every in (2, 4):
-            for pair in dict.fromkeys([own, (0.25, 0.5)]):
+            for pair in dict.fromkeys([scene_pair, (0.25, 0.5)]):
                 values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}
                 words = f"{scheme_words(*pair, t.discount)} at a step of {t.step / every:g} s"
                 yield Base(words, values, every)
@@ -136,12 +150,12 @@ class Runs:
 
 def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
     try:
-        asked = scene.with_values(dict(values))
+        changed = scene.with_values(dict(values))
         judged = get_solver(by_role(Role.JUDGED)[0])
-        if judged.refusal(asked) is not None:
+        if judged.refusal(changed) is not None:
             return None
         with np.errstate(all="ignore"):
-            run = judged.solve(asked)
+            run = judged.solve(changed)
     except (InputError, ArithmeticError, ValueError):
         return None
     whole = run.outcome is Outcome.COMPLETED and run.history is not None

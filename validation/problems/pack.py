@@ -85,10 +85,10 @@ depends on the contact model, and is not asked.
 """
 
 
-def problem_data(one: Problem, held: Standard) -> ProblemData:
+def problem_data(one: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
     scene = one.scene
-    judged = [_judged(column, held.bands[column]) for column in scene.run.columns]
+    judged = [_judged(column, reference.bands[column]) for column in scene.run.columns]
     on_base = scene.column is None
     return ProblemData(
         problem=one.name,
@@ -99,7 +99,7 @@ def problem_data(one: Problem, held: Standard) -> ProblemData:
         load=load_data(scene) if on_base else None,
         geometry="large rotation" if scene.run.geometry == "updated" else "small",
         column=column_data(scene),
-        sampling=SamplingData(step_s=scene.time.step, count=len(held.exact.time)),
+        sampling=SamplingData(step_s=scene.time.step, count=len(reference.exact.time)),
         answer=tuple(judged),
         exact=f"exact/{one.name}.csv",
     )
@@ -117,7 +117,7 @@ def _judged(column: str, band: Band) -> ColumnOfAnswer:
     )
 
 
-def write_problems(directory: Path, progress: Progress = lambda done, total, label: None) -> int:
+def write_problems(directory: Path, progress: Progress = lambda number, total, label: None) -> int:
     """Write the problems into `problems` of a pack's directory, and return how many there are.
 
     Parameters
@@ -133,13 +133,13 @@ def write_problems(directory: Path, progress: Progress = lambda done, total, lab
         The directory cannot be made or written.
     """
     place, rows = directory / PLACE, []
-    for done, name in enumerate(PROBLEMS):
-        progress(done, len(PROBLEMS), name)
+    for number, name in enumerate(PROBLEMS):
+        progress(number, len(PROBLEMS), name)
         one = problem(name)
-        held = standard(one)
-        data = problem_data(one, held)
+        reference = standard(one)
+        data = problem_data(one, reference)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / data.exact, table_of(held.exact, one.scene.run.columns))
+        _write(place / data.exact, table_of(reference.exact, one.scene.run.columns))
         blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
         _write(place / "submissions" / name / "submission.json", _json(blank))
         rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")

@@ -42,7 +42,7 @@ class Submission:
     history: History  # of the columns that are reported
 
 
-def read_submission(directory: Path, own: Problem | None = None) -> Submission:
+def read_submission(directory: Path, own_problem: Problem | None = None) -> Submission:
     """Read a submission to a problem of the pack, or to one of the caller's own.
 
     Raises
@@ -53,12 +53,12 @@ def read_submission(directory: Path, own: Problem | None = None) -> Submission:
     if not directory.is_dir():
         raise InputError(f"{directory}: must be a directory with {FILE} and one CSV file; {EXPORT}")
     data = _data(directory / FILE)
-    asked = own or _problem(directory / FILE, data.problem)
-    if data.problem != asked.name:
-        raise InputError(f"{directory / FILE}: problem: must be {asked.name!r}, the scene's name, got {data.problem!r}")
-    columns = _reported(directory / FILE, data, asked.scene.run.columns)
+    posed = own_problem or _problem(directory / FILE, data.problem)
+    if data.problem != posed.name:
+        raise InputError(f"{directory / FILE}: problem: must be {posed.name!r}, the scene's name, got {data.problem!r}")
+    columns = _reported(directory / FILE, data, posed.scene.run.columns)
     table = _table(directory)
-    return Submission(data, asked, _history(table, asked, columns))
+    return Submission(data, posed, _history(table, posed, columns))
 
 
 def _data(path: Path) -> SubmissionData:
@@ -78,7 +78,7 @@ def _data(path: Path) -> SubmissionData:
 def _object(path: Path) -> dict[str, Any]:
     try:
         regular(path, LARGEST_FILE)
-        found = json.loads(path.read_bytes().decode("utf-8-sig"), object_pairs_hook=_once)
+        content = json.loads(path.read_bytes().decode("utf-8-sig"), object_pairs_hook=_once)
     except InputError:
         raise
     except FileNotFoundError:
@@ -87,9 +87,9 @@ def _object(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: must be JSON in UTF-8: {' '.join(str(error).split())}") from None
-    if not isinstance(found, dict):
-        raise InputError(f"{path}: must be an object, got {type(found).__name__}")
-    return found
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: must be an object, got {type(content).__name__}")
+    return content
 
 
 def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
@@ -105,8 +105,8 @@ def _problem(path: Path, name: str) -> Problem:
     if name in PROBLEMS:
         return problem(name)
     near = difflib.get_close_matches(name, PROBLEMS, n=1)
-    meant = f"; did you mean {near[0]}?" if near else ""
-    raise InputError(f"{path}: problem: must be among {', '.join(PROBLEMS)}, got {name!r}{meant}")
+    suggestion = f"; did you mean {near[0]}?" if near else ""
+    raise InputError(f"{path}: problem: must be among {', '.join(PROBLEMS)}, got {name!r}{suggestion}")
 
 
 def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[str]:
@@ -115,10 +115,10 @@ def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[
     for name in data.not_reported:
         if name not in names:
             raise InputError(f"{path}: not_reported: must be among {', '.join(names)}, got {name!r}")
-    kept = [column for column in columns if united(column) not in data.not_reported]
-    if not kept:
+    reported = [column for column in columns if united(column) not in data.not_reported]
+    if not reported:
         raise InputError(f"{path}: not_reported: must leave a column to judge, got all of {', '.join(names)}")
-    return kept
+    return reported
 
 
 # ---- the table ------------------------------------------------------------------------------------------------------
@@ -126,19 +126,19 @@ def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[
 
 def _table(directory: Path) -> Path:
     try:  # a name that begins with a point is the system's, not the submitter's
-        found = sorted(p for p in directory.iterdir() if p.suffix.lower() == ".csv" and not p.name.startswith("."))
+        tables = sorted(p for p in directory.iterdir() if p.suffix.lower() == ".csv" and not p.name.startswith("."))
     except OSError as error:
         raise InputError(f"{directory}: cannot be read: {error.strerror}") from None
-    if len(found) != 1:
-        got = ", ".join(path.name for path in found) or "none"
-        raise InputError(f"{directory}: must hold one CSV file beside {FILE}, got {got}")
-    return found[0]
+    if len(tables) != 1:
+        listed = ", ".join(path.name for path in tables) or "none"
+        raise InputError(f"{directory}: must hold one CSV file beside {FILE}, got {listed}")
+    return tables[0]
 
 
-def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
-    names, rows = _read(path, asked.scene.time.steps + 2)
-    _check_header(path, names, asked, columns)
-    motion = standard(asked).exact
+def _history(path: Path, posed: Problem, columns: Sequence[str]) -> History:
+    names, rows = _read(path, posed.scene.time.steps + 2)
+    _check_header(path, names, posed, columns)
+    motion = standard(posed).exact
     if len(rows) > len(motion.time) + 1:  # too many in any case, so that their numbers are not read
         raise _miscounted(path, motion.time, f"{len(motion.time) + 2} or more")
     numbers = [_numbers(path, names, number, row) for number, row in enumerate(rows, start=1)]
@@ -147,8 +147,10 @@ def _history(path: Path, asked: Problem, columns: Sequence[str]) -> History:
     history = History(motion.time, {column: values[united(column)] for column in columns})
     for column in columns:
         plain = kind(column)[0]
-        if plain in UNITS and (told := factor(plain, history.columns[column], motion.columns[column], asked.scene)):
-            raise InputError(f"{path}: {united(column)}: {told.replace(plain, 'it', 1)}")
+        if plain in UNITS and (
+            other_unit := factor(plain, history.columns[column], motion.columns[column], posed.scene)
+        ):
+            raise InputError(f"{path}: {united(column)}: {other_unit.replace(plain, 'it', 1)}")
     return history
 
 
@@ -198,46 +200,46 @@ def _number(where: str, cell: str) -> float:
     return value
 
 
-def _check_header(path: Path, names: Sequence[str], asked: Problem, columns: Sequence[str]) -> None:
-    wanted = {TIME: "s"} | {united(column): unit(column) for column in columns}
+def _check_header(path: Path, names: Sequence[str], posed: Problem, columns: Sequence[str]) -> None:
+    unit_by_name = {TIME: "s"} | {united(column): unit(column) for column in columns}
     if between := next((s for s in SEPARATORS if TIME in names[0].split(s)[:-1]), ""):
         raise InputError(f"{path}: header: must be separated by commas, got {SEPARATORS[between]}: {names[0]!r}")
     for place, name in enumerate(names, start=1):
         if not name:
-            raise InputError(f"{path}: header: column {place}: must be among {', '.join(wanted)}, got no name")
-        if name not in wanted:
-            raise InputError(f"{path}: header: {name}: {_rule(name, wanted, asked)}, got {name!r}")
+            raise InputError(f"{path}: header: column {place}: must be among {', '.join(unit_by_name)}, got no name")
+        if name not in unit_by_name:
+            raise InputError(f"{path}: header: {name}: {_rule(name, unit_by_name, posed)}, got {name!r}")
         if names.count(name) > 1:
             raise InputError(f"{path}: header: {name}: must appear once, got it {names.count(name)} times")
-    for name in wanted:
+    for name in unit_by_name:
         if name not in names:
-            left = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"
-            raise InputError(f"{path}: header: {name}: is required, got {', '.join(names)}{left}")
+            hint = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"
+            raise InputError(f"{path}: header: {name}: is required, got {', '.join(names)}{hint}")
 
 
-def _rule(name: str, wanted: dict[str, str], asked: Problem) -> str:
+def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:
     """Return what is wrong with a name: its unit, or all of it."""
-    for known, its_unit in wanted.items():
-        plain = known.removesuffix(f"_{its_unit}")
+    for united_name, its_unit in unit_by_name.items():
+        plain = united_name.removesuffix(f"_{its_unit}")
         if name == plain or (name.startswith(f"{plain}_") and name.removeprefix(f"{plain}_").isalpha()):
-            return f"must be in {ALL_UNITS[its_unit]}, as {known}"
-    if name in map(united, asked.scene.run.columns):
+            return f"must be in {ALL_UNITS[its_unit]}, as {united_name}"
+    if name in map(united, posed.scene.run.columns):
         return f"must not stand in the table and in not_reported of {FILE}"
-    return f"must be among {', '.join(wanted)}"
+    return f"must be among {', '.join(unit_by_name)}"
 
 
-def _check_times(path: Path, times: Array, wanted: Array) -> None:
-    step = float(wanted[0])
-    if len(times) != len(wanted):
-        zero = "; the state at t = 0 is left out" if len(times) == len(wanted) + 1 and times[0] == 0 else ""
-        raise _miscounted(path, wanted, f"{len(times)}{zero}")
-    off = np.flatnonzero(np.abs(times - wanted) > SAME_INSTANT * step)
+def _check_times(path: Path, times: Array, instants: Array) -> None:
+    step = float(instants[0])
+    if len(times) != len(instants):
+        zero = "; the state at t = 0 is left out" if len(times) == len(instants) + 1 and times[0] == 0 else ""
+        raise _miscounted(path, instants, f"{len(times)}{zero}")
+    off = np.flatnonzero(np.abs(times - instants) > SAME_INSTANT * step)
     if len(off):
         n = int(off[0])
-        close = np.allclose(times, 1e3 * wanted, rtol=1e-6, atol=0)
+        close = np.allclose(times, 1e3 * instants, rtol=1e-6, atol=0)
         hint = "; milliseconds?" if close else ""
-        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {wanted[n]:.9g}, got {times[n]:.9g}{hint}")
+        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {instants[n]:.9g}, got {times[n]:.9g}{hint}")
 
 
-def _miscounted(path: Path, wanted: Array, got: str) -> InputError:
-    return InputError(f"{path}: {TIME}: must have {len(wanted)} rows, {float(wanted[0]):g} s apart, got {got}")
+def _miscounted(path: Path, instants: Array, count: str) -> InputError:
+    return InputError(f"{path}: {TIME}: must have {len(instants)} rows, {float(instants[0]):g} s apart, got {count}")

@@ -48,8 +48,8 @@ def _places(value: float) -> tuple[int, int]:
     mantissa, _, exponent = f"{value!r}".partition("e")
     _, digits, scale = f"{value:.16e}".partition("e")
     top = int(scale)
-    shown = mantissa.replace("-", "").replace(".", "").lstrip("0").rstrip("0")
-    return top, top - max(len(shown), 1) + 1 if exponent or digits else top
+    digits_of_mantissa = mantissa.replace("-", "").replace(".", "").lstrip("0").rstrip("0")
+    return top, top - max(len(digits_of_mantissa), 1) + 1 if exponent or digits else top
 
 
 def noise(values: Array) -> float:
@@ -72,8 +72,8 @@ def _beyond(y: Array) -> float:
 @cache
 def _bias(samples: int) -> float:
     """Return what the smaller singular values show of white noise of unit variance."""
-    shown = [_beyond(np.random.default_rng(seed).standard_normal(samples)) for seed in range(8)]
-    return float(np.mean(shown))
+    of_seeds = [_beyond(np.random.default_rng(seed).standard_normal(samples)) for seed in range(8)]
+    return float(np.mean(of_seeds))
 
 
 def white(remainder: Array) -> bool:

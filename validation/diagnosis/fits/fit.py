@@ -36,21 +36,8 @@ SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "w
         "inertia": 0.1, "gravity": 0.1}  # fmt: skip
 LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -15.0, "base": 0.0, "weight": 0.0, "viscous": 0.0,
        "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0}  # fmt: skip
-HIGH = {
-    "alpha": 5.0,
-    "delta": 5.0,
-    "gg": 1.0,
-    "softness": 15.0,
-    "base": 1e4,
-    "weight": 1.1,
-    "poisson": 0.49,
-    "point": 1.0,
-    "viscous": 1e5,
-    "structural": 1.0,
-    "ramp": 1e3,
-    "spectral": 1.0,
-    "gravity": 50.0,
-}
+HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.0, "softness": 15.0, "base": 1e4, "weight": 1.1, "poisson": 0.49,
+        "point": 1.0, "viscous": 1e5, "structural": 1.0, "ramp": 1e3, "spectral": 1.0, "gravity": 50.0}  # fmt: skip
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of density, modulus, side, load and what is reported: other units
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
@@ -120,8 +107,8 @@ def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], round
 
 def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], goal: Array) -> list[Fit]:
     """Return the fits where they stand, with their Jacobians."""
-    asked = [v for variant, free in starts for v in (variant, *(_nudged(variant, name) for name in free))]
-    answers, found, at = target.responses(asked), [], 0
+    requested = [v for variant, free in starts for v in (variant, *(_nudged(variant, name) for name in free))]
+    answers, fits, at = target.responses(requested), [], 0
     for variant, free in starts:
         base = answers[:, at]
         rates = [
@@ -130,9 +117,9 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
         ]
         jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
         residual = goal - base
-        found.append(Fit(variant, free, float(np.linalg.norm(residual)), residual, jacobian))
+        fits.append(Fit(variant, free, float(np.linalg.norm(residual)), residual, jacobian))
         at += 1 + len(free)
-    return found
+    return fits
 
 
 def _side(variant: Variant, name: str) -> float:
@@ -145,18 +132,18 @@ def _nudged(variant: Variant, name: str) -> Variant:
     return changed(variant, {name: value})
 
 
-def _moved(found: Fit, damping: float) -> Variant:
+def _moved(current: Fit, damping: float) -> Variant:
     """Return the variant one damped Gauss-Newton step on."""
-    span = np.array([SPAN[name] for name in found.free])
-    J = found.jacobian * span
+    span = np.array([SPAN[name] for name in current.free])
+    J = current.jacobian * span
     H = J.T @ J
     scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
-    step = np.linalg.solve(H + damping * np.diag(scale), J.T @ found.residual) * span
+    step = np.linalg.solve(H + damping * np.diag(scale), J.T @ current.residual) * span
     changes = {
-        name: float(np.clip(getattr(found.variant, name) + change, *bounds(name)))
-        for name, change in zip(found.free, step, strict=True)
+        name: float(np.clip(getattr(current.variant, name) + change, *bounds(name)))
+        for name, change in zip(current.free, step, strict=True)
     }
-    return changed(found.variant, changes)
+    return changed(current.variant, changes)
 
 
 def bounds(name: str) -> tuple[float, float]:
@@ -171,34 +158,34 @@ def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
     return replace(variant, **changes)
 
 
-def intervals(found: Fit) -> dict[str, Interval]:
+def intervals(solution: Fit) -> dict[str, Interval]:
     """Return the 95 % interval of every free number; infinite where the data do not tell it."""
-    n, k = found.independent, len(found.free)
-    variance = found.misfit**2 / max(n - k, 1.0)
-    span = np.array([SPAN[name] for name in found.free])
-    J = found.jacobian * span
+    n, k = solution.independent, len(solution.free)
+    variance = solution.misfit**2 / max(n - k, 1.0)
+    span = np.array([SPAN[name] for name in solution.free])
+    J = solution.jacobian * span
     _, s, vt = np.linalg.svd(J, full_matrices=False)
-    told = s > 1e-9 * max(float(s[0]) if k else 0.0, 1e-300)
-    spread = np.where(told, 1 / np.where(told, s, 1.0), np.inf)
+    is_determined = s > 1e-9 * max(float(s[0]) if k else 0.0, 1e-300)
+    spread = np.where(is_determined, 1 / np.where(is_determined, s, 1.0), np.inf)
     with np.errstate(invalid="ignore"):
         parts = np.where(np.abs(vt.T) > 1e-9, np.abs(vt.T) * spread, 0.0)
     width = np.sqrt(np.sum(parts**2, axis=1))
-    known = np.isfinite(width)  # of a number without effect nothing is known, also where nothing is left
-    half = np.where(known, NORMAL_95 * math.sqrt(variance) * np.where(known, width, 0.0) * span, np.inf)
+    is_finite = np.isfinite(width)  # of a number without effect nothing is known, also where nothing is left
+    half = np.where(is_finite, NORMAL_95 * math.sqrt(variance) * np.where(is_finite, width, 0.0) * span, np.inf)
     return {
-        name: Interval(float(getattr(found.variant, name)), float(width))
-        for name, width in zip(found.free, half, strict=True)
+        name: Interval(float(getattr(solution.variant, name)), float(width))
+        for name, width in zip(solution.free, half, strict=True)
     }
 
 
-def untold(found: Fit) -> list[dict[str, float]]:
+def untold(solution: Fit) -> list[dict[str, float]]:
     """Return the directions of the free numbers that the history does not tell, as shares of their spans."""
-    n, k = found.independent, len(found.free)
-    span = np.array([SPAN[name] for name in found.free])
-    _, s, vt = np.linalg.svd(found.jacobian * span, full_matrices=False)
-    sigma = found.misfit / math.sqrt(max(n - k, 1.0))
+    n, k = solution.independent, len(solution.free)
+    span = np.array([SPAN[name] for name in solution.free])
+    _, s, vt = np.linalg.svd(solution.jacobian * span, full_matrices=False)
+    sigma = solution.misfit / math.sqrt(max(n - k, 1.0))
     return [
-        {name: float(part) for name, part in zip(found.free, direction, strict=True) if abs(part) > 0.2}
+        {name: float(part) for name, part in zip(solution.free, direction, strict=True) if abs(part) > 0.2}
         for size, direction in zip(s, vt, strict=True)
         if NORMAL_95 * sigma > UNTOLD * size
     ]

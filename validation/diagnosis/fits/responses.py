@@ -77,8 +77,7 @@ def _unilateral(column: Rectangle, v: Variant, dt: float, n: int) -> Columns:
     columns = point, run.columns["contact_pressure"], (~run.closed_m).astype(float)
     last = slice(v.parts - 1, None, v.parts)
     displacement, pressure, opened = (_filled(values, longer * v.parts)[last, None] for values in columns)
-    steps = np.full(longer, dt)
-    return _column_of(stepping.reported(Histories(displacement, pressure, opened > 0), [v], steps, n), 0)
+    return _column_of(stepping.reported(Histories(displacement, pressure, opened > 0), [v], n), 0)
 
 
 def _filled(values: Array, n: int) -> Array:

@@ -78,9 +78,9 @@ class Target:
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
         stepped = histories if self.searching else computed
-        found = stepped(self.column, variants, self.steps)
+        computed_histories = stepped(self.column, variants, self.steps)
         with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-            joined = self.join(found.displacement[self.rows], found.pressure[self.rows])
+            joined = self.join(computed_histories.displacement[self.rows], computed_histories.pressure[self.rows])
         return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> list[Array]:
@@ -94,8 +94,8 @@ class Target:
     @cached_property
     def bars(self) -> list[Bar]:
         """What digits and noise may leave of the displacement and, if given, of the pressure."""
-        found = [Bar.of(self.displacement, self.rounding)]
-        return found if self.pressure is None else [*found, Bar.of(self.pressure, self.pressure_rounding)]
+        bars = [Bar.of(self.displacement, self.rounding)]
+        return bars if self.pressure is None else [*bars, Bar.of(self.pressure, self.pressure_rounding)]
 
     def explained(self, joined: Array) -> bool:
         """Whether nothing but digits and noise remains in every column."""
@@ -112,11 +112,11 @@ class Target:
         late, n = max(abs(variant.shift), math.ceil(abs(variant.late))), len(self.rows)
         if not late or n < LEAST_ROWS:
             return joined
-        kept = joined.copy()
+        inner_rows = joined.copy()
         for start in range(0, len(joined), n):
-            kept[start : start + late] = 0
-            kept[start + n - late : start + n] = 0
-        return kept
+            inner_rows[start : start + late] = 0
+            inner_rows[start + n - late : start + n] = 0
+        return inner_rows
 
     @property
     def spread(self) -> float:
@@ -139,10 +139,10 @@ class Target:
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""
-        kept = max(int(np.searchsorted(self.rows, steps)), min(LEAST_ROWS, len(self.rows)))
-        last = int(self.rows[kept - 1]) + 1
+        length = max(int(np.searchsorted(self.rows, steps)), min(LEAST_ROWS, len(self.rows)))
+        last = int(self.rows[length - 1]) + 1
         pressure, rounding, other = (
-            None if c is None else c[:kept] for c in (self.pressure, self.rounding, self.pressure_rounding)
+            None if c is None else c[:length] for c in (self.pressure, self.rounding, self.pressure_rounding)
         )
-        given = self.displacement[:kept], pressure, rounding, other
-        return Target(self.column, self.steps[:last], self.rows[:kept], *given)
+        columns = self.displacement[:length], pressure, rounding, other
+        return Target(self.column, self.steps[:last], self.rows[:length], *columns)

@@ -12,13 +12,13 @@ from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.fits.rectangle import upright
 from validation.diagnosis.forces.forward import at_step, displacements
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
 from validation.diagnosis.forces.motion import body_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip
 from validation.diagnosis.sentences import per_cent, scheme_words
+from validation.diagnosis.variant import upright
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, Array
 from validation.scenes import features
@@ -94,8 +94,8 @@ def read(scene: Scene, foreign: Foreign) -> Read:
 
 def _unit(scene: Scene, step: float, place: Array) -> float:
     """Return the power of ten by which both displacements are larger than those of the scene's own run, else one."""
-    own = displacements(at_step(scene, step, len(place)))
-    size = 0.0 if own is None else float(np.max(np.abs(own)))
+    run = displacements(at_step(scene, step, len(place)))
+    size = 0.0 if run is None else float(np.max(np.abs(run)))
     if size == 0 or not np.any(place):
         return 1.0
     ratio = math.log10(float(np.max(np.abs(place))) / size)
@@ -107,9 +107,9 @@ def _check(scene: Scene) -> None:
     more = sorted(set(features.of(scene)) - KNOWN)
     at_rest = scene.contact.gap == scene.block.velocity == 0
     if more or not upright(scene) or not at_rest or scene.time.alpha == 0:
-        got = ", ".join(more) or ("alpha = 0" if scene.time.alpha == 0 else "another scene")
+        refused = ", ".join(more) or ("alpha = 0" if scene.time.alpha == 0 else "another scene")
         raise InputError(
-            f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {got}"
+            f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {refused}"
         )
     features.refuse_sweep(scene)
 
@@ -120,110 +120,110 @@ def _sign(column: Array, load: float) -> float:
     return -1.0 if first * load < 0 else 1.0
 
 
-def ids_of(found: Found, read: Read) -> list[str]:
+def ids_of(result: Found, read: Read) -> list[str]:
     """Return the ids of an answer."""
-    return [*read.slips, *found.causes] if found.explained else [UNEXPLAINED]
+    return [*read.slips, *result.causes] if result.explained else [UNEXPLAINED]
 
 
-def departure_of(found: Found, ids: Sequence[str]) -> Departure | None:
+def departure_of(result: Found, ids: Sequence[str]) -> Departure | None:
     """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
     if all(CAUSES[name].benign for name in ids):
         return None
-    return Departure(_first(found, ids) or 1, "offset")
+    return Departure(_first(result, ids) or 1, "offset")
 
 
-def _first(found: Found, ids: Sequence[str]) -> int | None:
+def _first(result: Found, ids: Sequence[str]) -> int | None:
     """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
-    return 1 if {"sign", "unit"} & set(ids) else found.first
+    return 1 if {"sign", "unit"} & set(ids) else result.first
 
 
-def stages(found: Found, read: Read) -> list[Stage]:
+def stages(result: Found, read: Read) -> list[Stage]:
     """Return what was measured: signs, normal law, friction."""
-    held = {name: 100 * share for name, share in found.shares.items()}
-    shares = f"consistent in {held['consistent']:.3g} % of the steps, lagged in {held['lagged']:.3g} %"
-    telling = f"{found.telling} steps tell them apart"
-    blurred = "; the digits of the file do not show it" if found.tolerance > BLURRED else ""
-    numbers: dict[str, float | None] = {**found.shares, "telling": float(found.telling), "allowed": found.tolerance}
+    per_cents = {name: 100 * share for name, share in result.shares.items()}
+    shares = f"consistent in {per_cents['consistent']:.3g} % of the steps, lagged in {per_cents['lagged']:.3g} %"
+    telling = f"{result.telling} steps tell them apart"
+    blurred = "; the digits of the file do not show it" if result.tolerance > BLURRED else ""
+    numbers: dict[str, float | None] = {**result.shares, "telling": float(result.telling), "allowed": result.tolerance}
     right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
-    pressed = f"the normal forces of the motion are those of the springs to {per_cent(found.normal, 2)} %"
-    run = found.run
-    of_scene = found.scene_run if found.change else run
-    left = None if math.isnan(of_scene.left) else of_scene.left
+    pressed = f"the normal forces of the motion are those of the springs to {per_cent(result.normal, 2)} %"
+    run = result.run
+    of_scene = result.scene_run if result.change else run
+    misfit = None if math.isnan(of_scene.left) else of_scene.left
     return [
         Stage("reading", not read.slips, right, {}),
-        Stage("motion", run.same and not found.change, _motion(found), {"misfit": left}),
+        Stage("motion", run.same and not result.change, _motion(result), {"misfit": misfit}),
         Stage(
             "normal forces",
-            found.normal <= NORMAL and not _faulty(found, NORMAL_CAUSES),
+            result.normal <= NORMAL and not _faulty(result, NORMAL_CAUSES),
             pressed,
-            {"misfit": found.normal, "allowed": NORMAL},
+            {"misfit": result.normal, "allowed": NORMAL},
         ),
         Stage(
             "friction",
-            None if blurred else _law_holds(found),
-            f"rules that hold to {per_cent(found.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
+            None if blurred else _law_holds(result),
+            f"rules that hold to {per_cent(result.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
             numbers,
         ),
     ]
 
 
-def _faulty(found: Found, causes: frozenset[str]) -> bool:
+def _faulty(result: Found, causes: frozenset[str]) -> bool:
     """Whether an explanation holds one of some causes."""
-    return found.explained and not causes.isdisjoint(found.causes)
+    return result.explained and not causes.isdisjoint(result.causes)
 
 
-def _law_holds(found: Found) -> bool | None:
+def _law_holds(result: Found) -> bool | None:
     """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
-    if found.change:
-        return False if _faulty(found, FRICTION_CAUSES) else None
-    if found.first is not None or max(found.shares.values()) < MOST:
+    if result.change:
+        return False if _faulty(result, FRICTION_CAUSES) else None
+    if result.first is not None or max(result.shares.values()) < MOST:
         return False
-    return True if found.run.same else None
+    return True if result.run.same else None
 
 
-def _motion(found: Found, with_change: bool = False) -> str:
+def _motion(result: Found, with_change: bool = False) -> str:
     """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
-    run = found.run
+    run = result.run
     if math.isnan(run.left):
         return "the suite has no run of it"
-    if found.change and not with_change:
-        return f"the suite's own run of the scene leaves {per_cent(found.scene_run.left, 2)} % of the displacements"
+    if result.change and not with_change:
+        return f"the suite's own run of the scene leaves {per_cent(result.scene_run.left, 2)} % of the displacements"
     part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
     if run.same:
         return f"the suite's own run gives the displacements to their digits or noise{part}"
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
 
 
-def sentence(scene: Scene, found: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
+def sentence(scene: Scene, result: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
     """Return the first line of the answer."""
     t = scene.time
-    own = scheme_words(t.alpha, t.delta, t.discount)
-    law = "lagged" if found.lagged else "consistent"
-    held = f"{law} friction gives the force of {100 * found.shares[law]:.4g} % of the steps"
-    if not found.explained:
-        why = "the digits of the file do not show its forces" if found.tolerance > BLURRED else f"at best, {held}"
-        if found.alike:
-            words = list(dict.fromkeys(one.words for one in found.alike))
+    scheme = scheme_words(t.alpha, t.delta, t.discount)
+    law = "lagged" if result.lagged else "consistent"
+    share = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
+    if not result.explained:
+        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
+        if result.alike:
+            words = list(dict.fromkeys(one.words for one in result.alike))
             same = "gives" if len(words) == 1 else "give"
-            return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(found)}."
-        normal = f"the normal law leaves {per_cent(found.normal, 2)} %"
-        return f"Departs, not explained: {why}; {normal}; {_motion(found)}."
+            return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(result)}."
+        normal = f"the normal law leaves {per_cent(result.normal, 2)} %"
+        return f"Departs, not explained: {why}; {normal}; {_motion(result)}."
     faults = [slip.words for slip in corrected]
-    faults += [_fault(name, found) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
-    benign = [_benign(name, found) for name in ids if CAUSES[name].benign]
+    faults += [_fault(name, result) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
+    benign = [_benign(name, result) for name in ids if CAUSES[name].benign]
     allowed = f", allowing for {' and '.join(benign)}" if benign else ""
     if not faults:
-        return f"Same model, same scheme: {own}{allowed}; {_motion(found)}."
-    if found.change:
-        faults = [*(slip.words for slip in corrected), found.change]
-        return f"Departs: {' and '.join(faults)}; {_motion(found, with_change=True)}."
-    first = _first(found, ids)
+        return f"Same model, same scheme: {scheme}{allowed}; {_motion(result)}."
+    if result.change:
+        faults = [*(slip.words for slip in corrected), result.change]
+        return f"Departs: {' and '.join(faults)}; {_motion(result, with_change=True)}."
+    first = _first(result, ids)
     where = f" from step {first} on" if first else ""
-    return f"Same scheme: {own}, but departs{where}: {' and '.join(faults)}{allowed}; {held}."
+    return f"Same scheme: {scheme}, but departs{where}: {' and '.join(faults)}{allowed}; {share}."
 
 
-def _fault(name: str, found: Found) -> str:
-    value = found.values.get(name, 0.0)
+def _fault(name: str, result: Found) -> str:
+    value = result.values.get(name, 0.0)
     words = {
         "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
         "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
@@ -233,8 +233,8 @@ def _fault(name: str, found: Found) -> str:
     return words.get(name, CAUSES[name].words)
 
 
-def _benign(name: str, found: Found) -> str:
-    value = found.values.get(name, 0.0)
+def _benign(name: str, result: Found) -> str:
+    value = result.values.get(name, 0.0)
     if name == "own-weight":
         return f"the block's own weight ({value:.3g} x 9.81 m/s2)"
     return f"a base that adds {100 * value:.2g} % to the static displacement"

@@ -64,20 +64,20 @@ def agreement(scene: Scene, place: Array, rounding: Array) -> Agreement:
     rounding
         Units of their last digits [m], (steps, 2).
     """
-    own = displacements(scene)
-    if own is None:
+    scene_run = displacements(scene)
+    if scene_run is None:
         return NO_RUN
-    rest, size = place - own, _size(place)
-    left = float(np.max(np.sqrt(np.mean(rest**2, axis=0)) / size))
+    rest, size = place - scene_run, _size(place)
+    misfit = float(np.max(np.sqrt(np.mean(rest**2, axis=0)) / size))
     unit = rounding + ARITHMETIC * size
-    if _within(rest / unit) or (left <= NOISE and len(rest) >= NOISY and all(white(column) for column in rest.T)):
-        return Agreement(True, left)
+    if _within(rest / unit) or (misfit <= NOISE and len(rest) >= NOISY and all(white(column) for column in rest.T)):
+        return Agreement(True, misfit)
     if not _within((rest / unit)[: max(4, len(rest) // 20)]):
-        return Agreement(False, left)
-    amplified = _amplified(scene, own)
+        return Agreement(False, misfit)
+    amplified = _amplified(scene, scene_run)
     tells = int(np.sum(np.all(amplified <= APART * size, axis=1)))
     same = tells >= TOLD * len(rest) and _within((rest / (unit + amplified))[:tells])
-    return Agreement(same, left, tells if same and tells < len(rest) else None)
+    return Agreement(same, misfit, tells if same and tells < len(rest) else None)
 
 
 def _size(place: Array) -> Array:
@@ -114,10 +114,10 @@ def surrounded(
     for follows in follow:
         z, error = _nearest(scene, free, np.where(free, fitted, 0.0), follows, place)
         run = agreement(_changed(scene, z, follows), place, rounding)
-        found = Surrounded(run, math.exp(-float(z[1])), error, follows)
+        candidate = Surrounded(run, math.exp(-float(z[1])), error, follows)
         if run.same:
-            return found
-        best = found if not run.left >= best.run.left else best
+            return candidate
+        best = candidate if not run.left >= best.run.left else best
     return best
 
 
@@ -126,12 +126,12 @@ def _within(over: Array) -> bool:
     return bool(np.all(np.sqrt(np.mean(over**2, axis=0)) <= WITHIN))
 
 
-def _amplified(scene: Scene, own: Array) -> Array:
+def _amplified(scene: Scene, scene_run: Array) -> Array:
     """Return what the scene makes of other arithmetic up to each step [m], (steps, 2); infinite where it has no run."""
-    c, grown = scene.contact, np.zeros_like(own)
+    c, grown = scene.contact, np.zeros_like(scene_run)
     for name, value in (("contact.stiffness", c.stiffness), ("contact.friction", c.friction or 0.0)):
         shaken = displacements(scene.with_values({name: value * (1 + SHAKEN)}))
-        grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - own))
+        grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - scene_run))
     return np.asarray(np.maximum.accumulate(grown, axis=0))
 
 
@@ -164,13 +164,13 @@ def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place:
         run = displacements(_changed(short, whole(z), follows))
         return np.ones(first.size) if run is None else np.ravel((run - first) / size)
 
-    found = least_squares(left, start[free], x_scale=np.array([1.0, 0.1])[free], xtol=1e-14, ftol=1e-14, max_nfev=12)
+    solution = least_squares(left, start[free], x_scale=np.array([1.0, 0.1])[free], xtol=1e-14, ftol=1e-14, max_nfev=12)
     if not free[1]:
-        return whole(found.x), 0.0
-    variance = 2 * found.cost / max(first.size - len(found.x), 1)
+        return whole(solution.x), 0.0
+    variance = 2 * solution.cost / max(first.size - len(solution.x), 1)
     softness = -1  # the last of the free numbers
-    spread = math.sqrt(variance * float(np.linalg.pinv(found.jac.T @ found.jac)[softness, softness]))
-    return whole(found.x), NORMAL_95 * spread
+    spread = math.sqrt(variance * float(np.linalg.pinv(solution.jac.T @ solution.jac)[softness, softness]))
+    return whole(solution.x), NORMAL_95 * spread
 
 
 def _changed(scene: Scene, fitted: Array, follows: bool) -> Scene:

@@ -76,40 +76,40 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     """
     exact = at_step(scene, step, len(place))
     run = agreement(exact, place, rounding)
-    found, fitted = _by_laws(scene, place, step, rounding)
-    if run.same and (run.until is None or found.shares[scene.contact.rules] >= MOST_SLIPS):
-        return replace(found, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
+    by_forces, fitted = _by_laws(scene, place, step, rounding)
+    if run.same and (run.until is None or by_forces.shares[scene.contact.rules] >= MOST_SLIPS):
+        return replace(by_forces, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
     run = replace(run, same=False)
     scene_run = run
-    if found.explained and not set(found.causes) <= SURROUNDINGS:
-        return replace(found, run=run)
-    if found.explained and found.causes:
-        around = surrounded(exact, found.causes, fitted, place, rounding)
+    if by_forces.explained and not set(by_forces.causes) <= SURROUNDINGS:
+        return replace(by_forces, run=run)
+    if by_forces.explained and by_forces.causes:
+        around = surrounded(exact, by_forces.causes, fitted, place, rounding)
         if around.run.same:
-            return _springs_or_base(replace(found, explained=True, run=around.run), around, scene_run)
+            return _springs_or_base(replace(by_forces, explained=True, run=around.run), around, scene_run)
         run = around.run if around.run.left < run.left else run
     change, alike = one_number(exact, place, rounding)
     if change is None:
-        return replace(found, explained=False, run=run, alike=tuple(alike))
+        return replace(by_forces, explained=False, run=run, alike=tuple(alike))
     values = {} if change.value is None else {change.id: change.value}
-    named = replace(found, causes=(change.id,), values=values, explained=True, first=1)
-    return replace(named, run=change.run, scene_run=scene_run, change=change.words)
+    result = replace(by_forces, causes=(change.id,), values=values, explained=True, first=1)
+    return replace(result, run=change.run, scene_run=scene_run, change=change.words)
 
 
-def _springs_or_base(found: Found, around: Surrounded, scene_run: Agreement) -> Found:
+def _springs_or_base(result: Found, around: Surrounded, scene_run: Agreement) -> Found:
     """Return a history on a base with the springs that give the same rows: named where their factor is a round one."""
-    if "base-compliance" not in found.causes:
-        return found
+    if "base-compliance" not in result.causes:
+        return result
     name = "springs-factor" if around.along else "normal-springs-factor"
     factor = float(f"{around.springs:.6g}")
     words = f"the {'springs' if around.along else 'normal springs alone'} are {factor:.4g} times the scene's"
     springs = OneChange(name, factor, words, around.run)
     if not round_factor(around.springs, around.error):
-        return replace(found, alike=(springs,))
-    rest = {cause: value for cause, value in found.values.items() if cause != "base-compliance"}
-    causes = tuple(name if cause == "base-compliance" else cause for cause in found.causes)
+        return replace(result, alike=(springs,))
+    rest = {cause: value for cause, value in result.values.items() if cause != "base-compliance"}
+    causes = tuple(name if cause == "base-compliance" else cause for cause in result.causes)
     change = words if len(causes) == 1 else ""
-    return replace(found, causes=causes, values=rest | {name: factor}, first=1, change=change, scene_run=scene_run)
+    return replace(result, causes=causes, values=rest | {name: factor}, first=1, change=change, scene_run=scene_run)
 
 
 def _lags(scene: Scene) -> bool:
@@ -124,12 +124,12 @@ def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[
     soft = _compliance(scene, body, softness)
     yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
     bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
-    tried = [_Tried.of(one, scheme, place, rounding) for one in bodies]
-    chosen = max(tried, key=lambda one: max(one.shares.values()))
+    followed = [_Tried.of(one, scheme, place, rounding) for one in bodies]
+    chosen = max(followed, key=lambda one: max(one.shares.values()))
     body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
-    own = scene.contact.rules
+    scene_rules = scene.contact.rules
     telling = _telling(body, runs, tolerance)
-    best = _law(right, telling, own)
+    best = _law(right, telling, scene_rules)
     run = runs[best]
     normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
     band = _band(body, run)
@@ -139,18 +139,18 @@ def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[
     shares = chosen.shares
     active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
     least = MOST if telling.sum() < MANY else MOST_OF_MANY
-    held = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
-    sound = normal <= NORMAL and held and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
-    left = np.flatnonzero(runs[own].settled & ~right[own])
+    is_obeyed = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
+    sound = normal <= NORMAL and is_obeyed and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
+    departing = np.flatnonzero(runs[scene_rules].settled & ~right[scene_rules])
     deep = np.flatnonzero(_deep(body, run).any(axis=1)) if "dead-band" in causes else np.zeros(0, int)
-    firsts = [int(steps[0]) + 1 for steps in (left if best != own else left[:0], deep) if len(steps)]
+    firsts = [int(steps[0]) + 1 for steps in (departing if best != scene_rules else departing[:0], deep) if len(steps)]
     both = np.flatnonzero(~run.closed.any(axis=1))
     opened = (int(both[0]) + 1, int(both[-1]) + 1) if len(both) else None
     first = min(firsts, default=1 if "springs-factor" in causes else None)
-    named = tuple(name for name in causes if not name.endswith("?"))
-    told = int(telling.sum())
-    found = Found(named, values, sound, best == "lagged", shares, told, normal, tolerance, first, opened)
-    return found, (weight, softness)
+    certain = tuple(name for name in causes if not name.endswith("?"))
+    telling_steps = int(telling.sum())
+    result = Found(certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened)
+    return result, (weight, softness)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +170,7 @@ class _Tried:
         runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
         tolerance = max(CLOSE, _digits(scheme, body, rounding, runs["consistent"]))
         right = {name: _right(body, run, tolerance) for name, run in runs.items()}
-        shares = {name: float(np.mean(held[runs[name].settled])) for name, held in right.items()}
+        shares = {name: float(np.mean(is_right[runs[name].settled])) for name, is_right in right.items()}
         return cls(body, runs, right, shares, tolerance)
 
 
@@ -179,22 +179,22 @@ def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
     from scipy.optimize import least_squares
 
     def left(z: Array) -> Array:
-        tried = body.heavier(float(z[0])).softer(float(z[1]))
-        run = follow(tried, motion_of(place, scheme, tried), False)
+        trial = body.heavier(float(z[0])).softer(float(z[1]))
+        run = follow(trial, motion_of(place, scheme, trial), False)
         return np.asarray((run.given - run.shown)[:, 1] / run.scale)
 
     starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
     start = min(starts, key=lambda z: float(np.linalg.norm(left(z))))
-    found = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
-    return float(found.x[0]), float(found.x[1])
+    solution = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
+    return float(solution.x[0]), float(solution.x[1])
 
 
 def _along_too(body: Body, softness: float, scheme: Scheme, place: Array, law: str) -> bool:
     """Whether springs along the base by the factor of those across it suit a motion better than by its other powers."""
 
     def left(power: float) -> float:
-        tried = replace(body, shear=body.shear * math.exp((1 - power) * softness))
-        run = follow(tried, motion_of(place, scheme, tried), law == "lagged")
+        trial = replace(body, shear=body.shear * math.exp((1 - power) * softness))
+        run = follow(trial, motion_of(place, scheme, trial), law == "lagged")
         return float(np.mean(np.abs(run.given - run.shown)[run.settled, 0]))
 
     return left(1.0) < 0.5 * min(left(power) for power in POWERS)
@@ -238,13 +238,13 @@ def _telling(body: Body, runs: dict[str, Followed], tolerance: float) -> np.ndar
     return np.asarray(apart & one.settled & other.settled)
 
 
-def _law(right: dict[str, np.ndarray], telling: np.ndarray, own: str) -> str:
+def _law(right: dict[str, np.ndarray], telling: np.ndarray, scene_rules: str) -> str:
     """Return the law that holds where two differ; the scene's own where nothing tells them apart."""
     if telling.sum() < FEWEST:
-        return own
-    shares = {name: float(np.mean(held[telling])) for name, held in right.items()}
+        return scene_rules
+    shares = {name: float(np.mean(is_right[telling])) for name, is_right in right.items()}
     best = max(shares, key=lambda name: shares[name])
-    return best if min(shares.values()) <= FEW_RIGHT or best == own else own
+    return best if min(shares.values()) <= FEW_RIGHT or best == scene_rules else scene_rules
 
 
 def _deep(body: Body, run: Followed) -> np.ndarray:
@@ -263,20 +263,20 @@ def _causes(
     scene: Scene, weight: float, softness: float, soft: float, law: str, band: float
 ) -> tuple[list[str], dict[str, float]]:
     """Return the ids of what differs from the scene, and their numbers; a question mark where none fits."""
-    found, own = [], scene.contact.band[0]
+    names, scene_band = [], scene.contact.band[0]
     values: dict[str, float] = {}
     if not HARDER <= soft <= BENIGN:
-        found.append("springs-factor")
+        names.append("springs-factor")
         values["springs-factor"] = math.exp(-softness)
     if law != scene.contact.rules:
-        found.append("lagged-friction" if law == "lagged" else "lagged-friction?")
-    if band > 0 and not 0.8 * own <= band <= 1.2 * own:
-        found.append("dead-band")
+        names.append("lagged-friction" if law == "lagged" else "lagged-friction?")
+    if band > 0 and not 0.8 * scene_band <= band <= 1.2 * scene_band:
+        names.append("dead-band")
         values["dead-band"] = band
     if YIELDS < soft <= BENIGN:
-        found.append("base-compliance")
+        names.append("base-compliance")
         values["base-compliance"] = soft
     if abs(weight) > NONE:
-        found.append("own-weight" if abs(weight - 1) <= WHOLE else "own-weight?")
+        names.append("own-weight" if abs(weight - 1) <= WHOLE else "own-weight?")
         values["own-weight"] = weight
-    return found, {name: float(f"{value:.4g}") for name, value in values.items()}
+    return names, {name: float(f"{value:.4g}") for name, value in values.items()}

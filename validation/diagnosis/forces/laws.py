@@ -63,49 +63,47 @@ class _Seen:
     acceleration: Array
 
 
-def follow(body: Body, motion: Motion, lagged: bool, rubs: bool = True) -> Followed:
+def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
     """Follow a motion with a law of friction.
 
     Parameters
     ----------
     lagged
         Whether a slipping corner has the friction of the step before, and forgets its shear.
-    rubs
-        Whether the corners slip at all; glued in shear otherwise.
     """
     observer, corners = _Observer(body, motion), (_Corner(), _Corner())
-    shown, rows, before = motion.forces(body), [], CLOSED[0]
-    for place, force in zip(motion.place, shown, strict=True):
+    resultants, rows, before = motion.forces(body), [], CLOSED[0]
+    for place, force in zip(motion.place, resultants, strict=True):
         shears = tuple(_assumed(body, corner) for corner in corners)
         for _ in range(TRIES):
-            seen = observer.step(place, force, corners, shears, before)
-            asked = [_asked(body, corner, seen, c, lagged, rubs) for c, corner in enumerate(corners)]
-            told = tuple(one.held for one in asked)
-            if lagged or told == shears:
+            end = observer.step(place, force, corners, shears, before)
+            responses = [_asked(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
+            new_shears = tuple(one.slip_force for one in responses)
+            if lagged or new_shears == shears:
                 break
-            shears = told
-        observer.accept(seen)
-        left = force[0] - sum(one.force for one in asked)
-        sticks = [one for one in asked if one.force and one.held is None]
-        for c, (corner, one) in enumerate(zip(corners, asked, strict=True)):
+            shears = new_shears
+        observer.accept(end)
+        unbalanced = force[0] - sum(one.force for one in responses)
+        sticks = [one for one in responses if one.force and one.slip_force is None]
+        for c, (corner, one) in enumerate(zip(corners, responses, strict=True)):
             corner.state, corner.reference = one.state, one.reference
-            corner.normal, corner.slide, corner.gap = seen.normal[c], seen.slide[c], seen.gap[c]
+            corner.normal, corner.slide, corner.gap = end.normal[c], end.slide[c], end.gap[c]
             if one in sticks and one.state == STICK:  # what the law leaves is taken for a reference that is off
-                corner.reference += left / (body.shear * len(sticks))
-        springs = -body.stiffness * sum(seen.gap[c] for c in (0, 1) if seen.closed[c])
-        slips = any(one.held is not None for one in asked)
-        rows.append((force[0] - left, springs, seen.gap, seen.closed, seen.closed == before, slips))
-        before = seen.closed
+                corner.reference += unbalanced / (body.shear * len(sticks))
+        springs = -body.stiffness * sum(end.gap[c] for c in (0, 1) if end.closed[c])
+        slips = any(one.slip_force is not None for one in responses)
+        rows.append((force[0] - unbalanced, springs, end.gap, end.closed, end.closed == before, slips))
+        before = end.closed
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return Followed(shown, np.column_stack(columns[:2]), *columns[2:])
+    return Followed(resultants, np.column_stack(columns[:2]), *columns[2:])
 
 
 @dataclass(frozen=True)
 class _Asked:
-    """What a law asks of a corner: its shear force [N], `held` where it slips, and its state after the step."""
+    """What a law asks of a corner: its shear force [N], `slip_force` where it slips, and its state after the step."""
 
     force: float
-    held: float | None
+    slip_force: float | None
     state: int
     reference: float  # m
 
@@ -117,22 +115,22 @@ def _assumed(body: Body, corner: _Corner) -> float | None:
     return math.copysign(body.coefficient * max(corner.normal, 0.0) + body.cohesion, corner.state)
 
 
-def _asked(body: Body, corner: _Corner, seen: _Seen, c: int, lagged: bool, rubs: bool) -> _Asked:
+def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool) -> _Asked:
     """Return what a law asks of a corner at the end of a step."""
-    slide, gap = seen.slide[c], seen.gap[c]
-    if not seen.closed[c]:
+    slide, gap = end.slide[c], end.gap[c]
+    if not end.closed[c]:
         return _Asked(0.0, None, OPEN, slide)
     state, reference = corner.state, corner.reference
     if state == OPEN:  # it has touched down where the gap was crossed
         past = corner.gap / (corner.gap - gap) if corner.gap > 0 > gap else 0.0
         state, reference = STICK, corner.slide + past * (slide - corner.slide)
     shear = -body.shear * (slide - reference)
-    limit = body.coefficient * max(seen.normal[c], 0.0) + body.cohesion if rubs else math.inf
+    limit = body.coefficient * max(end.normal[c], 0.0) + body.cohesion
     if not lagged:
         if abs(shear) <= limit:
             return _Asked(shear, None, STICK, reference)
-        held = math.copysign(limit, shear)
-        return _Asked(held, held, int(math.copysign(2, shear)), slide + held / body.shear)
+        slip_force = math.copysign(limit, shear)
+        return _Asked(slip_force, slip_force, int(math.copysign(2, shear)), slide + slip_force / body.shear)
     if state == STICK:
         if abs(shear) <= limit:
             return _Asked(shear, None, STICK, reference)
@@ -167,30 +165,30 @@ class _Observer:
         s, dt = self.s, self.s.step
         ahead = self.x + s.gg * dt * self.V + dt * dt * (0.5 - s.alpha) * self.A
         y = -self.body.height / 2
-        known = self.body.internal + force[0] * np.array([-y, 0, 0, y / 2]) + force[1] * np.array([0, 0, y, 0])
-        right = self.body.inertia @ ahead + self.e * known
+        loads = self.body.internal + force[0] * np.array([-y, 0, 0, y / 2]) + force[1] * np.array([0, 0, y, 0])
+        right = self.body.inertia @ ahead + self.e * loads
         closed, (x, gap) = before, self._end(right, before, place, force, corners, shears)
         if self._off(before, gap, force[1]) > NEAR * self.scale:
-            tried = {one: self._end(right, one, place, force, corners, shears) for one in CLOSED}
-            closed = self._nearest(tried, before, force[1])
-            x, gap = tried[closed]
+            ends = {one: self._end(right, one, place, force, corners, shears) for one in CLOSED}
+            closed = self._nearest(ends, before, force[1])
+            x, gap = ends[closed]
         A = (x - ahead) / self.e
         if sum(closed) == 1:
             x, gap = self._turned(closed.index(True), x, gap, place, force[1])
         slide = np.array([place[0] + along @ x for along, _ in self.rows])
         return _Seen(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
 
-    def _nearest(self, tried: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
+    def _nearest(self, ends: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
         """Return the closed corners that fit the normal resultant; of two that do so alike, those nearer to before."""
-        off = {closed: self._off(closed, gap, normal) for closed, (_, gap) in tried.items()}
+        off = {closed: self._off(closed, gap, normal) for closed, (_, gap) in ends.items()}
         near = [one for one in CLOSED if off[one] <= max(2 * min(off.values()), NEAR * self.scale)]
         return min(near, key=lambda one: (sum(a != b for a, b in zip(one, before, strict=True)), off[one]))
 
-    def accept(self, seen: _Seen) -> None:
+    def accept(self, end: _Seen) -> None:
         """Move to the end of a step."""
         s = self.s
-        self.V = s.gg * self.V + s.step * ((1 - s.delta) * self.A + s.delta * seen.acceleration)
-        self.x, self.A = seen.unknowns, seen.acceleration
+        self.V = s.gg * self.V + s.step * ((1 - s.delta) * self.A + s.delta * end.acceleration)
+        self.x, self.A = end.unknowns, end.acceleration
 
     def _turned(self, c: int, x: Array, gap: Array, place: Array, normal: float) -> tuple[Array, Array]:
         """Return unknowns and gaps once the block is turned to where its one spring gives the normal resultant."""

@@ -59,9 +59,11 @@ def body_of(scene: Scene) -> Body:
     load = np.array([m * along(scene) + pulled, -m * across(scene) - pressed])
     e, h = q.eccentricity, height / 2
     internal = -pressed * np.array([e, 0.0, h, e / 2]) + pulled * np.array([-h, 0.0, 0.0, h / 2])
-    held = c.cohesion * width / 2
+    cohesion_force = c.cohesion * width / 2
     corners = -width / 2, width / 2
-    return Body(m, inertia, elastic, load, internal, corners, height, c.stiffness, c.shear, coefficient(scene), held)
+    return Body(
+        m, inertia, elastic, load, internal, corners, height, c.stiffness, c.shear, coefficient(scene), cohesion_force
+    )
 
 
 @dataclass(frozen=True)
@@ -102,9 +104,9 @@ def motion_of(place: Array, scheme: Scheme, body: Body) -> Motion:
     s, dt = scheme, scheme.step
     D, V = np.zeros(2), np.zeros(2)
     A = body.load / body.mass if s.consistent else np.zeros(2)
-    found = np.empty_like(place)
+    accelerations = np.empty_like(place)
     for n, there in enumerate(place):
         A1 = (there - D - s.gg * dt * V - dt**2 * (0.5 - s.alpha) * A) / (s.alpha * dt**2)
         V = s.gg * V + dt * ((1 - s.delta) * A + s.delta * A1)
-        D, A, found[n] = there, A1, A1
-    return Motion(scheme, place, found)
+        D, A, accelerations[n] = there, A1, A1
+    return Motion(scheme, place, accelerations)

@@ -11,11 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.changes import Values
 from validation.diagnosis.fits.fit import NAMED
-from validation.diagnosis.forces.forward import Agreement, agreement, displacements
+from validation.diagnosis.forces.forward import NOISE, Agreement, agreement, displacements
 from validation.diagnosis.forces.motion import body_of
-from validation.diagnosis.one_change import CandidateChange, alike, fitted, nearest_start, of_discount, of_numbers
+from validation.diagnosis.numbers import Values
+from validation.diagnosis.one_change import (
+    CandidateChange,
+    Residual,
+    alike,
+    fitted,
+    nearest,
+    nearest_start,
+    of_discount,
+    of_numbers,
+)
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -26,8 +35,10 @@ DISCOUNTS = (0.999, 0.99, 0.95)
 COHESIONS = (0.02, 0.1, 0.3)  # over the mean limit of friction of a corner
 NUDGE = 1e-4  # of the logarithm of a factor, for the slope at its start
 ARRIVED = 1e-15  # relative gain at which a fit ends: stick and slip amplify what is left
-NEAREST = 4  # candidates that are fitted further
-NEAR = 3.0  # times as much as the best leaves: what may still come out first
+PURSUED = 7  # candidates that are fitted at all, those nearest along their slope
+NEAREST = 4  # of them, that are fitted to more steps
+NEAR = 30.0  # times as much as the best leaves: what may still come out first
+ROUNDED = 1e-7  # of the largest displacement, that the best counts as leaving at least
 CLEAR = 3.0  # times more that every other candidate must leave
 OUTSIDE = ("height-factor", "width-factor")  # computed so that no other is named in their place
 
@@ -60,10 +71,10 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
         lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
         tuple(map(math.log, FACTORS)),
     )
-    found = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
+    changes = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
     width = body_of(scene).x[1] - body_of(scene).x[0]
     limit = body_of(scene).coefficient * abs(float(body_of(scene).load[1])) / 2
-    found.append(
+    changes.append(
         CandidateChange(
             "cohesion",
             lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
@@ -72,12 +83,15 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
             tuple(math.log(share * limit / (width / 2)) for share in COHESIONS if limit > 0),
         )
     )
-    return [*found, *_schemes(scene)]
+    if scene.contact.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
+        lagged: Values = {"contact.rules": "lagged"}
+        changes.append(_fixed("lagged-friction", "friction lags", lagged))
+    return [*changes, *_schemes(scene)]
 
 
 def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
     """Return the other named schemes and starts, which have no number."""
-    t, found = scene.time, []
+    t, schemes = scene.time, []
     for name, (alpha, delta) in NAMED.items():
         for start in ("zero", "consistent"):
             same = (alpha, delta) == (t.alpha, t.delta)
@@ -85,10 +99,12 @@ def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
                 continue
             values: Values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
             words = f"the initial acceleration is {start}" if same else f"the scheme is {name}, start {start}"
-            found.append(
-                CandidateChange("start" if same else "scheme", lambda _, said=words: said, float, lambda _, v=values: v)  # type: ignore[misc]
-            )
-    return found
+            schemes.append(_fixed("start" if same else "scheme", words, values))
+    return schemes
+
+
+def _fixed(name: str, words: str, values: Values) -> CandidateChange[Values]:
+    return CandidateChange(name, lambda _: words, float, lambda _: values)
 
 
 def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange | None, list[OneChange]]:
@@ -101,40 +117,34 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
     place, rounding
         Displacements along and across the base at every step, and units of their last digits [m], (steps, 2).
     """
-    tried = [(one, one.starts[0] if one.starts else 0.0, math.inf) for one in candidates(scene)]
-    for stage in (*STAGES, len(place)):
-        steps = min(stage, len(place))
-        first = stage == STAGES[0]
-        fits = [_fitted(scene, one, u, place[:steps], first) for one, u, _ in tried]
-        ordered = sorted(fits, key=lambda item: item[2])
-        bar = NEAR * ordered[min(NEAREST, len(ordered)) - 1][2]
-        tried = [item for item in ordered if item[2] <= bar] if first else ordered[:NEAREST]
-        if steps == len(place):
-            break
-    found = []
-    for one, u, _ in tried:
-        run = agreement(scene.with_values(one.changed(u)), place, rounding)
-        if run.same:
-            value = float(f"{one.value(u):.6g}") if one.starts else None
-            found.append(OneChange(one.id, value, one.words(one.value(u)), run))
-    clear = alike(found, lambda change: change.run.left, CLEAR)
-    ids = {change.id for change in clear}
-    best = clear[0] if len(ids) == 1 and not ids & set(OUTSIDE) else None
-    return best, clear
-
-
-def _fitted(
-    scene: Scene, one: CandidateChange[Values], u: float, place: Array, first: bool
-) -> tuple[CandidateChange[Values], float, float]:
-    """Return a candidate's number that comes nearest over some steps, and what it leaves."""
     size = np.maximum(np.max(np.abs(place), axis=0), np.finfo(float).tiny)
-    short = scene.with_values({"time.steps": len(place)})
 
-    def residual(number: float) -> Array:
-        run = displacements(short.with_values(one.changed(number)))
-        return np.ones(place.size) if run is None else np.ravel((run - place) / size)
+    def residual_over(steps: int, change: CandidateChange[Values]) -> Residual:
+        short = scene.with_values({"time.steps": steps})
+        first = place[:steps]
 
-    if not one.starts:
-        return one, u, float(np.linalg.norm(residual(u)))
-    at = nearest_start(residual, one.starts) if first else u
-    return one, *fitted(residual, at, ROUNDS, NUDGE, ARRIVED)
+        def residual(u: float) -> Array:
+            run = displacements(short.with_values(change.changed(u)))
+            return np.ones(first.size) if run is None else np.ravel((run - first) / size)
+
+        return residual
+
+    stages = sorted({min(stage, len(place)) for stage in (*STAGES, len(place))})
+    best = [nearest_start(residual_over(stages[0], change), change) for change in candidates(scene)]
+    best = nearest(best, PURSUED, 0.0)
+    for steps in stages:
+        fits = [fitted(residual_over(steps, fit.change), fit, ROUNDS, NUDGE, ARRIVED) for fit in best]
+        fits.sort(key=lambda fit: fit.remainder)
+        best = alike(fits[:NEAREST], lambda fit: fit.remainder, NEAR, ROUNDED * math.sqrt(steps))
+        if best[0].remainder > NOISE * math.sqrt(2 * steps):
+            return None, []  # no noise is so large
+    explanations = []
+    for fit in best:
+        run = agreement(scene.with_values(fit.change.changed(fit.u)), place, rounding)
+        if run.same:
+            value = float(f"{fit.change.value(fit.u):.6g}") if fit.change.starts else None
+            explanations.append(OneChange(fit.change.id, value, fit.change.words(fit.change.value(fit.u)), run))
+    clear = alike(explanations, lambda change: change.run.left, CLEAR)
+    ids = {change.id for change in clear}
+    certain = clear[0] if len(ids) == 1 and not ids & set(OUTSIDE) else None
+    return certain, clear

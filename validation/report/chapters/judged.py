@@ -11,7 +11,7 @@ from validation.problems.bands import Standard
 from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
-from validation.problems.told import COUNTED, Told
+from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
 from validation.report.blocks import Column as TableColumn
 from validation.report.chapters.text import DASH, bounded, plain, short
@@ -85,7 +85,7 @@ def page(answer: Judged, directory: Path) -> list[Block]:
         Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
         _columns(judgement.columns, answer.held),
         *figures(answer, directory),
-        *([_further_numbers(judgement.told)] if judgement.told else []),
+        *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
         Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(answer.about)),
     ]
 
@@ -139,13 +139,13 @@ def datum(column: Column, standard: Standard) -> str:
     return band.datum if band else ""
 
 
-def _further_numbers(numbers: Sequence[Told]) -> Table:
+def _further_numbers(numbers: Sequence[Quantity]) -> Table:
     titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
     rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
     return Table(titles, tuple(rows), "Further numbers, which are not judged.")
 
 
-def _number_cell(number: Told, value: float | None) -> str:
+def _number_cell(number: Quantity, value: float | None) -> str:
     if value is None:
         return DASH
     return f"{value:.0f}" if number.name in COUNTED else bounded(value, plain(value))

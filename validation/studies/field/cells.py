@@ -133,7 +133,7 @@ def metrics_of(judgement: Judgement, why: str) -> dict[str, Value]:
         metrics[f"{column.name}: band"] = None if column.band is None else settled(column.band)
         metrics[f"{column.name}: until"] = settled(column.until)
         metrics[f"{column.name}: reason"] = column.reason
-    for number in judgement.told:
+    for number in judgement.quantities:
         for kind, value in (("value", number.value), ("exact", number.exact)):
             metrics[f"told {kind}: {number.name} [{number.unit}]"] = None if value is None else settled(value)
     return metrics

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 
-from validation.diagnosis.changes import accurate
+from validation.diagnosis.numbers import accurate
 from validation.problems.bands import changed_scenes
 from validation.problems.problem import PREFIX, PROBLEMS, Problem, problem
 from validation.scenes import features

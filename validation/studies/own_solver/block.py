@@ -20,55 +20,55 @@ WIDTH = 11  # of the first column
 MAY_FOLLOW = "may follow from it, look again when it is right"
 
 
-def block(told: Sequence[Told], every: bool = False) -> list[str]:
+def block(results: Sequence[Told], every: bool = False) -> list[str]:
     """Return the lines of the block.
 
     Parameters
     ----------
-    told
+    results
         What each gate said.
     every
         List all failing gates of a group, not the first few.
     """
-    judged = [t for t in told if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
+    judged = [t for t in results if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
     failed = [t for t in judged if t.status == Status.FAIL]
     misread = _misread(judged, failed)
     plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
     lines = [
-        *_table(told),
-        *_warnings(told),
+        *_table(results),
+        *_warnings(results),
         *_headline(judged, failed, plain),
         *_block_data(judged, failed, misread),
         *_failures(failed, every),
-        *_endings(told),
-        *_not_run(told),
+        *_endings(results),
+        *_not_run(results),
     ]
     return [*lines, *diagnosis(plain or _moving(failed), first(judged, plain)), *_unseen(judged)]
 
 
-def _table(told: Sequence[Told]) -> Iterator[str]:
+def _table(results: Sequence[Told]) -> Iterator[str]:
     """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
     yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
     for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
-        own = [t for t in told if t.group == group]
-        sound = [t.status for t in own if t.outcome == Outcome.COMPLETED]
-        absent = sum(t.status == Status.NOT_RUN for t in own)
+        of_group = [t for t in results if t.group == group]
+        sound = [t.status for t in of_group if t.outcome == Outcome.COMPLETED]
+        absent = sum(t.status == Status.NOT_RUN for t in of_group)
         passed, failed = sound.count(Status.PASS), sound.count(Status.FAIL)
-        if own:
-            counts = f"{passed:>8}{failed:>8}{len(own) - passed - failed - absent:>11}{absent:>9}"
+        if of_group:
+            counts = f"{passed:>8}{failed:>8}{len(of_group) - passed - failed - absent:>11}{absent:>9}"
             yield f"{group:<{WIDTH}}{counts}   {says}"
 
 
-def _warnings(told: Sequence[Told]) -> Iterator[str]:
+def _warnings(results: Sequence[Told]) -> Iterator[str]:
     """Yield what makes the verdicts worth less: a solver of the suite answered, or two runs differ."""
-    scenes = {t.scene for t in told if t.outcome == Outcome.COMPLETED}
-    for solver in dict.fromkeys(name for t in told for name in t.same_as.split()):
-        same = {t.scene for t in told if solver in t.same_as.split()}
+    scenes = {t.scene for t in results if t.outcome == Outcome.COMPLETED}
+    for solver in dict.fromkeys(name for t in results for name in t.same_as.split()):
+        same = {t.scene for t in results if solver in t.same_as.split()}
         yield (
             f"\nidentical: bit for bit the histories of the suite's own {solver} in {len(same)} of {len(scenes)} "
             "scenes; another program differs in its last digits: these gates judged the suite's solver"
         )
-    apart = {t.scene: t for t in told if t.apart_in}
+    apart = {t.scene: t for t in results if t.apart_in}
     for t in apart.values():
         yield (
             f"\nnot repeatable: two runs of {t.scene} differ by {difference(t.apart)} in {t.apart_in} (relative L2); "
@@ -90,11 +90,11 @@ def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
     By itself means that the displacement of the same scene is right to rounding.
     """
     groups = {t.group for t in failed} - {BLOCK_DATA}
-    found = [group for group in FOLLOWS if group in groups][:1]
+    groups_at_fault = [group for group in FOLLOWS if group in groups][:1]
     exact = {t.scene for t in judged if t.metric == "displacement.max" and t.group == "digits"}
     exact -= {t.scene for t in failed if t.group != "pressure"}
     alone = any(t.metric == "pressure.max" and t.scene in exact for t in failed)
-    return [*found, "pressure"] if alone or (groups and not found) else found
+    return [*groups_at_fault, "pressure"] if alone or (groups and not groups_at_fault) else groups_at_fault
 
 
 def _headline(judged: Sequence[Told], failed: Sequence[Told], plain: Sequence[Told]) -> Iterator[str]:
@@ -102,10 +102,10 @@ def _headline(judged: Sequence[Told], failed: Sequence[Told], plain: Sequence[To
     right = [g for g in GROUPS if any(t.group == g for t in judged) and not any(t.group == g for t in failed)]
     if judged:
         yield f"\nright:  {', '.join(right) or 'nothing yet'}"
-    found = first(judged, plain)
-    for group in found:
+    groups_at_fault = first(judged, plain)
+    for group in groups_at_fault:
         yield f"wrong:  {group} - {GROUPS[group]}"
-    rest = [group for group in GROUPS if group not in found and any(t.group == group for t in plain)]
+    rest = [group for group in GROUPS if group not in groups_at_fault and any(t.group == group for t in plain)]
     if rest:
         yield f"        {', '.join(rest)}: {MAY_FOLLOW}"
 
@@ -118,14 +118,14 @@ def _misread(judged: Sequence[Told], failed: Sequence[Told]) -> dict[Misreading,
     """
     resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
     measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
-    named = block_data.misreadings(measured)
+    misreadings = block_data.misreadings(measured)
     statics = [t for t in failed if t.group == "statics"]
-    return {} if any(not _follows(t, named) for t in statics) else named
+    return {} if any(not _follows(t, misreadings) for t in statics) else misreadings
 
 
-def _follows(told: Told, misread: Collection[Misreading]) -> bool:
+def _follows(result: Told, misread: Collection[Misreading]) -> bool:
     """Whether a gate is on a scene that a solver misreads."""
-    case = gates.cases(told.study).get((told.scene, gates.JUDGED)) if misread else None
+    case = gates.cases(result.study).get((result.scene, gates.JUDGED)) if misread else None
     return case is not None and any(block_data.is_misread(case.scene, one) for one in misread)
 
 
@@ -134,9 +134,9 @@ def _block_data(
 ) -> Iterator[str]:
     """Yield with which data of the block a solver is right, and which of them it misreads."""
     data = block_data.datum_of()
-    own = {t.scene for t in judged if t.group == BLOCK_DATA}
+    scenes_of_data = {t.scene for t in judged if t.group == BLOCK_DATA}
     wrong = [t for t in failed if t.group == BLOCK_DATA]
-    right = [datum.words for scene, datum in data.items() if scene in own - {t.scene for t in wrong}]
+    right = [datum.words for scene, datum in data.items() if scene in scenes_of_data - {t.scene for t in wrong}]
     if right:
         yield f"{BLOCK_DATA}: right with {', '.join(right)}"
     plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
@@ -171,22 +171,22 @@ def _moving(failed: Sequence[Told]) -> list[Told]:
 def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
     """Yield the failing gates with their values, group by group."""
     for group in (*GROUPS, BLOCK_DATA):
-        own = [t for t in failed if t.group == group]
-        if own:
+        of_group = [t for t in failed if t.group == group]
+        if of_group:
             yield f"\nfailed: {group}"
-        for t in own if every else own[:SHOWN]:
+        for t in of_group if every else of_group[:SHOWN]:
             yield f"  {t.scene}: {outside(t)}"
-        if len(own) > SHOWN and not every:
-            yield f"  and {len(own) - SHOWN} more (-v lists them)"
+        if len(of_group) > SHOWN and not every:
+            yield f"  and {len(of_group) - SHOWN} more (-v lists them)"
 
 
-def outside(told: Told) -> str:
+def outside(result: Told) -> str:
     """Return value and band with so many digits that one sees the band's width and the value outside."""
-    metric, low, high = told.metric, told.low, told.high
-    if not isinstance(told.value, float | int):
-        return f"{metric} is {told.value}; the band is [{low:.6g}, {high:.6g}]"
+    metric, low, high = result.metric, result.low, result.high
+    if not isinstance(result.value, float | int):
+        return f"{metric} is {result.value}; the band is [{low:.6g}, {high:.6g}]"
     for digits in range(4, 17):
-        value, *edges = (f"{number:.{digits}g}" for number in (told.value, low, high))
+        value, *edges = (f"{number:.{digits}g}" for number in (result.value, low, high))
         if value not in edges and (edges[0] != edges[1] or low == high):
             break
     return f"{metric} = {value} is outside [{', '.join(edges)}]"
@@ -195,42 +195,42 @@ def outside(told: Told) -> str:
 # ---- what was not judged --------------------------------------------------------------------------------------------
 
 
-def _endings(told: Sequence[Told]) -> Iterator[str]:
+def _endings(results: Sequence[Told]) -> Iterator[str]:
     """Yield how runs ended that gave no history to judge, each ending once with its scenes."""
-    ended = [t for t in told if t.status == Status.FAIL and t.outcome not in ("", Outcome.COMPLETED)]
+    ended = [t for t in results if t.status == Status.FAIL and t.outcome not in ("", Outcome.COMPLETED)]
     for kind in dict.fromkeys(map(_ending, ended)):
-        own = [t for t in ended if _ending(t) == kind]
-        said, outcome = own[0].why, own[0].outcome
-        yield f"\n{said if said.startswith('wrong ') else f'{outcome}: {said}'}"
-        yield f"  {_gates(own)}: {_few([t.scene for t in own])}"
+        of_kind = [t for t in ended if _ending(t) == kind]
+        why, outcome = of_kind[0].why, of_kind[0].outcome
+        yield f"\n{why if why.startswith('wrong ') else f'{outcome}: {why}'}"
+        yield f"  {_gates(of_kind)}: {_few([t.scene for t in of_kind])}"
 
 
-def _ending(told: Told) -> tuple[str, str, str]:
+def _ending(result: Told) -> tuple[str, str, str]:
     """Return what tells one ending from another: the place in the solver's code, but no number of a scene."""
-    said, _, place = told.why.rpartition(" (") if told.outcome == Outcome.RAISED else (told.why, "", "")
-    return told.outcome, re.sub(r"\d+", "", said), place
+    why, _, place = result.why.rpartition(" (") if result.outcome == Outcome.RAISED else (result.why, "", "")
+    return result.outcome, re.sub(r"\d+", "", why), place
 
 
-def _not_run(told: Sequence[Told]) -> Iterator[str]:
+def _not_run(results: Sequence[Told]) -> Iterator[str]:
     """Yield why gates were not run, each reason once."""
-    absent = [t for t in told if t.status == Status.NOT_RUN]
+    absent = [t for t in results if t.status == Status.NOT_RUN]
     if absent:
         yield "\nNOT RUN"
     for why in dict.fromkeys(t.why for t in absent):
-        own = [t for t in absent if t.why == why]
-        yield f"  {_gates(own)}: {why}"
+        of_reason = [t for t in absent if t.why == why]
+        yield f"  {_gates(of_reason)}: {why}"
 
 
 def _unseen(judged: Sequence[Told]) -> Iterator[str]:
     """Yield what no gate has seen of the solver: a pass says nothing of it."""
-    found = {(t.study, t.scene): gates.cases(t.study).get((t.scene, gates.JUDGED)) for t in judged}
-    kinds = gates.unseen(case.scene for case in found.values() if case is not None)
+    judged_cases = {(t.study, t.scene): gates.cases(t.study).get((t.scene, gates.JUDGED)) for t in judged}
+    kinds = gates.unseen(case.scene for case in judged_cases.values() if case is not None)
     if judged and kinds:
         yield f"\nno gate saw: {', '.join(kinds)}; what passed says nothing of it"
 
 
-def _gates(own: Sequence[Told]) -> str:
-    return f"{len(own)} gate{'s' * (len(own) > 1)}"
+def _gates(results: Sequence[Told]) -> str:
+    return f"{len(results)} gate{'s' * (len(results) > 1)}"
 
 
 def _few(names: Sequence[str]) -> str:

@@ -23,8 +23,8 @@ def telling(failed: Sequence[Told], groups: Sequence[str]) -> Told | None:
     then the fewest steps; the first of equal ones.
     """
     short = [t for t in failed if t.steps <= LONGEST]
-    own, every = Counter(t.scene for t in short if t.group in groups), Counter(t.scene for t in short)
-    return max(short, key=lambda t: (own[t.scene], every[t.scene], -t.steps), default=None)
+    in_groups, every = Counter(t.scene for t in short if t.group in groups), Counter(t.scene for t in short)
+    return max(short, key=lambda t: (in_groups[t.scene], every[t.scene], -t.steps), default=None)
 
 
 def diagnosis(failed: Sequence[Told], groups: Sequence[str]) -> Iterator[str]:

@@ -78,16 +78,16 @@ KINDS: dict[str, Callable[[Scene], bool]] = {
 
 def unseen(scenes: Iterable[Scene]) -> list[str]:
     """Return the kinds of scenes that none of some scenes is."""
-    known = list(scenes)
-    return [kind for kind, is_one in KINDS.items() if not any(is_one(scene) for scene in known)]
+    every = list(scenes)
+    return [kind for kind, is_one in KINDS.items() if not any(is_one(scene) for scene in every)]
 
 
 @functools.cache
 def starts() -> tuple[Scene, ...]:
     """Return the scenes in which the initial acceleration counts: average acceleration, with and without discount."""
     plain = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
-    made = [plain.with_values({"time.start": start}, label=True) for start in ("zero", "consistent")]
-    return (*made, plain.with_values({"time.start": "consistent", "time.gg": 0.95}, label=True))
+    undiscounted = [plain.with_values({"time.start": start}, label=True) for start in ("zero", "consistent")]
+    return (*undiscounted, plain.with_values({"time.start": "consistent", "time.gg": 0.95}, label=True))
 
 
 START = Study(
@@ -118,8 +118,8 @@ def gates() -> Mapping[str, tuple[str, Gate]]:
 @functools.cache
 def applying() -> Mapping[str, tuple[str, Gate]]:
     """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone."""
-    own = {gate.id: (START.name, gate) for gate in START.gates()}
-    return {name: found for name, found in gates().items() if applies(*found)} | own
+    on_start = {gate.id: (START.name, gate) for gate in START.gates()}
+    return {name: study_and_gate for name, study_and_gate in gates().items() if applies(*study_and_gate)} | on_start
 
 
 @functools.cache
@@ -131,11 +131,11 @@ def cases(study: str) -> Mapping[tuple[str, str], Case]:
 @functools.cache
 def asked() -> Mapping[tuple[str, str], frozenset[str]]:
     """Return the metrics that the gates read of each case, by scene and solver."""
-    found: dict[tuple[str, str], set[str]] = {}
+    metrics_by_case: dict[tuple[str, str], set[str]] = {}
     for study, gate in gates().values():
         for case, metric in reads(gate, recipes(study)):
-            found.setdefault(case, set()).add(metric)
-    return {case: frozenset(metrics) for case, metrics in found.items()}
+            metrics_by_case.setdefault(case, set()).add(metric)
+    return {case: frozenset(metrics) for case, metrics in metrics_by_case.items()}
 
 
 @functools.cache

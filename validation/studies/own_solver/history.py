@@ -54,14 +54,14 @@ def shown(gate: Gate, scene: Scene, history: History) -> tuple[Gate, Value]:
         value, moving = rest(history.displacement)
         reason = f"{gate.reason}; measured as the middle of the last fifth, to what still moves there"
         return replace(_wider(gate, abs(value) * REST + moving), metric=AT_REST, reason=reason), value
-    found = root(scene, history)
-    if found is None:
+    swing = root(scene, history)
+    if swing is None:
         return gate, UNDEFINED
     if gate.metric == "mode1.frequency":
-        band = _wider(gate, gate.high * (FREQUENCY + found.error))
-        return band, natural_frequency(scene, found.frequency, found.ratio)
-    given = PENCIL if gate.metric == "mode1.damping" else 0.0  # the other gate's band holds it already
-    return replace(_wider(gate, given + found.error), metric="mode1.measured_damping"), found.ratio
+        band = _wider(gate, gate.high * (FREQUENCY + swing.error))
+        return band, natural_frequency(scene, swing.frequency, swing.ratio)
+    allowance = PENCIL if gate.metric == "mode1.damping" else 0.0  # the other gate's band holds it already
+    return replace(_wider(gate, allowance + swing.error), metric="mode1.measured_damping"), swing.ratio
 
 
 def _wider(gate: Gate, half: float) -> Gate:

@@ -146,14 +146,14 @@ class Session:
         return " ".join(same)
 
     def _finish(self, study: str, missing: list[Case]) -> None:
-        found = finish(missing, gates.study_of(study), self.finished.results)
-        self.finished.rows.update(found.rows)
+        finished = finish(missing, gates.study_of(study), self.finished.results)
+        self.finished.rows.update(finished.rows)
 
     def _judged(self, study: str, gate: Gate, judged: Gate, case: Case, row: Row) -> Verdict:
         """Judge a sound run, by its history where the solver reports nothing; references are run here."""
-        seen = self.finished.history(case.scene.name, self.user)
-        if seen is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
-            return judge(*history.shown(judged, case.scene, seen))
+        own_history = self.finished.history(case.scene.name, self.user)
+        if own_history is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
+            return judge(*history.shown(judged, case.scene, own_history))
         needed = [pair for pair in gates.study_of(study).needs(gate) if pair != gate.cases[0]]
         self._finish(study, [gates.cases(study)[pair] for pair in needed if pair not in self.finished.rows])
         verdict = evaluate(judged, replace(self.finished, derived=gates.recipes(study)))
@@ -166,6 +166,6 @@ class Session:
         return measured or row.metrics.get(gate.metric) == NOT_REPORTED
 
 
-def plain(told: Told) -> dict[str, object]:
+def plain(result: Told) -> dict[str, object]:
     """Return what a gate said as JSON takes it."""
-    return asdict(told)
+    return asdict(result)

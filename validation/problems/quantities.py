@@ -15,7 +15,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-MOST = 3  # numbers that are told of a problem
+MOST = 3  # numbers of a problem
 TRACE = 1e-3  # of the largest pressure: what is less is an open contact
 ARRIVAL = 0.1  # of the largest displacement: what is more has arrived
 COUNTED = frozenset({"openings"})  # of the numbers: how often something happens
@@ -23,7 +23,7 @@ ROTATION, SIDEWAYS = "rotation", "horizontal_displacement"
 
 
 @dataclass(frozen=True)
-class Told:
+class Quantity:
     """A number of an answer and of the exact motion; None where the answer or the motion has none."""
 
     name: str
@@ -42,31 +42,35 @@ class Number:
     of: Callable[[Array, Array], float | None]  # of time [s] and column
 
 
-def told(problem: Problem, history: History, exact: History) -> tuple[Told, ...]:
+def quantities(problem: Problem, history: History, exact: History) -> tuple[Quantity, ...]:
     """Return at most `MOST` numbers of an answer, over the rows of the exact motion."""
-    rows, found = len(exact.time), []
+    rows, shown_numbers = len(exact.time), []
     for number in numbers(problem.scene):
         if number.column in exact.columns:
-            seen = history.columns.get(number.column)
-            value = None if seen is None or not np.isfinite(seen[:rows]).all() else number.of(exact.time, seen[:rows])
-            found.append(Told(number.name, number.unit, value, number.of(exact.time, exact.columns[number.column])))
-    return tuple(found[:MOST])
+            column = history.columns.get(number.column)
+            value = (
+                None if column is None or not np.isfinite(column[:rows]).all() else number.of(exact.time, column[:rows])
+            )
+            shown_numbers.append(
+                Quantity(number.name, number.unit, value, number.of(exact.time, exact.columns[number.column]))
+            )
+    return tuple(shown_numbers[:MOST])
 
 
 def numbers(scene: Scene) -> Iterator[Number]:
     """Yield the numbers that a kind of scene is understood by, the first ones first."""
-    own = features.of(scene)
+    scene_features = features.of(scene)
     if scene.column is not None:
         for name in scene.run.columns:
             yield Number(f"arrival of {name}", "s", name, arrival)
             yield Number(f"largest {name}", "m", name, lambda t, x: largest(x))
-    elif features.ROTATION in own:
+    elif features.ROTATION in scene_features:
         yield Number("rotation at the last judged step", "rad", ROTATION, last)
         yield Number("instant of landing", "s", ROTATION, _landing(scene))
-    elif features.FRICTION in own:
+    elif features.FRICTION in scene_features:
         yield Number("slid in the end", "m", SIDEWAYS, last)
         yield Number("displacement in the end", "m", DISPLACEMENT, last)
-    elif features.UNILATERAL in own:
+    elif features.UNILATERAL in scene_features:
         yield Number("openings", "1", PRESSURE, openings)
         if scene.block.velocity or scene.contact.gap:
             yield Number("height of the first rebound", "m", DISPLACEMENT, rebound)
@@ -108,10 +112,10 @@ def _landing(scene: Scene) -> Callable[[Array, Array], float | None]:
 
     def landing(time: Array, x: Array) -> float | None:
         turned = np.abs(x)
-        found = _reached(time, turned, tilt)
+        landed = _reached(time, turned, tilt)
         rate = turned[-1] - turned[-2]
-        if found is not None or rate <= 0:
-            return found
+        if landed is not None or rate <= 0:
+            return landed
         ahead = (tilt - turned[-1]) / rate  # in steps: near the landing the rate is nearly constant
         return float(time[-1] + ahead * (time[-1] - time[-2])) if ahead <= MOST else None
 
@@ -132,5 +136,5 @@ def _pole(time: Array, x: Array) -> tuple[float | None, float | None]:
     middle = float(np.mean(x))
     if middle == 0 or len(time) < 2:
         return None, None
-    found = poles(x / middle - 1, float(time[1] - time[0]))
-    return (found[0].frequency / (2 * math.pi), found[0].damping) if found else (None, None)
+    strongest = poles(x / middle - 1, float(time[1] - time[0]))
+    return (strongest[0].frequency / (2 * math.pi), strongest[0].damping) if strongest else (None, None)
