@@ -70,7 +70,6 @@ class Law(NamedTuple):
 class Contacts(NamedTuple):
     """State of n contacts, one entry each."""
 
-    n: int
     state: States  # OPEN, STICK (closed, without friction too), or SLIP in its direction
     gap: Vector  # w [m]
     stretch: Vector  # s - r of the closed ones [m]; 0 where open
@@ -139,13 +138,10 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     )
 
 
-def at_rest(gap: Array, capacity: int) -> Contacts:
-    """Return contacts without force, closed where they touch, in room for `capacity` of them."""
-    state = np.zeros(capacity, dtype=np.int64)
-    state[: len(gap)] = np.where(gap <= 0, STICK, OPEN)
-    vectors = np.zeros((6, capacity))
-    vectors[0, : len(gap)] = gap
-    return Contacts(len(gap), state, *vectors)
+def at_rest(gap: Array) -> Contacts:
+    """Return contacts without force, closed where they touch."""
+    state = np.where(gap <= 0, STICK, OPEN)
+    return Contacts(state, gap, *np.zeros((5, len(gap))))
 
 
 def work_for(n: int) -> Work:
@@ -210,7 +206,7 @@ def find_contacts(
     """
     if law.lagged:
         return lagged(law, before, free, flexible, limit, after, work)
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = law.cohesion
@@ -277,7 +273,7 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
 
 def states_agree(law: Law, after: Contacts, states: States) -> bool:
     """Tell whether the forces of all contacts agree with the states that were tried."""
-    for i in range(after.n):  # noqa: SIM110  (numba knows no generators)
+    for i in range(len(after.gap)):  # noqa: SIM110  (numba knows no generators)
         if agreed(law, after, i) != states[i]:
             return False
     return True
@@ -285,7 +281,7 @@ def states_agree(law: Law, after: Contacts, states: States) -> bool:
 
 def update_states(law: Law, after: Contacts, states: States, most: int) -> None:
     """Set the states that disagree with their forces, `most` at most."""
-    for i in range(after.n):
+    for i in range(len(after.gap)):
         state = agreed(law, after, i)
         if state != states[i] and most > 0:
             states[i] = state
@@ -296,7 +292,7 @@ def one_by_one(
     law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.saved[i] = work.tried[i]
     changes, next_save = 0, 1
@@ -327,7 +323,7 @@ def every_state(
     law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, choices: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Try all states; take the only ones that agree with their forces, but for rounding."""
-    n = before.n
+    n = len(before.gap)
     consistent = -1
     for number in range(choices**n):
         set_states(work.tried, number, choices, n)
@@ -359,7 +355,7 @@ def set_states(states: States, number: int, choices: int, n: int) -> None:
 
 def same_forces(after: Contacts, first: Vector) -> bool:
     """Tell whether two answers differ by rounding only, as at the very limit of stick and slip."""
-    n = after.n
+    n = len(after.gap)
     size = 0.0
     apart = 0.0
     for i in range(n):
@@ -388,7 +384,7 @@ def lagged(
     A contact that slips too late carries too much, one that sticks again has lost its force: a stable block creeps,
     all the more the smaller the step. Dead bands (`Unilateral.band`) are another matter, and make it worse.
     """
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = shear_limit(law, before.normal[i])
@@ -439,7 +435,7 @@ def trial(
     friction
         tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
     """
-    n = before.n
+    n = len(before.gap)
     closed = 0
     closing = 0
     for i in range(n):
@@ -480,7 +476,7 @@ def trial(
 
 def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
-    n = after.n
+    n = len(after.gap)
     total = dot(row, after.normal, n)
     if law.shears:
         for j in range(n):
@@ -562,7 +558,7 @@ def solve_forces(
             work.active[active] = place
             active += 1
     size = closed + active
-    paired = active == 2 and before.n == 2 and keeps_pair(law, flexible, work)
+    paired = active == 2 and len(before.gap) == 2 and keeps_pair(law, flexible, work)
     assemble(law, before, free, flexible, paired, closed, active, work)
     for place in range(size):
         work.scale[place] = scale_of(work.A[place][place])
@@ -594,7 +590,7 @@ def assemble(
     law: Law, before: Contacts, free: Free, flexible: Flexible, paired: bool, closed: int, active: int, work: Work
 ) -> None:
     """Write the equations of N of the closed contacts and T of those that stick, without the slipping ones' T."""
-    n = before.n
+    n = len(before.gap)
     A = work.A
     C = flexible.C_paired if paired else flexible.C
     for row in range(closed + active):
@@ -631,7 +627,7 @@ def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
 
 def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
     """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
-    n = before.n
+    n = len(before.gap)
     for place in range(closed):
         i = work.closed[place]
         if abs(work.tried[i]) != SLIP:

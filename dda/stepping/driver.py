@@ -137,7 +137,7 @@ def driver(
                     continue
                 if len(history.sums) > 0:
                     account(body, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
-                for i in range(after.contacts.n):
+                for i in range(len(after.contacts.gap)):
                     history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state
                 if ratio == remainder:
@@ -154,7 +154,7 @@ def driver(
 
 def keep_contacts(contacts: Contacts, history: History, number: int) -> None:
     """Write the contacts at the end of a step."""
-    for i in range(contacts.n):
+    for i in range(len(contacts.gap)):
         history.normal[number, i] = contacts.normal[i]
         history.shear[number, i] = contacts.shear[i]
         history.gap[number, i] = contacts.gap[i]

@@ -53,7 +53,7 @@ def add_contact_losses(
     share
         Number of contacts that each of these stands for.
     """
-    for i in range(after.n):
+    for i in range(len(after.gap)):
         N = (1 - late) * before.normal[i] + late * after.normal[i]
         T = (1 - late) * before.shear[i] + late * after.shear[i]
         friction = 0.0 - after.shear[i] * after.slipped[i]

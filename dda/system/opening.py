@@ -197,7 +197,7 @@ class OpeningBody:
         P = np.einsum("nij,nj->ni", e.mass, upwards).ravel()
         F = dt * dt * e.F * self.opening.system.load_size
         f = F if self.scheme.start == "consistent" else np.zeros_like(F)
-        contacts = at_rest(np.full(self.points, self.opening.law.gap), self.points)
+        contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
     def moved_base(self, base: BaseRecord, begun: float, ratio: float) -> Array:
